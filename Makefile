@@ -1,0 +1,24 @@
+# make demo, make test: everything they need is put into .venv, from wheels; nothing else is touched.
+SHELL := /bin/bash
+ENV := .venv
+BIN := $(ENV)/bin
+
+.PHONY: demo test lint bench clean
+
+demo: $(ENV)/ready
+	@$(BIN)/hexarm demo
+
+test: $(ENV)/ready
+	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/python -m pytest $(PYTEST)
+
+lint: $(ENV)/ready
+	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy
+
+bench: $(ENV)/ready
+	@$(BIN)/python -m bench
+
+$(ENV)/ready: setup.py pyproject.toml environment.sh
+	@./environment.sh $(ENV)
+
+clean:
+	rm -rf $(ENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

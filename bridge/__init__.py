@@ -1,0 +1,1 @@
+"""From joint commands to frames on a serial line, and back."""

@@ -1,0 +1,1 @@
+"""Parallel platforms: geometry, inverse and forward kinematics, workspace."""

@@ -1,0 +1,1 @@
+"""The `hexarm` command, one file per subcommand."""

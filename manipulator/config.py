@@ -1,0 +1,185 @@
+"""Machine files: YAML text to frozen dataclasses, with every fault found at once.
+
+A section's dataclass is its schema. Field names carry the unit (`_mm`, `_deg`, `_us`), and
+`quantity(low, high)` states what is credible, so that metres in a millimetre field are caught.
+"""
+
+import dataclasses
+import difflib
+import math
+import types
+import typing
+from collections.abc import Mapping
+from typing import Any, TypeVar
+
+import yaml
+
+from manipulator.errors import ConfigError
+
+T = TypeVar('T')
+MAX_CHARACTERS = 1_000_000
+
+
+def quantity(low: float, high: float, **options: Any) -> Any:
+    """A dataclass field whose value, or every value of whose list, must lie in [low, high]."""
+    return dataclasses.field(metadata={'range': (low, high)}, **options)
+
+
+def parse_yaml(text: str, source: str = '') -> dict[str, Any]:
+    """YAML text as a mapping; repeated keys, aliases, tags and huge files are refused."""
+    if len(text) > MAX_CHARACTERS:
+        raise ConfigError(
+            [f'{len(text)} bytes, a machine file has at most {MAX_CHARACTERS}'], source
+        )
+    try:
+        content = yaml.load(text, Loader=_StrictLoader)
+    except yaml.YAMLError as error:
+        raise ConfigError([' '.join(str(error).split())], source) from error
+    except RecursionError as error:
+        raise ConfigError(['nested too deeply'], source) from error
+    if not isinstance(content, dict):
+        raise ConfigError([f'holds {_kind(content)}, needs a mapping of keys'], source)
+    return content
+
+
+def build(schema: type[T], content: object, where: str = '', source: str = '') -> T:
+    """`content` as an instance of the dataclass `schema`; ConfigError lists all that is wrong."""
+    problems: list[str] = []
+    result = _convert(schema, content, where, problems)
+    if problems:
+        raise ConfigError(problems, source)
+    return typing.cast(T, result)
+
+
+class _StrictLoader(yaml.SafeLoader):
+    """A SafeLoader that refuses aliases (no anchor bombs) and repeated keys."""
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        if self.check_event(yaml.AliasEvent):
+            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
+            raise yaml.YAMLError(f'line {mark.line + 1}: aliases are not allowed')
+        return super().compose_node(parent, index)
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        seen: set[object] = set()
+        for key_node, _ in node.value:
+            if key_node.value in seen:
+                line = key_node.start_mark.line + 1
+                raise yaml.YAMLError(f'line {line}: key {key_node.value!r} stands twice')
+            if isinstance(key_node.value, str):
+                seen.add(key_node.value)
+        return super().construct_mapping(node, deep)
+
+
+def _convert(wanted: Any, value: object, where: str, problems: list[str]) -> Any:
+    """`value` as the type `wanted`; what does not fit is added to `problems`."""
+    origin, arguments = typing.get_origin(wanted), typing.get_args(wanted)
+    if dataclasses.is_dataclass(wanted):
+        return _convert_section(wanted, value, where, problems)
+    if origin in (typing.Union, types.UnionType):
+        if value is None and type(None) in arguments:
+            return None
+        (inner,) = (a for a in arguments if a is not type(None))
+        return _convert(inner, value, where, problems)
+    if origin is typing.Literal:
+        if value not in arguments:
+            hint = _nearest(str(value), [str(a) for a in arguments])
+            problems.append(f'{where}: {value!r} is not one of {list(arguments)}{hint}')
+        return value
+    if origin is tuple:
+        return _convert_list(arguments, value, where, problems)
+    if origin is dict or wanted is Any:
+        return value
+    return _convert_scalar(wanted, value, where, problems)
+
+
+def _convert_section(schema: Any, value: object, where: str, problems: list[str]) -> Any:
+    if not isinstance(value, Mapping):
+        problems.append(f'{where or "file"}: holds {_kind(value)}, needs a mapping of keys')
+        return None
+    fields = {f.name: f for f in dataclasses.fields(schema) if f.init}
+    before = len(problems)
+    for key in value:
+        if key not in fields:
+            hint = _nearest(str(key), list(fields))
+            problems.append(f'{_join(where, key)}: unknown key{hint}')
+    hints = typing.get_type_hints(schema)
+    arguments = {}
+    for name, field in fields.items():
+        place = _join(where, name)
+        if name in value:
+            arguments[name] = _convert(hints[name], value[name], place, problems)
+            _check_range(field, arguments[name], place, problems)
+        elif _is_required(field):
+            problems.append(f'{place}: missing')
+    if len(problems) > before:
+        return None
+    try:
+        return schema(**arguments)
+    except ConfigError as error:
+        problems.extend(f'{where}: {p}' if where else p for p in error.problems)
+        return None
+
+
+def _convert_list(arguments: Any, value: object, where: str, problems: list[str]) -> Any:
+    if not isinstance(value, list):
+        problems.append(f'{where}: holds {_kind(value)}, needs a list')
+        return ()
+    if arguments[-1] is Ellipsis:
+        arguments = (arguments[0],) * len(value)
+    if len(value) != len(arguments):
+        problems.append(f'{where}: has {len(value)} entries, needs {len(arguments)}')
+        return ()
+    return tuple(
+        _convert(kind, entry, f'{where}[{i}]', problems)
+        for i, (kind, entry) in enumerate(zip(arguments, value, strict=True))
+    )
+
+
+def _convert_scalar(wanted: Any, value: object, where: str, problems: list[str]) -> Any:
+    if wanted is float and isinstance(value, int | float) and not isinstance(value, bool):
+        if math.isfinite(value):
+            return float(value)
+        problems.append(f'{where}: {value} is not finite')
+        return None
+    if type(value) is wanted:
+        return value
+    problems.append(f'{where}: holds {_kind(value)}, needs {_NAMES.get(wanted, wanted.__name__)}')
+    return None
+
+
+def _check_range(field: Any, value: object, where: str, problems: list[str]) -> None:
+    bounds = field.metadata.get('range')
+    if bounds is None or value is None:
+        return
+    if isinstance(value, tuple):
+        for i, entry in enumerate(value):
+            _check_range(field, entry, f'{where}[{i}]', problems)
+    elif isinstance(value, int | float) and not bounds[0] <= value <= bounds[1]:
+        unit_hint = ''
+        if any(value and bounds[0] <= value * k <= bounds[1] for k in (1e3, 1e-3)):
+            unit_hint = ' (a factor of 1000: is it in another unit?)'
+        problems.append(f'{where}: {value:g} outside [{bounds[0]:g}, {bounds[1]:g}]{unit_hint}')
+
+
+_NAMES = {float: 'a number', int: 'a whole number', str: 'a text', bool: 'true or false'}
+
+
+def _kind(value: object) -> str:
+    names = {dict: 'a mapping', list: 'a list', type(None): 'nothing', bool: 'true or false'}
+    name = names.get(type(value))
+    return name or f'{type(value).__name__} {value!r}'
+
+
+def _nearest(word: str, choices: list[str]) -> str:
+    found = difflib.get_close_matches(word, choices, n=1)
+    return f', did you mean {found[0]!r}?' if found else ''
+
+
+def _join(where: str, key: object) -> str:
+    return f'{where}.{key}' if where else str(key)
+
+
+def _is_required(field: Any) -> bool:
+    missing = dataclasses.MISSING
+    return field.default is missing and field.default_factory is missing

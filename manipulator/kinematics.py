@@ -1,0 +1,72 @@
+"""The one interface behind which crank platforms, linear platforms and serial arms stand."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from manipulator.arrays import Array
+from manipulator.pose import Pose
+
+
+@dataclass(frozen=True)
+class ForwardSolution:
+    """A pose found from joint positions, and how far to trust it.
+
+    residual is the largest closure error in metres, sigma_min the smallest singular value of the
+    Jacobian with unit rod directions (or joint axes) and rotations scaled by the characteristic
+    length: dimensionless, near 0 where the joints no longer fix the pose.
+    """
+
+    pose: Pose
+    iterations: int
+    residual: float
+    sigma_min: float
+
+
+class Kinematics(Protocol):
+    """Stateless: the caller passes what to stay near. n joints, radians or metres.
+
+    `inverse` and its relatives broadcast over the leading axes of the pose; `forward` takes one
+    set of joints. The twist is that of the moving frame's origin, in base axes (see pose.py).
+    """
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """One name a joint, in the order of every joint array."""
+        ...
+
+    @property
+    def joint_unit(self) -> str:
+        """'rad' or 'm'."""
+        ...
+
+    @property
+    def home(self) -> Pose:
+        """The pose from which a cold forward solution starts."""
+        ...
+
+    def inverse(self, pose: Pose, near: Array | None = None) -> Array:
+        """Joints (..., n) for the pose, on the branch nearest to `near` (default: home's branch).
+
+        Raises Unreachable, naming the leg and by how much, where the mechanism does not close.
+        Joint ranges and other limits are the business of `Constraints`.
+        """
+        ...
+
+    def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
+        """As `inverse`, with NaN for each joint that does not close: for arrays of poses."""
+        ...
+
+    def forward(self, joints: Array, near: Pose | None = None) -> ForwardSolution:
+        """The pose for joints (n,): from `near` (warm), else from home (cold).
+
+        Raises NoSolution when none is found, or a cold start's answer cannot be trusted.
+        """
+        ...
+
+    def jacobian(self, pose: Pose, joints: Array) -> Array:
+        """The twist of unit joint rates, (..., 6, n); raises NoSolution where it is singular."""
+        ...
+
+    def sigma_min(self, pose: Pose, joints: Array) -> Array:
+        """The singularity margin of `ForwardSolution`, (...)."""
+        ...

@@ -1,0 +1,1 @@
+"""One file per limit, and `Constraints`, the one check that everything uses."""

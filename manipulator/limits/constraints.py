@@ -1,0 +1,51 @@
+"""The one constraint check that ik, trajectories, teleop and workspace maps share."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from manipulator.arrays import Array, Mask
+from manipulator.errors import LimitViolated
+from manipulator.limits.limit import Limit, Violation
+from manipulator.pose import Pose
+
+
+@dataclass(frozen=True)
+class Constraints:
+    """All limits of a machine on its configuration (pose and joints together)."""
+
+    limits: tuple[Limit, ...]
+
+    def admits(self, pose: Pose, joints: Array) -> Mask:
+        """Which of the configurations (...) keep every limit."""
+        inside: Mask = np.ones(np.shape(joints)[:-1], dtype=np.bool_)
+        for limit in self.limits:
+            values = limit.values(pose, joints)
+            inside &= ((values >= limit.low) & (values <= limit.high)).all(axis=-1)
+        return inside
+
+    def violations(self, pose: Pose, joints: Array) -> list[Violation]:
+        """Everything that one configuration violates, in the order of the limits."""
+        found = []
+        for limit in self.limits:
+            values = limit.values(pose, joints)
+            for k in np.flatnonzero(~((values >= limit.low) & (values <= limit.high))):
+                value, low, high = float(values[k]), float(limit.low[k]), float(limit.high[k])
+                owner = limit.owners[k]
+                found.append(Violation(limit.quantity, limit.unit, owner, value, low, high))
+        return found
+
+    def check(self, pose: Pose, joints: Array) -> None:
+        """Raises LimitViolated, naming all that one configuration violates."""
+        if bool(self.admits(pose, joints)):
+            return
+        found = self.violations(pose, joints)
+        worst = found[0]
+        digits = ''.join(c for c in worst.owner if c.isdigit())
+        raise LimitViolated(
+            '; '.join(str(v) for v in found),
+            worst.quantity,
+            worst.value,
+            (worst.low, worst.high),
+            int(digits) if digits else None,
+        )

@@ -1,0 +1,77 @@
+"""What a limit is: named values of a configuration and the range that each must keep."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from manipulator.arrays import Array
+from manipulator.pose import Pose
+
+
+class Limit(Protocol):
+    """k values computed from a pose and its joints, each with its own range.
+
+    quantity and unit go into messages; owners are who each value belongs to ('leg 3', or '' when
+    it is the whole platform's).
+    """
+
+    @property
+    def quantity(self) -> str:
+        """What is limited, as 'crank angle'."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """The unit of values and bounds, '' for a ratio."""
+        ...
+
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """Whose each of the k values is."""
+        ...
+
+    @property
+    def low(self) -> Array:
+        """Lower bounds (k,), −∞ where there is none."""
+        ...
+
+    @property
+    def high(self) -> Array:
+        """Upper bounds (k,), ∞ where there is none."""
+        ...
+
+    def values(self, pose: Pose, joints: Array) -> Array:
+        """The limited values (..., k); NaN counts as outside."""
+        ...
+
+
+@dataclass(frozen=True)
+class Violation:
+    """One value outside its range; `excess` ≥ 0 is by how much."""
+
+    quantity: str
+    unit: str
+    owner: str
+    value: float
+    low: float
+    high: float
+
+    @property
+    def excess(self) -> float:
+        """How far outside, in the limit's unit; NaN for a value that does not exist."""
+        return max(self.low - self.value, self.value - self.high)
+
+    def __str__(self) -> str:
+        """As 'leg 3: crank angle 3.92 rad outside [0.52, 3.67]'."""
+        owner = f'{self.owner}: ' if self.owner else ''
+        unit = f' {self.unit}' if self.unit else ''
+        return f'{owner}{self.quantity} {self.value:.4g}{unit} {_range_text(self.low, self.high)}'
+
+
+def _range_text(low: float, high: float) -> str:
+    if not np.isfinite(high):
+        return f'below {low:.4g}'
+    if not np.isfinite(low):
+        return f'above {high:.4g}'
+    return f'outside [{low:.4g}, {high:.4g}]'

@@ -1,0 +1,68 @@
+"""How fast a machine may move: its platform or tool, and each of its joints."""
+
+import math
+from dataclasses import dataclass
+
+from manipulator.config import quantity
+
+
+@dataclass(frozen=True)
+class MotionConfig:
+    """The `motion` section of a machine file."""
+
+    linear_speed_mm_s: float = quantity(0.1, 5000)
+    linear_acceleration_mm_s2: float = quantity(1, 100_000)
+    linear_jerk_mm_s3: float = quantity(10, 1e8)
+    angular_speed_deg_s: float = quantity(0.1, 2000)
+    angular_acceleration_deg_s2: float = quantity(1, 100_000)
+    angular_jerk_deg_s3: float = quantity(10, 1e8)
+    joint_speed_deg_s: float | None = quantity(0.1, 5000, default=None)
+    joint_acceleration_deg_s2: float | None = quantity(1, 1e6, default=None)
+    joint_speed_mm_s: float | None = quantity(0.1, 5000, default=None)
+    joint_acceleration_mm_s2: float | None = quantity(1, 1e6, default=None)
+
+
+@dataclass(frozen=True)
+class Derivatives:
+    """Bounds on speed, acceleration and jerk, in SI units of one kind of motion."""
+
+    speed: float
+    acceleration: float
+    jerk: float = math.inf
+
+
+@dataclass(frozen=True)
+class MotionLimits:
+    """Norm of linear velocity, norm of angular velocity, and every single joint."""
+
+    linear: Derivatives
+    angular: Derivatives
+    joint: Derivatives
+
+    @classmethod
+    def from_config(cls, config: MotionConfig) -> 'MotionLimits':
+        """SI units; a machine's joints are rotary or linear, never both."""
+        degree, millimetre = math.radians(1), 1e-3
+        if config.joint_speed_mm_s is not None:
+            joint = Derivatives(
+                config.joint_speed_mm_s * millimetre,
+                (config.joint_acceleration_mm_s2 or math.inf) * millimetre,
+            )
+        else:
+            joint = Derivatives(
+                (config.joint_speed_deg_s or math.inf) * degree,
+                (config.joint_acceleration_deg_s2 or math.inf) * degree,
+            )
+        return cls(
+            Derivatives(
+                config.linear_speed_mm_s * millimetre,
+                config.linear_acceleration_mm_s2 * millimetre,
+                config.linear_jerk_mm_s3 * millimetre,
+            ),
+            Derivatives(
+                config.angular_speed_deg_s * degree,
+                config.angular_acceleration_deg_s2 * degree,
+                config.angular_jerk_deg_s3 * degree,
+            ),
+            joint,
+        )

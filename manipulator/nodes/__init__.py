@@ -1,0 +1,1 @@
+"""ROS nodes, written once for both kinds of machine."""

@@ -1,0 +1,91 @@
+"""Poses: a position in metres and a rotation matrix, alone or in arrays of any shape.
+
+`T_a_b` is the pose of frame b in frame a and maps b's coordinates to a's. A twist is the array
+(vx, vy, vz, ωx, ωy, ωz): the velocity of the moving frame's origin, then its angular velocity,
+both in the fixed frame's axes, in m/s and rad/s.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from manipulator import rotation as so3
+from manipulator.arrays import Array, frozen
+from manipulator.errors import InvalidInput
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """One rigid displacement, or an array of them: position (..., 3), rotation (..., 3, 3)."""
+
+    position: Array
+    rotation: Array
+
+    def __post_init__(self) -> None:
+        """Copies and freezes both arrays; raises InvalidInput on a wrong shape or on NaN, ∞."""
+        for name, tail in (('position', (3,)), ('rotation', (3, 3))):
+            array = frozen(getattr(self, name))
+            if array.shape[-len(tail) :] != tail:
+                raise InvalidInput(f'{name} has shape {array.shape}, needs (..., {tail})')
+            if not np.isfinite(array).all():
+                raise InvalidInput(f'{name} is not finite: {array.ravel()[:9].tolist()}')
+            object.__setattr__(self, name, array)
+
+    @classmethod
+    def identity(cls) -> 'Pose':
+        """The pose of a frame in itself."""
+        return cls(np.zeros(3), np.eye(3))
+
+    @classmethod
+    def from_xyz_rpy(cls, xyz: ArrayLike, rpy: ArrayLike = (0.0, 0.0, 0.0)) -> 'Pose':
+        """From metres and roll, pitch, yaw in radians."""
+        return cls(np.asarray(xyz, dtype=np.float64), so3.from_rpy(rpy))
+
+    @classmethod
+    def from_xyz_quaternion(cls, xyz: ArrayLike, xyzw: ArrayLike) -> 'Pose':
+        """From metres and a unit quaternion x, y, z, w."""
+        return cls(np.asarray(xyz, dtype=np.float64), so3.from_quaternion(xyzw))
+
+    @property
+    def quaternion(self) -> Array:
+        """The orientation as x, y, z, w with w ≥ 0."""
+        return so3.to_quaternion(self.rotation)
+
+    @property
+    def rpy(self) -> Array:
+        """The orientation as roll, pitch, yaw in radians."""
+        return so3.to_rpy(self.rotation)
+
+    def __matmul__(self, other: 'Pose') -> 'Pose':
+        """T_a_b @ T_b_c is T_a_c."""
+        return Pose(
+            self.position + np.einsum('...ij,...j->...i', self.rotation, other.position),
+            self.rotation @ other.rotation,
+        )
+
+    def __getitem__(self, index: Any) -> 'Pose':
+        """One pose, or a slice, of an array of poses."""
+        return Pose(self.position[index], self.rotation[index])
+
+    def inverse(self) -> 'Pose':
+        """T_b_a of T_a_b."""
+        transposed = np.swapaxes(self.rotation, -1, -2)
+        return Pose(-np.einsum('...ij,...j->...i', transposed, self.position), transposed)
+
+    def transform(self, points: ArrayLike) -> Array:
+        """Points (n, 3) of the inner frame in the outer frame, (..., n, 3)."""
+        turned = np.asarray(points, dtype=np.float64) @ np.swapaxes(self.rotation, -1, -2)
+        result: Array = turned + self.position[..., None, :]
+        return result
+
+    def moved(self, twist: ArrayLike) -> 'Pose':
+        """After a unit of time at `twist`, origin and orientation advanced each on its own."""
+        step = np.asarray(twist, dtype=np.float64)
+        return Pose(self.position + step[..., :3], so3.exp(step[..., 3:]) @ self.rotation)
+
+    def twist_to(self, target: 'Pose') -> Array:
+        """The twist with which `moved` arrives at `target`; (..., 6)."""
+        turn = so3.log(target.rotation @ np.swapaxes(self.rotation, -1, -2))
+        return np.concatenate([target.position - self.position, turn], axis=-1)

@@ -1,0 +1,134 @@
+"""Rotations as matrices: quaternions, roll-pitch-yaw, and the exponential map of SO(3).
+
+All functions broadcast over leading axes. Quaternions are x, y, z, w as in ROS.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from manipulator.arrays import Array
+from manipulator.errors import InvalidInput
+
+SMALL_ANGLE = 1e-6
+UNIT_TOLERANCE = 1e-3
+
+
+def skew(vector: Array) -> Array:
+    """The matrix whose product with x is `vector` × x; (..., 3) to (..., 3, 3)."""
+    matrix = np.zeros((*vector.shape, 3))
+    matrix[..., 2, 1] = vector[..., 0]
+    matrix[..., 0, 2] = vector[..., 1]
+    matrix[..., 1, 0] = vector[..., 2]
+    matrix[..., 1, 2] = -vector[..., 0]
+    matrix[..., 2, 0] = -vector[..., 1]
+    matrix[..., 0, 1] = -vector[..., 2]
+    return matrix
+
+
+def exp(rotation_vector: ArrayLike) -> Array:
+    """Rodrigues' formula: the rotation by |w| about w; (..., 3) to (..., 3, 3)."""
+    w = np.asarray(rotation_vector, dtype=np.float64)
+    angle = np.sqrt(np.einsum('...i,...i->...', w, w))[..., None, None]
+    safe = np.maximum(angle, SMALL_ANGLE)
+    first = np.where(angle < SMALL_ANGLE, 1.0, np.sin(safe) / safe)
+    second = np.where(angle < SMALL_ANGLE, 0.5, (1.0 - np.cos(safe)) / safe**2)
+    k = skew(w)
+    matrix: Array = np.eye(3) + first * k + second * (k @ k)
+    return matrix
+
+
+def log(rotation: ArrayLike) -> Array:
+    """The rotation vector of a matrix, |w| ≤ π; (..., 3, 3) to (..., 3)."""
+    q = to_quaternion(rotation)
+    vector, scalar = q[..., :3], q[..., 3]
+    sine = np.sqrt(np.einsum('...i,...i->...', vector, vector))
+    angle = 2.0 * np.arctan2(sine, scalar)
+    safe = np.maximum(sine, SMALL_ANGLE)
+    scale = np.where(sine < SMALL_ANGLE, 2.0, angle / safe)
+    result: Array = scale[..., None] * vector
+    return result
+
+
+def left_jacobian(rotation_vector: ArrayLike) -> Array:
+    """J with ω = J(w) ẇ, where ω is the angular velocity in the fixed frame of exp(w)."""
+    w = np.asarray(rotation_vector, dtype=np.float64)
+    angle = np.sqrt(np.einsum('...i,...i->...', w, w))[..., None, None]
+    safe = np.maximum(angle, 1e-4)
+    small = angle < 1e-4
+    first = np.where(small, 0.5 - angle**2 / 24, (1.0 - np.cos(safe)) / safe**2)
+    second = np.where(small, 1 / 6 - angle**2 / 120, (safe - np.sin(safe)) / safe**3)
+    k = skew(w)
+    matrix: Array = np.eye(3) + first * k + second * (k @ k)
+    return matrix
+
+
+def from_quaternion(quaternion: ArrayLike) -> Array:
+    """The matrix of a unit quaternion x, y, z, w.
+
+    Lengths within 0.1 % of one are normalised; any other raises InvalidInput.
+    """
+    q = np.asarray(quaternion, dtype=np.float64)
+    length = np.sqrt(np.einsum('...i,...i->...', q, q))
+    if not np.all(np.abs(length - 1.0) <= UNIT_TOLERANCE):
+        worst = np.ravel(length)[np.argmax(np.abs(np.nan_to_num(np.ravel(length), nan=9.9) - 1))]
+        raise InvalidInput(f'quaternion has length {worst:.6g}, a rotation needs 1 ± 0.001')
+    x, y, z, w = np.moveaxis(q / length[..., None], -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def to_quaternion(rotation: ArrayLike) -> Array:
+    """The unit quaternion x, y, z, w with w ≥ 0; (..., 3, 3) to (..., 4).
+
+    Every row of the 4×4 matrix 4·q·qᵀ is the quaternion times a factor; the longest is taken.
+    """
+    m = np.asarray(rotation, dtype=np.float64)
+    m00, m01, m02 = m[..., 0, 0], m[..., 0, 1], m[..., 0, 2]
+    m10, m11, m12 = m[..., 1, 0], m[..., 1, 1], m[..., 1, 2]
+    m20, m21, m22 = m[..., 2, 0], m[..., 2, 1], m[..., 2, 2]
+    rows = np.stack(
+        [
+            np.stack([1 + m00 - m11 - m22, m01 + m10, m02 + m20, m21 - m12], axis=-1),
+            np.stack([m01 + m10, 1 - m00 + m11 - m22, m12 + m21, m02 - m20], axis=-1),
+            np.stack([m02 + m20, m12 + m21, 1 - m00 - m11 + m22, m10 - m01], axis=-1),
+            np.stack([m21 - m12, m02 - m20, m10 - m01, 1 + m00 + m11 + m22], axis=-1),
+        ],
+        axis=-2,
+    )
+    longest = np.argmax(np.einsum('...ii->...i', rows), axis=-1)
+    q = np.take_along_axis(rows, longest[..., None, None], axis=-2)[..., 0, :]
+    q = q / np.sqrt(np.einsum('...i,...i->...', q, q))[..., None]
+    result: Array = np.where(q[..., 3:] < 0, -q, q)
+    return result
+
+
+def from_rpy(roll_pitch_yaw: ArrayLike) -> Array:
+    """Rz(yaw)·Ry(pitch)·Rx(roll): turns about the fixed x, then y, then z axis (REP-103).
+
+    Seed 1, eq. (1), with φ = yaw, θ = pitch, ψ = roll and the misprinted third column mended.
+    """
+    angles = np.asarray(roll_pitch_yaw, dtype=np.float64)
+    (sr, sp, sy), (cr, cp, cy) = (np.moveaxis(f(angles), -1, 0) for f in (np.sin, np.cos))
+    rows = [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def to_rpy(rotation: ArrayLike) -> Array:
+    """Roll, pitch, yaw of a matrix, pitch in [−π/2, π/2]; roll is 0 where pitch is ±π/2."""
+    m = np.asarray(rotation, dtype=np.float64)
+    cosine = np.hypot(m[..., 0, 0], m[..., 1, 0])
+    pitch = np.arctan2(-m[..., 2, 0], cosine)
+    locked = cosine < 1e-9
+    roll = np.where(locked, 0.0, np.arctan2(m[..., 2, 1], m[..., 2, 2]))
+    yaw = np.where(
+        locked, np.arctan2(-m[..., 0, 1], m[..., 1, 1]), np.arctan2(m[..., 1, 0], m[..., 0, 0])
+    )
+    return np.stack([roll, pitch, yaw], axis=-1)

@@ -1,0 +1,44 @@
+"""The package `hexarm`: an ament_python package that pip can install as well."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+NAME = 'hexarm'
+ROOMS = ['manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm']
+
+setup(
+    name=NAME,
+    version='0.1.0',
+    description='Controls parallel platforms and serial arms, from a pose target to servo pulses',
+    license='Apache-2.0',
+    python_requires='>=3.10',
+    packages=find_packages(include=[pattern for r in ROOMS for pattern in (r, f'{r}.*')]),
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
+        (f'share/{NAME}', ['package.xml']),
+        (f'share/{NAME}/config', sorted(str(f) for f in Path('config').glob('*.yaml'))),
+    ],
+    install_requires=['numpy>=1.26', 'pyserial>=3.5', 'PyYAML>=6.0', 'ruckig>=0.14'],
+    extras_require={
+        # ROS 2 Jazzy from wheels; a system installation brings these three itself.
+        'ros': [
+            'ros-jazzy-rclpy>=7.1',
+            'ros-jazzy-common-interfaces>=5.3',
+            'ros-jazzy-rmw-fastrtps-cpp>=8.4',
+        ],
+        'plot': ['matplotlib>=3.8'],
+        'terminal': ['rich>=13'],
+        'test': ['pytest>=8', 'hypothesis>=6.100', 'mypy>=1.11', 'ruff>=0.6', 'types-PyYAML>=6.0'],
+    },
+    entry_points={
+        'console_scripts': [
+            'hexarm = hexarm.main:main',
+            'hexapod_trajectory = hexapod_control.executables:trajectory',
+            'hexapod_ik = hexapod_control.executables:ik',
+            'hexapod_pose = hexapod_control.executables:pose',
+            'serial_bridge = bridge.executables:serial_bridge',
+            'fake_hardware = bridge.executables:fake_hardware',
+        ],
+    },
+)
