@@ -1,0 +1,82 @@
+"""Finding and loading machine files: by path, then beside the source, then in share/."""
+
+import difflib
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+from manipulator.config import build, parse_yaml
+from manipulator.errors import ConfigError
+from manipulator.machine import Machine, MachineFile
+
+
+def _hexapod(machine_file: MachineFile) -> Machine:
+    from hexapod_control.load import hexapod  # noqa: PLC0415 (an arm's node loads no hexapod)
+
+    return hexapod(machine_file)
+
+
+def _arm(machine_file: MachineFile) -> Machine:
+    from arm_control.load import arm  # noqa: PLC0415
+
+    return arm(machine_file)
+
+
+KINDS: dict[str, Callable[[MachineFile], Machine]] = {
+    'rotary_hexapod': _hexapod,
+    'linear_platform': _hexapod,
+    'serial_arm': _arm,
+}
+
+
+def folders() -> list[Path]:
+    """Where shipped files may be: config/ of a source tree, share/hexarm/config of a prefix."""
+    here = Path(__file__).resolve()
+    candidates = [here.parent.parent / 'config']
+    candidates += [parent / 'share' / 'hexarm' / 'config' for parent in here.parents]
+    return [folder for folder in candidates if folder.is_dir()]
+
+
+def shipped() -> dict[str, Path]:
+    """The machine files that come with the package, by name."""
+    files = (f for folder in reversed(folders()) for f in sorted(folder.glob('*.yaml')))
+    return {f.stem: f for f in files if re.search(r'^kind:', f.read_text(), re.MULTILINE)}
+
+
+def find(name_or_path: str) -> Path:
+    """The file of a shipped machine's name, or of a path; ConfigError says what there is."""
+    path = Path(name_or_path).expanduser()
+    if path.suffix in ('.yaml', '.yml') or '/' in name_or_path:
+        if path.is_file():
+            return path
+        raise ConfigError([f'machine file {name_or_path} does not exist'])
+    known = shipped()
+    if name_or_path in known:
+        return known[name_or_path]
+    near = difflib.get_close_matches(name_or_path, list(known), n=1)
+    hint = f', did you mean {near[0]!r}?' if near else ''
+    raise ConfigError([f'no machine is called {name_or_path!r}{hint} (shipped: {sorted(known)})'])
+
+
+def read(name_or_path: str) -> MachineFile:
+    """The sections of a machine file; ConfigError lists everything wrong at the top level."""
+    path = find(name_or_path)
+    try:
+        text = path.read_text(encoding='utf-8')
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError([f'cannot be read: {error}'], str(path)) from error
+    return build(MachineFile, parse_yaml(text, str(path)), source=str(path))
+
+
+def load(name_or_path: str) -> Machine:
+    """Kinematics, constraints and motion limits of a machine; ConfigError says what is wrong."""
+    machine_file = read(name_or_path)
+    if machine_file.kind not in KINDS:
+        near = difflib.get_close_matches(machine_file.kind, list(KINDS), n=1)
+        hint = f', did you mean {near[0]!r}?' if near else ''
+        problem = f'kind: {machine_file.kind!r} is not one of {list(KINDS)}{hint}'
+        raise ConfigError([problem], str(find(name_or_path)))
+    try:
+        return KINDS[machine_file.kind](machine_file)
+    except ConfigError as error:
+        raise ConfigError(error.problems, str(find(name_or_path))) from error

@@ -1,0 +1,53 @@
+"""What a node says of itself on /diagnostics, once a second (REP-107)."""
+
+from collections.abc import Callable, Mapping
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+
+Report = tuple[bytes, str, Mapping[str, object]]
+"""Level, message, and the values people need."""
+
+
+def status(
+    level: bytes, name: str, message: str, values: Mapping[str, object]
+) -> DiagnosticStatus:
+    """A DiagnosticStatus; numbers are written with four significant digits."""
+    pairs = [KeyValue(key=key, value=_text(value)) for key, value in values.items()]
+    return DiagnosticStatus(level=level, name=name, message=message, values=pairs)
+
+
+class Diagnostics:
+    """Publishes what `report` returns, and warns where an internal topic has two publishers."""
+
+    def __init__(
+        self, node: Node, report: Callable[[], Report], single_publisher: tuple[str, ...] = ()
+    ) -> None:
+        self._node = node
+        self._report = report
+        self._single_publisher = single_publisher
+        self._publisher = node.create_publisher(
+            DiagnosticArray, '/diagnostics', QoSProfile(depth=10)
+        )
+        self._timer = node.create_timer(1.0, self._publish)
+
+    def _publish(self) -> None:
+        level, message, values = self._report()
+        for topic in self._single_publisher:
+            count = self._node.count_publishers(self._node.resolve_topic_name(topic))
+            if count > 1:
+                crowd = f'{count} publishers on {topic}, which must have one'
+                self._node.get_logger().warning(crowd, throttle_duration_sec=5.0)
+                level, message = max(level, WARN), f'{message}; {crowd}' if message else crowd
+        name = self._node.get_fully_qualified_name().lstrip('/')
+        stamp = self._node.get_clock().now().to_msg()
+        array = DiagnosticArray(status=[status(level, name, message, values)])
+        array.header.stamp = stamp
+        self._publisher.publish(array)
+
+
+def _text(value: object) -> str:
+    return f'{value:.4g}' if isinstance(value, float) else str(value)

@@ -1,0 +1,56 @@
+"""Running one node as a process: clean start, clean stop, one line for what went wrong."""
+
+import signal
+import sys
+from collections.abc import Callable
+from types import FrameType
+
+import rclpy
+from rclpy.exceptions import ParameterException
+from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import try_shutdown
+
+from manipulator.errors import ManipulatorError
+
+
+def run_node(make_node: Callable[[], Node]) -> int:
+    """Spins the node until SIGINT or SIGTERM; a start-up error is one line and exit status 1.
+
+    rclpy's own signal handlers would invalidate the context before the last message is out, so
+    ours only set a flag. A node's `close()`, where it has one, runs before it is destroyed.
+    """
+    stop = _StopRequest()
+    rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        node = make_node()
+    except (ManipulatorError, ParameterException) as error:
+        print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {error}', file=sys.stderr)
+        try_shutdown()
+        return 1
+    executor = EventsExecutor()
+    executor.add_node(node)
+    try:
+        while not stop.is_requested:
+            executor.spin_once(timeout_sec=0.1)
+    finally:
+        close = getattr(node, 'close', None)
+        if close is not None:
+            close()
+        executor.remove_node(node)
+        node.destroy_node()
+        try_shutdown()
+    return 0
+
+
+class _StopRequest:
+    """Set by SIGINT and SIGTERM."""
+
+    def __init__(self) -> None:
+        self.is_requested = False
+        signal.signal(signal.SIGINT, self._set)
+        signal.signal(signal.SIGTERM, self._set)
+
+    def _set(self, number: int, frame: FrameType | None) -> None:
+        self.is_requested = True

@@ -1,0 +1,55 @@
+"""Telling old and reordered messages from fresh ones whose source has another clock.
+
+Deadlines are kept on receipt time alone. Stamps only serve to reject what overtook or queued up,
+after the offset between the source's clock and ours, as observed, is taken out.
+"""
+
+from dataclasses import dataclass
+
+from manipulator.errors import InvalidInput
+
+NOTABLE_OFFSET = 0.5
+
+
+class StaleMessage(InvalidInput):
+    """A message that is older than the last one, or than it may be."""
+
+
+@dataclass
+class StampGate:
+    """One source's clock, learnt from its messages; all times in seconds.
+
+    The smallest (receipt − stamp) seen is the offset of a message without delay. A stamp that
+    goes back by more than `maximum_age`, or two late ones that agree, mean that the source's
+    clock was set (or that another source took over): its offset is learnt anew.
+    """
+
+    maximum_age: float = 0.5
+    offset: float | None = None
+    _last_stamp: float = float('-inf')
+    _refused_offset: float | None = None
+
+    def admit(self, stamp: float, receipt: float) -> None:
+        """Raises StaleMessage when the message must not be acted on."""
+        observed = receipt - stamp
+        back = self._last_stamp - stamp
+        if self.offset is None or back > self.maximum_age or self._is_confirmed(observed):
+            self.offset = observed
+        elif back > 0:
+            raise StaleMessage(f'stamped {back:.3f} s before the last one: reordered, ignored')
+        self.offset = min(self.offset, observed)
+        age = observed - self.offset
+        if age > self.maximum_age:
+            self._refused_offset = observed
+            raise StaleMessage(f'{age:.3f} s old, at most {self.maximum_age:g} s: ignored')
+        self._refused_offset = None
+        self._last_stamp = stamp
+
+    @property
+    def has_notable_offset(self) -> bool:
+        """Whether the source's clock is off by so much that people should know."""
+        return self.offset is not None and abs(self.offset) > NOTABLE_OFFSET
+
+    def _is_confirmed(self, observed: float) -> bool:
+        refused = self._refused_offset
+        return refused is not None and abs(observed - refused) < self.maximum_age / 5
