@@ -79,7 +79,9 @@ def _convert(wanted: Any, value: object, where: str, problems: list[str]) -> Any
     if origin in (typing.Union, types.UnionType):
         if value is None and type(None) in arguments:
             return None
-        (inner,) = (a for a in arguments if a is not type(None))
+        kinds = [a for a in arguments if a is not type(None)]
+        fitting = (a for a in kinds if (typing.get_origin(a) is tuple) == isinstance(value, list))
+        inner = next(fitting, kinds[0])
         return _convert(inner, value, where, problems)
     if origin is typing.Literal:
         if value not in arguments:

@@ -34,6 +34,19 @@ class Pose:
             object.__setattr__(self, name, array)
 
     @classmethod
+    def unchecked(cls, position: Array, rotation: Array) -> 'Pose':
+        """Takes over two arrays known to be good, without copy or check; they become read-only.
+
+        For inner loops: the caller must not have handed either array to anyone else.
+        """
+        pose = object.__new__(cls)
+        position.flags.writeable = False
+        rotation.flags.writeable = False
+        object.__setattr__(pose, 'position', position)
+        object.__setattr__(pose, 'rotation', rotation)
+        return pose
+
+    @classmethod
     def identity(cls) -> 'Pose':
         """The pose of a frame in itself."""
         return cls(np.zeros(3), np.eye(3))

@@ -1,0 +1,127 @@
+"""Where the joints of a crank hexapod are: the paper's parameters or explicit coordinates."""
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+
+from manipulator.arrays import Array, frozen
+from manipulator.config import quantity
+from manipulator.errors import ConfigError
+
+LEGS = 6
+Triple: TypeAlias = tuple[float, float, float]
+SixPoints: TypeAlias = tuple[Triple, Triple, Triple, Triple, Triple, Triple]
+SixNumbers: TypeAlias = tuple[float, float, float, float, float, float]
+VERTICAL_TANGENT = 0.999
+
+
+@dataclass(frozen=True, eq=False)
+class RotaryGeometry:
+    """Six cranks and rods in metres; see docs/kinematics.md, section 1.
+
+    Crank i turns about crank_centres[i] (base frame) in the plane of tangents[i] and ups[i]; its
+    angle counts from the tangent towards up. Its rod ends at platform_points[i] (platform frame).
+    normals = tangents × ups. home_height is the platform's height at home, where it is level.
+    """
+
+    crank_centres: Array
+    tangents: Array
+    platform_points: Array
+    crank_lengths: Array
+    rod_lengths: Array
+    home_height: float
+    ups: Array = field(init=False)
+    normals: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Makes the tangents unit vectors and up what of z is square to them."""
+        for name in ('crank_centres', 'platform_points'):
+            object.__setattr__(self, name, frozen(getattr(self, name)))
+        for name in ('crank_lengths', 'rod_lengths'):
+            lengths = np.broadcast_to(getattr(self, name), (LEGS,))
+            object.__setattr__(self, name, frozen(lengths))
+        tangents = _unit(np.asarray(self.tangents, dtype=np.float64), 'crank tangent')
+        for leg, slope in enumerate(tangents[:, 2], start=1):
+            if abs(slope) > VERTICAL_TANGENT:
+                raise ConfigError(
+                    [f'leg {leg}: crank tangent is vertical, the plane is undefined']
+                )
+        ups = _unit(np.array([0.0, 0.0, 1.0]) - tangents[:, 2:] * tangents, 'up')
+        object.__setattr__(self, 'tangents', frozen(tangents))
+        object.__setattr__(self, 'ups', frozen(ups))
+        object.__setattr__(self, 'normals', frozen(np.cross(tangents, ups)))
+
+
+@dataclass(frozen=True)
+class HexagonConfig:
+    """The `geometry` section by the parameters of Prokopovich 2019, fig. 2, in millimetres."""
+
+    body_radius_mm: float = quantity(5, 2000)
+    crank_offset_mm: float = quantity(-500, 500)
+    crank_shift_mm: float = quantity(-500, 500)
+    crank_length_mm: float | SixNumbers = quantity(1, 1000)
+    rod_length_mm: float | SixNumbers = quantity(2, 3000)
+    joint_inset_mm: float = quantity(-500, 1000)
+    joint_shift_mm: float = quantity(-1000, 1000)
+    home_height_mm: float = quantity(-3000, 3000)
+
+    def geometry(self) -> RotaryGeometry:
+        """The joints by Prokopovich 2019, eqs (5) and (6), in closed form.
+
+        Leg i stands at (i − 1)·60°; even legs mirror the odd ones (σ = −1, +1, −1 …).
+        """
+        sigma = np.array([-1.0, 1.0] * 3)
+        zero, one = np.zeros(LEGS), np.ones(LEGS)
+        outer = (self.body_radius_mm + self.crank_offset_mm) * one
+        inner = (self.body_radius_mm - self.joint_inset_mm) * one
+        return RotaryGeometry(
+            crank_centres=_around(outer, sigma * self.crank_shift_mm, zero) * 1e-3,
+            tangents=_around(zero, -sigma, zero),
+            platform_points=_around(inner, -sigma * self.joint_shift_mm, zero) * 1e-3,
+            crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
+            rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
+            home_height=self.home_height_mm * 1e-3,
+        )
+
+
+@dataclass(frozen=True)
+class JointsConfig:
+    """The `geometry` section by coordinates, in millimetres: a machine as it was measured.
+
+    crank_tangents (no unit, any length) point to where the crank angle is 0.
+    """
+
+    crank_centres_mm: SixPoints = quantity(-3000, 3000)
+    crank_tangents: SixPoints = quantity(-1000, 1000)
+    platform_joints_mm: SixPoints = quantity(-3000, 3000)
+    crank_length_mm: float | SixNumbers = quantity(1, 1000)
+    rod_length_mm: float | SixNumbers = quantity(2, 3000)
+    home_height_mm: float = quantity(-3000, 3000)
+
+    def geometry(self) -> RotaryGeometry:
+        """The same joints in metres; ConfigError where a tangent is zero or vertical."""
+        return RotaryGeometry(
+            crank_centres=np.array(self.crank_centres_mm) * 1e-3,
+            tangents=np.array(self.crank_tangents),
+            platform_points=np.array(self.platform_joints_mm) * 1e-3,
+            crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
+            rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
+            home_height=self.home_height_mm * 1e-3,
+        )
+
+
+def _around(radial: Array, along: Array, height: Array) -> Array:
+    """Points (6, 3) given by their leg's radial, tangential and vertical coordinates."""
+    turn = np.arange(LEGS) * np.pi / 3
+    cosine, sine = np.cos(turn), np.sin(turn)
+    return np.stack([cosine * radial - sine * along, sine * radial + cosine * along, height], 1)
+
+
+def _unit(vectors: Array, name: str) -> Array:
+    lengths = np.sqrt((vectors * vectors).sum(axis=1))
+    for leg, length in enumerate(lengths, start=1):
+        if length < 1e-9:
+            raise ConfigError([f'leg {leg}: {name} has no direction'])
+    unit: Array = vectors / lengths[:, None]
+    return unit

@@ -1,0 +1,49 @@
+"""From a machine file's sections to a parallel platform that the nodes can use."""
+
+from collections.abc import Callable
+from typing import Any
+
+from hexapod_control.geometry import HexagonConfig, JointsConfig
+from hexapod_control.rotary import RotaryHexapod
+from hexapod_control.rotary_limits import RotaryLimits
+from manipulator.config import build
+from manipulator.errors import ConfigError
+from manipulator.kinematics import Kinematics
+from manipulator.limits.constraints import Constraints
+from manipulator.machine import Machine, MachineFile
+from manipulator.motion_limits import MotionLimits
+
+Parts = tuple[Kinematics, Constraints]
+
+
+def hexapod(machine_file: MachineFile) -> Machine:
+    """The machine of one file; ConfigError names each fault, also a home beyond a limit."""
+    kind = machine_file.kind
+    if kind not in KINDS:
+        raise ConfigError([f'kind: {kind!r} is not one of {sorted(KINDS)}'])
+    kinematics, constraints = KINDS[kind](machine_file.geometry, machine_file.limits)
+    home = kinematics.home
+    beyond = constraints.violations(home, kinematics.inverse(home))
+    if beyond:
+        raise ConfigError([f'limits: home has {violation}' for violation in beyond])
+    return Machine(kinematics, constraints, MotionLimits.from_config(machine_file.motion))
+
+
+def rotary_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
+    """A crank platform; its geometry by the paper's parameters, or by joint coordinates."""
+    schema: type[JointsConfig | HexagonConfig]
+    schema = JointsConfig if 'crank_centres_mm' in geometry else HexagonConfig
+    joints = build(schema, geometry, 'geometry').geometry()
+    checked = build(RotaryLimits, limits, 'limits')
+    kinematics = RotaryHexapod(
+        joints,
+        checked.characteristic_length_mm * 1e-3,
+        checked.singularity_margin,
+        checked.crank_centre,
+    )
+    return kinematics, checked.constraints(kinematics)
+
+
+KINDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], Parts]] = {
+    'rotary_hexapod': rotary_hexapod,
+}

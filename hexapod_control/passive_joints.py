@@ -1,0 +1,78 @@
+"""How far the ball joints at both ends of a rod may swing: docs/kinematics.md, section 6.
+
+A rod end turns freely about its bolt, and tilts only as far as its housing lets it.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from hexapod_control.geometry import LEGS
+from hexapod_control.rotary import RotaryHexapod
+from manipulator.arrays import Array, frozen
+from manipulator.pose import Pose
+
+LEG_NAMES = tuple(f'leg {leg}' for leg in range(1, LEGS + 1))
+
+
+@dataclass(frozen=True, eq=False)
+class PlatformJointSwing:
+    """The rod's angle (rad) to its direction at home, as the platform sees it: a cone."""
+
+    kinematics: RotaryHexapod
+    largest: float
+    quantity: str = 'platform joint swing'
+    unit: str = 'rad'
+    owners: tuple[str, ...] = LEG_NAMES
+    low: Array = field(init=False)
+    high: Array = field(init=False)
+    at_home: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Remembers the six directions at home, in the platform frame."""
+        home = self.kinematics.home
+        rods = self.kinematics.unit_rods(home, self.kinematics.inverse(home))
+        object.__setattr__(self, 'at_home', frozen(rods @ home.rotation))
+        object.__setattr__(self, 'low', frozen(np.full(LEGS, -np.inf)))
+        object.__setattr__(self, 'high', frozen(np.full(LEGS, self.largest)))
+
+    def values(self, pose: Pose, joints: Array) -> Array:
+        """The angles (..., 6)."""
+        rods = self.kinematics.unit_rods(pose, joints) @ pose.rotation
+        angle: Array = np.arccos(np.clip((rods * self.at_home).sum(axis=-1), -1.0, 1.0))
+        return angle
+
+
+@dataclass(frozen=True, eq=False)
+class CrankJointTilt:
+    """The change (rad) since home of the rod's angle to the plane in which its crank turns.
+
+    The bolt of this joint is parallel to the servo's axis, about which the rod turns freely.
+    """
+
+    kinematics: RotaryHexapod
+    largest: float
+    quantity: str = 'crank joint tilt'
+    unit: str = 'rad'
+    owners: tuple[str, ...] = LEG_NAMES
+    low: Array = field(init=False)
+    high: Array = field(init=False)
+    at_home: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Remembers the six tilts at home."""
+        home = self.kinematics.home
+        tilt = self._tilt(home, self.kinematics.inverse(home))
+        object.__setattr__(self, 'at_home', frozen(tilt))
+        object.__setattr__(self, 'low', frozen(np.full(LEGS, -self.largest)))
+        object.__setattr__(self, 'high', frozen(np.full(LEGS, self.largest)))
+
+    def values(self, pose: Pose, joints: Array) -> Array:
+        """The tilts (..., 6), signed."""
+        change: Array = self._tilt(pose, joints) - self.at_home
+        return change
+
+    def _tilt(self, pose: Pose, joints: Array) -> Array:
+        sine = (self.kinematics.unit_rods(pose, joints) * self.kinematics.geometry.normals).sum(-1)
+        tilt: Array = np.arcsin(np.clip(sine, -1.0, 1.0))
+        return tilt
