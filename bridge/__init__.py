@@ -1,1 +1,1 @@
-"""From joint commands to frames on a serial line, and back."""
+"""The serial link to the board: protocol, calibration, host session, port, and a fake board."""

@@ -1,0 +1,211 @@
+"""The board's modes: when pulses go out, when they follow the host, when they stand still.
+
+The firmware has the same state machine (docs/protocol.md draws it). Times in microseconds since
+the start, as the board counts them.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from bridge.calibration import Calibration
+from bridge.messages import (
+    MAX_DEADLINE_MS,
+    MIN_DEADLINE_MS,
+    NO_JOINT,
+    PROTOCOL_VERSION,
+    Arm,
+    Clear,
+    Command,
+    Disarm,
+    Fault,
+    FaultCode,
+    Flag,
+    Mode,
+    Result,
+    Setpoint,
+    Stop,
+)
+from bridge.pulse_drive import PulseDrive
+from bridge.servo_config import BoardConfig
+
+PULSE_PERIOD_US = 20_000
+UNDERVOLTAGE_DELAY_US = 500_000
+
+LATCHED = {Mode.STOPPED: Result.STOPPED, Mode.FAULT: Result.FAULT}
+FOLLOWING = (Mode.ARMED, Mode.HOLDING)
+
+
+@dataclass(frozen=True)
+class BoardSettings:
+    """What the firmware has from the machine file; ranges and speeds in counts, per channel."""
+
+    count_ranges: tuple[tuple[int, int], ...]
+    count_speeds: tuple[float, ...]
+    on_link_loss: Literal['hold', 'release'] = 'hold'
+    arm_interval_us: int = 150_000
+    minimum_battery_mv: int = 0
+    boot_us: int = 300_000
+    version: int = PROTOCOL_VERSION
+
+    @classmethod
+    def from_config(cls, config: BoardConfig, boot_s: float) -> 'BoardSettings':
+        """The settings of a machine whose board takes `boot_s` to start."""
+        calibration = Calibration.from_config(config.servos)
+        return cls(
+            count_ranges=calibration.count_ranges,
+            count_speeds=calibration.count_speeds,
+            on_link_loss=config.link.on_link_loss,
+            arm_interval_us=1000 * config.servos.arm_interval_ms,
+            minimum_battery_mv=round(1000 * config.servos.minimum_battery_v),
+            boot_us=round(1e6 * boot_s),
+        )
+
+
+class BoardModes:
+    """Mode, pulses and deadlines of one board; starts disarmed, with no pulse on any channel."""
+
+    def __init__(self, settings: BoardSettings) -> None:
+        self.settings = settings
+        self.drive = PulseDrive(settings.count_speeds)
+        self.mode = Mode.DISARMED
+        self.fault = FaultCode.NONE
+        self.is_deadline_passed = False
+        self.is_undervoltage = False
+        self._deadline_us: int | None = None
+        self._low_since_us: int | None = None
+        self._park: tuple[int, ...] = ()
+        self._energise_at_us = 0
+
+    @property
+    def flags(self) -> Flag:
+        """The flags of a STATE."""
+        return Flag(
+            Flag.DEADLINE_PASSED * self.is_deadline_passed
+            | Flag.UNDERVOLTAGE * self.is_undervoltage
+            | Flag.SLEWING * self.drive.is_slewing
+        )
+
+    def pass_period(self, now_us: int, battery_mv: int) -> Fault | None:
+        """One pulse period: deadlines, battery, arming, slewing; a fault when one begins."""
+        fault = self._watch_battery(now_us, battery_mv)
+        self._watch_deadline(now_us)
+        self._energise_next(now_us)
+        self.drive.advance(PULSE_PERIOD_US * 1e-6)
+        return fault
+
+    def follow(self, setpoint: Setpoint, now_us: int) -> Fault | None:
+        """Aims at the setpoint; or says why not, and nothing has changed."""
+        fault = self._fault_in(setpoint)
+        if fault is None:
+            self.drive.aim(setpoint.counts)
+            self._deadline_us = now_us + 1000 * setpoint.deadline_ms
+            self.is_deadline_passed = False
+            self.mode = Mode.ARMED
+        return fault
+
+    def obey(self, command: Command, now_us: int) -> Result:
+        """Does what is asked, or says why not and changes nothing."""
+        match command:
+            case Arm(park):
+                return self._arm(park, now_us)
+            case Disarm():
+                return self._disarm()
+            case Stop():
+                self._hold(Mode.STOPPED)
+                return Result.OK
+            case Clear():
+                return self._clear()
+
+    def _arm(self, park: tuple[int, ...], now_us: int) -> Result:
+        if self.mode in LATCHED:
+            return LATCHED[self.mode]
+        if self.is_undervoltage:
+            return Result.UNDERVOLTAGE
+        if len(park) != len(self.settings.count_ranges):
+            return Result.WRONG_JOINTS
+        if self._range_fault(park) is not None:
+            return Result.OUT_OF_RANGE
+        if self.mode in FOLLOWING:
+            self._hold(Mode.ARMED)
+        elif self.mode is Mode.DISARMED:
+            self._park = park
+            self._energise_at_us = now_us
+            self._hold(Mode.ARMING)
+        return Result.OK
+
+    def _disarm(self) -> Result:
+        self.drive.release()
+        if self.mode not in LATCHED:
+            self._hold(Mode.DISARMED)
+        return Result.OK
+
+    def _clear(self) -> Result:
+        if self.mode not in LATCHED:
+            return Result.OK
+        if self.is_undervoltage:
+            return Result.UNDERVOLTAGE
+        self.fault = FaultCode.NONE
+        if self.drive.is_all_on:
+            self._hold(Mode.ARMED)
+        else:
+            self.drive.release()
+            self._hold(Mode.DISARMED)
+        return Result.OK
+
+    def _hold(self, mode: Mode) -> None:
+        """Stands still in `mode`, with no deadline running."""
+        self.drive.halt()
+        self._deadline_us = None
+        self.is_deadline_passed = False
+        self.mode = mode
+
+    def _fault_in(self, setpoint: Setpoint) -> Fault | None:
+        if self.mode not in FOLLOWING:
+            return Fault(FaultCode.NOT_ARMED, NO_JOINT, self.mode)
+        if len(setpoint.counts) != len(self.settings.count_ranges):
+            return Fault(FaultCode.WRONG_JOINTS, NO_JOINT, len(setpoint.counts))
+        if not MIN_DEADLINE_MS <= setpoint.deadline_ms <= MAX_DEADLINE_MS:
+            return Fault(FaultCode.BAD_DEADLINE, NO_JOINT, setpoint.deadline_ms)
+        return self._range_fault(setpoint.counts)
+
+    def _range_fault(self, counts: tuple[int, ...]) -> Fault | None:
+        ranges = self.settings.count_ranges
+        for i, (count, (low, high)) in enumerate(zip(counts, ranges, strict=True)):
+            if not low <= count <= high:
+                return Fault(FaultCode.OUT_OF_RANGE, i, count)
+        return None
+
+    def _watch_deadline(self, now_us: int) -> None:
+        if self._deadline_us is None or now_us < self._deadline_us:
+            return
+        if self.settings.on_link_loss == 'release':
+            self.drive.release()
+            self._hold(Mode.DISARMED)
+        else:
+            self._hold(Mode.HOLDING)
+        self.is_deadline_passed = True
+
+    def _watch_battery(self, now_us: int, battery_mv: int) -> Fault | None:
+        """Refuses to arm at once, but only a lasting undervoltage stops what moves."""
+        self.is_undervoltage = battery_mv < self.settings.minimum_battery_mv
+        if not self.is_undervoltage:
+            self._low_since_us = None
+            return None
+        if self._low_since_us is None:
+            self._low_since_us = now_us
+        is_lasting = now_us - self._low_since_us >= UNDERVOLTAGE_DELAY_US
+        if not is_lasting or self.mode not in (Mode.ARMING, *FOLLOWING):
+            return None
+        self._hold(Mode.FAULT)
+        self.fault = FaultCode.UNDERVOLTAGE
+        return Fault(FaultCode.UNDERVOLTAGE, NO_JOINT, battery_mv)
+
+    def _energise_next(self, now_us: int) -> None:
+        if self.mode is not Mode.ARMING or now_us < self._energise_at_us:
+            return
+        if self.drive.is_all_on:
+            self._hold(Mode.ARMED)
+            return
+        channel = self.drive.pulses.index(None)
+        self.drive.energise(channel, self._park[channel])
+        self._energise_at_us = now_us + self.settings.arm_interval_us

@@ -1,0 +1,43 @@
+"""What a hobby servo makes of its pulse: dead band, limited speed, play in the gears."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from manipulator.arrays import Array
+
+
+@dataclass
+class Servos:
+    """All servos of a machine; positions in rad (or m), shape (n,).
+
+    motor is where the motor stands, before the gears; `positions` is the output, which follows
+    within half of `hysteresis` (a play operator: an output stays until its motor has crossed the
+    play). The motor rests while its error is below half of `dead_band`.
+    """
+
+    speed: float
+    dead_band: Array
+    hysteresis: Array
+    motor: Array
+    positions: Array
+
+    @classmethod
+    def at_rest(
+        cls, start: ArrayLike, speed: float, dead_band: ArrayLike, hysteresis: ArrayLike
+    ) -> 'Servos':
+        """Unpowered servos at `start`; speed in rad/s (or m/s), the rest in rad (or m)."""
+        motor = np.array(start, dtype=np.float64)
+        widths = (np.broadcast_to(np.asarray(w), motor.shape) for w in (dead_band, hysteresis))
+        dead, play = (np.array(width, dtype=np.float64) for width in widths)
+        return cls(speed, dead, play, motor, motor.copy())
+
+    def step(self, targets: Array, dt: float) -> None:
+        """Follows `targets` for `dt` seconds; NaN means no pulse: that servo stays."""
+        error = targets - self.motor
+        is_moving = np.abs(error) > self.dead_band / 2
+        reach = self.speed * dt
+        self.motor = self.motor + np.where(is_moving, np.clip(error, -reach, reach), 0.0)
+        half = self.hysteresis / 2
+        self.positions = np.clip(self.positions, self.motor - half, self.motor + half)

@@ -1,0 +1,127 @@
+"""The `servos`, `link` and `simulation` sections of a machine file, as they stand there.
+
+A machine's joints are rotary (degrees) or linear (millimetres), never both.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from bridge.messages import MAX_JOINTS
+from manipulator.config import build, quantity
+from manipulator.errors import ConfigError
+from manipulator.machine import MachineFile
+
+
+@dataclass(frozen=True)
+class ServoConfig:
+    """One servo: position = centre + sign · (pulse − centre_us) / us_per_…"""
+
+    name: str
+    channel: int = quantity(0, MAX_JOINTS - 1)
+    sign: int = quantity(-1, 1)
+    centre_us: float = quantity(100, 30_000)
+    pulse_range_us: tuple[float, float] = quantity(100, 30_000)
+    centre_deg: float | None = quantity(-720, 720, default=None)
+    us_per_deg: float | None = quantity(0.5, 500, default=None)
+    centre_mm: float | None = quantity(-5000, 5000, default=None)
+    us_per_mm: float | None = quantity(0.5, 5000, default=None)
+
+    def __post_init__(self) -> None:
+        problems = []
+        rotary = (self.centre_deg, self.us_per_deg)
+        linear = (self.centre_mm, self.us_per_mm)
+        if not (None not in rotary and linear == (None, None)) and not (
+            None not in linear and rotary == (None, None)
+        ):
+            problems.append('needs centre_deg and us_per_deg, or centre_mm and us_per_mm')
+        if self.sign not in (-1, 1):
+            problems.append(f'sign: {self.sign} is neither 1 nor -1')
+        low, high = self.pulse_range_us
+        if not low <= self.centre_us <= high:
+            problems.append(f'centre_us: {self.centre_us:g} outside [{low:g}, {high:g}]')
+        if problems:
+            raise ConfigError([f'{self.name}: {problem}' for problem in problems])
+
+    @property
+    def is_linear(self) -> bool:
+        """Millimetres instead of degrees."""
+        return self.centre_mm is not None
+
+
+@dataclass(frozen=True)
+class ServosConfig:
+    """All servos of a machine; lists follow the order of `joints`."""
+
+    joints: tuple[ServoConfig, ...]
+    speed_deg_s: float | None = quantity(1, 10_000, default=None)
+    speed_mm_s: float | None = quantity(0.1, 10_000, default=None)
+    park_deg: tuple[float, ...] | None = quantity(-720, 720, default=None)
+    park_mm: tuple[float, ...] | None = quantity(-5000, 5000, default=None)
+    arm_interval_ms: int = quantity(0, 5000, default=150)
+    minimum_battery_v: float = quantity(0, 60, default=0.0)
+
+    def __post_init__(self) -> None:
+        problems = []
+        if not 1 <= len(self.joints) <= MAX_JOINTS:
+            problems.append(f'joints: {len(self.joints)} joints, 1 to {MAX_JOINTS} fit')
+        names = [joint.name for joint in self.joints]
+        if len(set(names)) < len(names):
+            problems.append(f'joints: names stand twice in {names}')
+        channels = [joint.channel for joint in self.joints]
+        if sorted(channels) != list(range(len(channels))):
+            problems.append(f'joints: channels {channels} are not 0 to {len(channels) - 1}')
+        problems += self._unit_problems()
+        if problems:
+            raise ConfigError(problems)
+
+    def _unit_problems(self) -> list[str]:
+        if len({joint.is_linear for joint in self.joints}) > 1:
+            return ['joints: some are in degrees, others in millimetres']
+        is_linear = all(joint.is_linear for joint in self.joints)
+        unit = 'mm' if is_linear else 'deg'
+        speed = self.speed_mm_s if is_linear else self.speed_deg_s
+        park = self.park_mm if is_linear else self.park_deg
+        problems = [] if speed is not None else [f'speed_{unit}_s: missing']
+        if park is None:
+            problems.append(f'park_{unit}: missing')
+        elif len(park) != len(self.joints):
+            problems.append(f'park_{unit}: {len(park)} values for {len(self.joints)} joints')
+        return problems
+
+
+@dataclass(frozen=True)
+class LinkConfig:
+    """The serial line, and what the board does when setpoints cease."""
+
+    on_link_loss: Literal['hold', 'release']
+    baud: int = quantity(9600, 4_000_000)
+    setpoint_deadline_ms: int = quantity(20, 1000)
+
+
+@dataclass(frozen=True)
+class SimulationConfig:
+    """What the fake board's servos and battery do."""
+
+    hysteresis_deg: float = quantity(0, 45, default=0.0)
+    hysteresis_mm: float = quantity(0, 100, default=0.0)
+    dead_band_us: float = quantity(0, 200, default=5.0)
+    battery_v: float = quantity(0, 60, default=7.6)
+
+
+@dataclass(frozen=True)
+class BoardConfig:
+    """The bridge's three sections of a machine file."""
+
+    servos: ServosConfig
+    link: LinkConfig
+    simulation: SimulationConfig
+
+    @classmethod
+    def from_machine(cls, machine: MachineFile, source: str = '') -> 'BoardConfig':
+        """Checked against the schemas above; ConfigError lists everything that is wrong."""
+        sections = {
+            'servos': machine.servos,
+            'link': machine.link,
+            'simulation': machine.simulation or {},
+        }
+        return build(cls, sections, source=source)

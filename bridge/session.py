@@ -1,0 +1,250 @@
+"""The host's side of the line as a state machine: bytes and times in, bytes and events out.
+
+It stays silent until the board's HELLO: bytes sent during a Mega's boot would keep its boot loader
+waiting for ever. `now` is monotonic time in seconds, given by the caller.
+"""
+
+import enum
+from dataclasses import dataclass
+
+from bridge.events import (
+    Acknowledged,
+    CommandFailed,
+    Connected,
+    Disconnected,
+    Event,
+    FaultReported,
+    Incompatible,
+    StateReceived,
+)
+from bridge.frames import encode
+from bridge.framing import FrameReader
+from bridge.messages import (
+    PROTOCOL_VERSION,
+    Ack,
+    Command,
+    Fault,
+    Hello,
+    Mode,
+    Result,
+    Setpoint,
+    State,
+    Stop,
+    is_newer,
+)
+from bridge.round_trips import RoundTrips
+from manipulator.errors import Refused
+
+RETRY_AFTER = 0.1
+MAX_TRIES = 4
+BOARD_SILENCE = 0.5
+MAX_BOOT = 5.0
+UPTIME_SLACK_MS = 250
+
+
+class Phase(enum.Enum):
+    """How far the host has come with the board."""
+
+    CLOSED = 'no port'
+    WAITING = 'waiting for HELLO'
+    GREETED = 'waiting for the first STATE'
+    READY = 'ready'
+    INCOMPATIBLE = 'another board'
+
+
+@dataclass
+class _Pending:
+    """A command on its way; every try carries the same sequence."""
+
+    command: Command
+    sequence: int
+    wire: bytes
+    sent_at: float
+    tries: int
+
+
+class Session:
+    """One host talking to one board with `joint_count` joints."""
+
+    def __init__(self, joint_count: int) -> None:
+        self.joint_count = joint_count
+        self.phase = Phase.CLOSED
+        self.hello: Hello | None = None
+        self.state: State | None = None
+        self.setpoints_sent = 0
+        self.reader = FrameReader()
+        self.round_trips = RoundTrips()
+        self._output = bytearray()
+        self._sequence = 0
+        self._pending: _Pending | None = None
+        self._heard_at = self._opened_at = self._greeted_at = 0.0
+
+    @property
+    def accepts_setpoints(self) -> bool:
+        """The board would follow a setpoint now, and no command is under way."""
+        return (
+            self.phase is Phase.READY
+            and self._pending is None
+            and self.state is not None
+            and self.state.mode in (Mode.ARMED, Mode.HOLDING)
+        )
+
+    def opened(self, now: float) -> None:
+        """The port is open: wait for the board, silently."""
+        self.reader = FrameReader()
+        self._forget(Phase.WAITING, now)
+
+    def closed(self, reason: str, now: float) -> list[Event]:
+        """The port is gone."""
+        failed = self._fail_pending(reason)
+        self._forget(Phase.CLOSED, now)
+        return [*failed, Disconnected(reason)]
+
+    def receive(self, received: bytes, now: float) -> list[Event]:
+        """Bytes from the board."""
+        events: list[Event] = []
+        for frame in self.reader.feed(received):
+            self._heard_at = now
+            match frame.message:
+                case Hello():
+                    events += self._greet(frame.message, now)
+                case State():
+                    events += self._note_state(frame.message, now)
+                case Ack():
+                    events += self._settle(frame.message)
+                case Fault() if self.phase is Phase.READY:
+                    events.append(FaultReported(frame.message))
+        return events
+
+    def tick(self, now: float) -> list[Event]:
+        """Retries what was not acknowledged; notices a board that fell silent."""
+        if self.phase in (Phase.GREETED, Phase.READY) and now - self._heard_at > BOARD_SILENCE:
+            reason = f'the board has been silent for {BOARD_SILENCE:g} s'
+            failed = self._fail_pending(reason)
+            self._forget(Phase.WAITING, now)
+            return [*failed, Disconnected(reason)]
+        if self.phase is Phase.WAITING and now - self._opened_at > MAX_BOOT:
+            self._opened_at = now
+            return [Disconnected(f'the port is open, but no board said HELLO for {MAX_BOOT:g} s')]
+        pending = self._pending
+        if pending is None or now - pending.sent_at < RETRY_AFTER:
+            return []
+        if pending.tries == MAX_TRIES:
+            return self._fail_pending(f'no answer from the board after {MAX_TRIES} tries')
+        pending.tries += 1
+        pending.sent_at = now
+        self._output += pending.wire
+        return []
+
+    def send_setpoint(self, setpoint: Setpoint, now: float) -> None:
+        """Newest wins, never repeated; Refused where the board would not follow it."""
+        if not self.accepts_setpoints:
+            mode = self.state.mode.name.lower() if self.state else self.phase.value
+            raise Refused(f'the board takes no setpoints now: {mode}')
+        self._send(setpoint)
+        self.round_trips.note_sent(self._sequence, now)
+        self.setpoints_sent += 1
+
+    def send_command(self, command: Command, now: float) -> list[Event]:
+        """Repeated until acknowledged; it takes the place of one that is under way.
+
+        Refused where there is no board, or where a STOP is still under way.
+        """
+        if self.phase is not Phase.READY:
+            raise Refused(f'no board to talk to: {self.phase.value}')
+        pending = self._pending
+        if pending is not None and isinstance(pending.command, Stop):
+            if isinstance(command, Stop):
+                return []
+            raise Refused('a STOP is under way')
+        failed = self._fail_pending(f'{type(command).__name__.upper()} came after it')
+        wire = self._send(command)
+        self._pending = _Pending(command, self._sequence, wire, now, tries=1)
+        return failed
+
+    def take_output(self) -> bytes:
+        """The bytes for the board since the last call."""
+        output, self._output = bytes(self._output), bytearray()
+        return output
+
+    def _send(self, message: Setpoint | Command) -> bytes:
+        self._sequence = self._sequence + 1 & 0xFFFF
+        wire = encode(message, self._sequence)
+        self._output += wire
+        return wire
+
+    def _forget(self, phase: Phase, now: float) -> None:
+        self.phase = phase
+        self.hello = self.state = self._pending = None
+        self._opened_at = self._heard_at = now
+        self.round_trips.forget_sent()
+        self._output.clear()
+
+    def _greet(self, hello: Hello, now: float) -> list[Event]:
+        misfit = self._misfit(hello)
+        if misfit:
+            is_news = self.phase is not Phase.INCOMPATIBLE
+            self._forget(Phase.INCOMPATIBLE, now)
+            return [Incompatible(misfit)] if is_news else []
+        events: list[Event] = []
+        has_restarted = self._has_restarted(hello, now)
+        if self.phase is not Phase.READY or has_restarted:
+            if has_restarted:
+                cause = hello.reset_cause.name or hello.reset_cause
+                reason = f'the board has restarted (cause: {cause})'
+                events = [*self._fail_pending(reason), Disconnected(reason)]
+            self._forget(Phase.GREETED, now)
+        self.hello, self._greeted_at = hello, now
+        return events
+
+    def _has_restarted(self, hello: Hello, now: float) -> bool:
+        """Whether the board's clock stands before where it should be by now (it wraps)."""
+        if self.hello is None:
+            return False
+        expected = self.hello.uptime_ms + round(1000 * (now - self._greeted_at))
+        return UPTIME_SLACK_MS < expected - hello.uptime_ms & 0xFFFF_FFFF < 0x8000_0000
+
+    def _misfit(self, hello: Hello) -> str:
+        if hello.version != PROTOCOL_VERSION:
+            return f'the board speaks protocol {hello.version}, this host {PROTOCOL_VERSION}'
+        if hello.joint_count != self.joint_count:
+            return f'the board has {hello.joint_count} joints, the machine {self.joint_count}'
+        return ''
+
+    def _note_state(self, state: State, now: float) -> list[Event]:
+        if self.phase not in (Phase.GREETED, Phase.READY) or self.hello is None:
+            return []
+        if len(state.joints) != self.joint_count:
+            return []
+        is_first = self.phase is Phase.GREETED
+        if is_first or is_newer(state.echo, self._sequence):
+            # The board may remember an earlier host: go on from there.
+            self._sequence = state.echo
+        self.round_trips.note_state(state, now)
+        self.state = state
+        self.phase = Phase.READY
+        connected: list[Event] = [Connected(self.hello)] if is_first else []
+        return [*connected, StateReceived(state)]
+
+    def _settle(self, ack: Ack) -> list[Event]:
+        pending = self._pending
+        if pending is None or ack.sequence != pending.sequence:
+            return []
+        if ack.result is not Result.OK:
+            return self._fail_pending(_REASONS[ack.result])
+        self._pending = None
+        return [Acknowledged(pending.command)]
+
+    def _fail_pending(self, reason: str) -> list[Event]:
+        pending, self._pending = self._pending, None
+        return [CommandFailed(pending.command, reason)] if pending else []
+
+
+_REASONS = {
+    Result.STALE: 'the board has heard a newer frame',
+    Result.STOPPED: 'the board is stopped: clear the stop first',
+    Result.FAULT: 'the board has a fault: clear it first',
+    Result.UNDERVOLTAGE: 'the battery is too low',
+    Result.OUT_OF_RANGE: 'a position is out of range',
+    Result.WRONG_JOINTS: 'the board has another number of joints',
+}
