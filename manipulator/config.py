@@ -29,7 +29,7 @@ def parse_yaml(text: str, source: str = '') -> dict[str, Any]:
     """YAML text as a mapping; repeated keys, aliases, tags and huge files are refused."""
     if len(text) > MAX_CHARACTERS:
         raise ConfigError(
-            [f'{len(text)} bytes, a machine file has at most {MAX_CHARACTERS}'], source
+            [f'{len(text)} characters, a machine file has at most {MAX_CHARACTERS}'], source
         )
     try:
         content = yaml.load(text, Loader=_StrictLoader)

@@ -1,9 +1,12 @@
 """How fast a machine may move: its platform or tool, and each of its joints."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from manipulator.config import quantity
+
+BRAKING_SHARE = 0.3
+"""The part of each acceleration limit that plans leave for slowing down along their way."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,21 @@ class MotionLimits:
     linear: Derivatives
     angular: Derivatives
     joint: Derivatives
+
+    @property
+    def for_plans(self) -> 'MotionLimits':
+        """The limits within which plans are made, so that any of them can be braked on its way."""
+
+        def share(limit: Derivatives) -> Derivatives:
+            return replace(limit, acceleration=(1.0 - BRAKING_SHARE) * limit.acceleration)
+
+        return MotionLimits(share(self.linear), share(self.angular), share(self.joint))
+
+    @property
+    def braking_rate(self) -> float:
+        """How fast the rate of a plan at full speed may change (1/s), by the braking share."""
+        ratios = (d.acceleration / d.speed for d in (self.linear, self.angular, self.joint))
+        return BRAKING_SHARE * min(r for r in ratios if math.isfinite(r))
 
     @classmethod
     def from_config(cls, config: MotionConfig) -> 'MotionLimits':

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from manipulator.errors import InvalidInput
 
 NOTABLE_OFFSET = 0.5
+"""Seconds by which a source's clock may be off before people should know."""
 
 
 class StaleMessage(InvalidInput):
@@ -44,11 +45,6 @@ class StampGate:
             raise StaleMessage(f'{age:.3f} s old, at most {self.maximum_age:g} s: ignored')
         self._refused_offset = None
         self._last_stamp = stamp
-
-    @property
-    def has_notable_offset(self) -> bool:
-        """Whether the source's clock is off by so much that people should know."""
-        return self.offset is not None and abs(self.offset) > NOTABLE_OFFSET
 
     def _is_confirmed(self, observed: float) -> bool:
         refused = self._refused_offset

@@ -1,0 +1,27 @@
+"""The executables of parallel platforms: hexapod_trajectory, hexapod_ik, hexapod_pose."""
+
+from hexarm.machines import load
+from manipulator.nodes.run import run_node
+
+MACHINE = 'robocake'
+
+
+def trajectory() -> int:
+    """Runs the trajectory node."""
+    from manipulator.nodes.trajectory_node import TrajectoryNode  # noqa: PLC0415 (starts faster)
+
+    return run_node(lambda: TrajectoryNode(load, MACHINE))
+
+
+def ik() -> int:
+    """Runs the inverse kinematics node."""
+    from manipulator.nodes.ik_node import IkNode  # noqa: PLC0415
+
+    return run_node(lambda: IkNode(load, MACHINE))
+
+
+def pose() -> int:
+    """Runs the forward kinematics node."""
+    from manipulator.nodes.pose_node import PoseNode  # noqa: PLC0415
+
+    return run_node(lambda: PoseNode(load, MACHINE))

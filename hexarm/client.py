@@ -1,0 +1,147 @@
+"""A user of one machine's graph: enables it, asks for poses, hears what became of them."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import PoseStamped
+from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import try_shutdown
+from std_srvs.srv import SetBool, Trigger
+
+from manipulator.errors import ManipulatorError, Refused
+from manipulator.nodes.messages import pose_message, seconds
+from manipulator.nodes.qos import COMMAND, LATCHED
+from manipulator.pose import Pose
+
+
+class NotReady(ManipulatorError, TimeoutError):
+    """The graph did not do in time what it was waited for."""
+
+
+class Client:
+    """A node in `namespace`, spun only while it waits; a context manager.
+
+    `interrupt`, called at every wait, may raise to end it (a node has died, Ctrl-C).
+    """
+
+    def __init__(self, namespace: str, interrupt: Callable[[], None] = lambda: None) -> None:
+        if not rclpy.ok():
+            rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+        self.node = Node('hexarm', namespace=namespace)
+        self.machine_state = DiagnosticStatus(message='not heard of')
+        self.motion_status = DiagnosticStatus()
+        self.diagnostics: dict[str, DiagnosticStatus] = {}
+        self._interrupt = interrupt
+        self._executor = EventsExecutor()
+        self._executor.add_node(self.node)
+        self._goals = self.node.create_publisher(PoseStamped, 'goal_pose', COMMAND)
+        subscribe = self.node.create_subscription
+        subscribe(DiagnosticStatus, 'machine_state', self._on_machine_state, LATCHED)
+        subscribe(DiagnosticStatus, 'motion_status', self._on_motion_status, LATCHED)
+        subscribe(DiagnosticArray, '/diagnostics', self._on_diagnostics, 10)
+
+    def __enter__(self) -> 'Client':
+        """The client itself."""
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        """Leaves the graph."""
+        self._executor.remove_node(self.node)
+        self.node.destroy_node()
+        try_shutdown()
+
+    def spin(self, seconds: float) -> None:
+        """Hears messages for a while."""
+        end = time.monotonic() + seconds
+        while True:
+            self._interrupt()
+            left = end - time.monotonic()
+            if left <= 0:
+                return
+            self._executor.spin_once(timeout_sec=min(left, 0.05))
+
+    def wait(self, what: str, is_so: Callable[[], bool], seconds: float) -> None:
+        """Hears messages until `is_so`; NotReady says what did not come."""
+        end = time.monotonic() + seconds
+        while not is_so():
+            if time.monotonic() > end:
+                raise NotReady(f'{what} did not happen within {seconds:g} s ({self.summary})')
+            self.spin(0.005)
+
+    @property
+    def summary(self) -> str:
+        """Machine state and motion status in a few words."""
+        reason = {v.key: v.value for v in self.machine_state.values}.get('reason', '')
+        state = f'{self.machine_state.message}: {reason}' if reason else self.machine_state.message
+        motion = f', motion {self.motion_status.message}' if self.motion_status.message else ''
+        return f'machine {state}{motion}'
+
+    def motion(self, key: str) -> str:
+        """One of the values of motion_status, '' before the first."""
+        return str({v.key: v.value for v in self.motion_status.values}.get(key, ''))
+
+    def enable(self) -> None:
+        """Energises the servos and waits until the machine can take goals; Refused says why."""
+        self.wait(
+            'the board', lambda: self.machine_state.message not in WITHOUT_BOARD, seconds=15.0
+        )
+        self._call(SetBool, 'serial_bridge/enable', SetBool.Request(data=True))
+        self.wait('enabling', lambda: self.motion('mode') not in ('', 'disabled'), seconds=15.0)
+
+    def disable(self) -> None:
+        """Switches the servos off."""
+        self._call(SetBool, 'serial_bridge/enable', SetBool.Request(data=False))
+
+    def trigger(self, service: str) -> str:
+        """Calls a Trigger service of the graph; Refused with its reason when it fails."""
+        return self._call(Trigger, service, Trigger.Request())
+
+    def publish_goal(self, pose: Pose) -> float:
+        """Publishes a goal and returns its stamp, by which motion_status names it."""
+        stamp = self.node.get_clock().now().to_msg()
+        self._goals.publish(pose_message(pose, stamp))
+        return seconds(stamp)
+
+    def go_to(self, pose: Pose, seconds: float = 10.0) -> None:
+        """Publishes a goal and waits until it is reached; Refused with the reason."""
+        self.wait('a listener for goals', lambda: self._goals.get_subscription_count() > 0, 10.0)
+        stamp = f'{self.publish_goal(pose):.9f}'
+
+        def is_answered() -> bool:
+            is_ours = self.motion('goal_stamp') == stamp
+            return is_ours and self.motion('result') in ('reached', 'refused', 'stopped')
+
+        self.wait('reaching the goal', is_answered, seconds)
+        if self.motion('result') != 'reached':
+            raise Refused(self.motion_status.message)
+
+    def _call(self, kind: type, name: str, request: Any) -> str:
+        client = self.node.create_client(kind, name)
+        try:
+            self.wait(f'service {name}', client.service_is_ready, seconds=10.0)
+            future = client.call_async(request)
+            self.wait(f'an answer of {name}', future.done, seconds=15.0)
+            response = future.result()
+        finally:
+            self.node.destroy_client(client)
+        if not response.success:
+            raise Refused(f'{name}: {response.message}')
+        return str(response.message)
+
+    def _on_machine_state(self, message: DiagnosticStatus) -> None:
+        self.machine_state = message
+
+    def _on_motion_status(self, message: DiagnosticStatus) -> None:
+        self.motion_status = message
+
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        for entry in message.status:
+            self.diagnostics[entry.name] = entry
+
+
+WITHOUT_BOARD = ('not heard of', 'disconnected', 'booting')

@@ -1,0 +1,129 @@
+"""`hexarm demo`: the whole graph on the fake board, a tour of goals, a table and a picture."""
+
+import argparse
+import math
+import os
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hexarm.demo_report import Curve, Observation, measure
+from hexarm.graph import Graph, link_folder, machine_graph
+from hexarm.machines import load
+from hexarm.up import Interrupted, StopSignal, check_alive, park
+from manipulator.errors import Refused
+from manipulator.pose import Pose
+
+if TYPE_CHECKING:
+    from hexarm.client import Client
+    from hexarm.demo_recording import Recorder
+
+MACHINE = 'robocake'
+CENTRE = np.array([0.0, 0.0, 0.045])
+RADIUS, TILT, PERIOD, TURNS = 0.008, math.radians(4.0), 4.0, 2
+STREAM_PERIOD = 0.02
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommand."""
+    parser = commands.add_parser(
+        'demo', help='drive the RoboCake on a fake board, within a minute'
+    )
+    parser.add_argument('--picture', type=Path, default=Path('demo.png'), help='where to save it')
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Runs the demonstration; status 0 when it went through, 130 after Ctrl-C."""
+    from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
+
+    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
+    stop = StopSignal()
+    say('starting the graph: fake_hardware, serial_bridge, ik, trajectory, pose')
+    with link_folder() as folder:
+        nodes = machine_graph('hexapod', MACHINE, 'fake', Path(folder) / 'board')
+        with Graph(nodes, 'hexapod') as graph:
+
+            def interrupt() -> None:
+                stop.check()
+                check_alive(graph)
+
+            with Client('hexapod', interrupt) as client:
+                try:
+                    observation = tour(client)
+                except Interrupted:
+                    say('interrupted: stopping the graph')
+                    return 130
+    report(observation, arguments.picture)
+    return 0
+
+
+def tour(client: 'Client') -> Observation:
+    """Goal moves, a goal out of reach and a circle with a tilt, from outside as a user would."""
+    from hexarm.demo_recording import Recorder  # noqa: PLC0415 (needs ROS)
+
+    say('waiting for the board, then energising the servos one by one')
+    client.enable()
+    recorder = Recorder(client)
+    for text, goal in moves():
+        say(text)
+        recorder.line_to(goal)
+        client.go_to(goal)
+    try:
+        say('a goal out of reach: x = 40 mm')
+        client.go_to(Pose.from_xyz_rpy((0.04, 0.0, 0.045)))
+    except Refused as refusal:
+        say(f'  {refusal}')
+    say(f'a circle of {RADIUS * 1e3:g} mm with a turning tilt of {math.degrees(TILT):g}°')
+    stream(client, recorder)
+    observation = recorder.observation(load(MACHINE).kinematics)
+    park(client)
+    return observation
+
+
+def moves() -> Iterator[tuple[str, Pose]]:
+    """The goal moves of the tour; the last leads to where the circle begins."""
+    yield 'up by 8 mm', Pose.from_xyz_rpy((0.0, 0.0, 0.049))
+    yield 'turn by 8° about z', Pose.from_xyz_rpy((0.0, 0.0, 0.045), (0.0, 0.0, 0.14))
+    yield 'to where the circle begins', circle(0.0)
+
+
+def circle(seconds: float) -> Pose:
+    """The circle's pose: it goes round once a period, and the platform leans outwards."""
+    angle = 2 * math.pi * seconds / PERIOD
+    c, s = math.cos(angle), math.sin(angle)
+    return Pose.from_xyz_rpy(CENTRE + RADIUS * np.array([c, s, 0.0]), (-TILT * s, TILT * c, 0.0))
+
+
+def stream(client: 'Client', recorder: 'Recorder') -> None:
+    """Publishes the circle as a stream of goals, each where the platform should be by now."""
+    begin = time.time()
+    recorder.follow(Curve(circle, begin, PERIOD * TURNS))
+    count = round(PERIOD * TURNS / STREAM_PERIOD)
+    for k in range(1, count + 1):
+        client.spin(begin + k * STREAM_PERIOD - time.time())
+        client.publish_goal(circle(k * STREAM_PERIOD))
+        if k % (count // 8) == 0:
+            say(f'  {100 * k // count} %')
+    client.spin(0.5)
+
+
+def report(observation: Observation, picture: Path) -> None:
+    """Prints the table and saves the picture."""
+    from hexarm.demo_picture import draw  # noqa: PLC0415 (needs matplotlib)
+
+    result = measure(observation, load(MACHINE).kinematics)
+    print()
+    for name, value in result.rows():
+        print(f'  {name:<42} {value}')
+    draw(result, picture)
+    print(f'\nThe picture is in {picture}.')
+
+
+def say(text: str) -> None:
+    """Prints one line of progress at once."""
+    print(text, flush=True)

@@ -1,0 +1,109 @@
+"""Starting the processes of one machine's graph, watching them, and stopping them all."""
+
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+PATIENCE = 5.0
+"""Seconds a process has for its own clean end before it is killed."""
+
+PR_SET_PDEATHSIG = 1
+
+
+@dataclass(frozen=True)
+class Executable:
+    """One node as a process: its module and entry, and its own parameters."""
+
+    module: str
+    entry: str
+    parameters: dict[str, str] = field(default_factory=dict)
+
+
+def machine_graph(kind: str, machine: str, port: str, link: Path) -> list[Executable]:
+    """The nodes of a hexapod's or an arm's graph; port 'fake' adds the fake board."""
+    room = {'hexapod': 'hexapod_control', 'arm': 'arm_control'}[kind]
+    common = {'machine': machine}
+    nodes = [Executable(room, entry, common) for entry in ('ik', 'pose', 'trajectory')]
+    if port == 'fake':
+        nodes.append(Executable('bridge', 'fake_hardware', common | {'link': str(link)}))
+        port = str(link)
+    nodes.append(Executable('bridge', 'serial_bridge', common | {'port': port}))
+    return nodes
+
+
+class Graph:
+    """The running processes; a context manager that leaves none behind."""
+
+    def __init__(self, nodes: Sequence[Executable], namespace: str) -> None:
+        self._nodes = nodes
+        self._namespace = namespace
+        self._processes: dict[str, subprocess.Popen[bytes]] = {}
+
+    def __enter__(self) -> 'Graph':
+        """Starts every node."""
+        for node in self._nodes:
+            self._processes[node.entry] = subprocess.Popen(
+                _command(node, self._namespace),
+                start_new_session=True,
+                stdin=subprocess.DEVNULL,
+                preexec_fn=_die_with_parent,  # noqa: PLW1509 (one prctl call, no threads yet)
+                env=_environment(),
+            )
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        """Stops every node: asked first, killed where asking does not help."""
+        for process in self._processes.values():
+            if process.poll() is None:
+                process.send_signal(signal.SIGTERM)
+        deadline = time.monotonic() + PATIENCE
+        for process in self._processes.values():
+            try:
+                process.wait(max(0.0, deadline - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+    def dead(self) -> str | None:
+        """The name of a node that has ended, with its exit status."""
+        for name, process in self._processes.items():
+            status = process.poll()
+            if status is not None:
+                return f'{name} ended with status {status}'
+        return None
+
+    def pids(self) -> dict[str, int]:
+        """The process number of each node."""
+        return {name: process.pid for name, process in self._processes.items()}
+
+
+def link_folder() -> 'tempfile.TemporaryDirectory[str]':
+    """A private folder for the fake board's port."""
+    return tempfile.TemporaryDirectory(prefix='hexarm-')
+
+
+def _command(node: Executable, namespace: str) -> list[str]:
+    command = [sys.executable, '-m', node.module, node.entry, '--ros-args']
+    command += ['-r', f'__ns:=/{namespace.strip("/")}']
+    for name, value in node.parameters.items():
+        command += ['-p', f'{name}:={value}']
+    return command
+
+
+def _environment() -> dict[str, str]:
+    """Ours, with the source tree importable where nothing is installed."""
+    here = str(Path(__file__).resolve().parent.parent)
+    known = [p for p in os.environ.get('PYTHONPATH', '').split(os.pathsep) if p]
+    return os.environ | {'PYTHONPATH': os.pathsep.join([here, *known])}
+
+
+def _die_with_parent() -> None:
+    """Asks the kernel to end the node when this process dies without stopping it."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)

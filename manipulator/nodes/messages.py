@@ -1,0 +1,75 @@
+"""ROS messages to values of the core and back; what does not fit raises InvalidInput."""
+
+import math
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import PoseStamped
+from sensor_msgs.msg import JointState
+
+from manipulator.arrays import Array
+from manipulator.errors import InvalidInput
+from manipulator.pose import Pose
+
+BASE_FRAME = 'base'
+
+
+def seconds(stamp: Time) -> float:
+    """A stamp in seconds."""
+    return float(stamp.sec + stamp.nanosec * 1e-9)
+
+
+def pose_of(message: PoseStamped) -> Pose:
+    """The pose in the base frame; an empty frame_id means base."""
+    check_frame(message.header.frame_id)
+    p, q = message.pose.position, message.pose.orientation
+    numbers = {'x': p.x, 'y': p.y, 'z': p.z, 'qx': q.x, 'qy': q.y, 'qz': q.z, 'qw': q.w}
+    for name, value in numbers.items():
+        if not math.isfinite(value):
+            raise InvalidInput(f'{name} is {value}, needs a finite number')
+    return Pose.from_xyz_quaternion((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+
+
+def pose_message(pose: Pose, stamp: Time) -> PoseStamped:
+    """A pose in the base frame as a message."""
+    message = PoseStamped()
+    message.header.stamp = stamp
+    message.header.frame_id = BASE_FRAME
+    p, q = message.pose.position, message.pose.orientation
+    p.x, p.y, p.z = pose.position.tolist()
+    q.x, q.y, q.z, q.w = pose.quaternion.tolist()
+    return message
+
+
+def check_frame(frame_id: str) -> None:
+    """Raises InvalidInput unless the frame is the base."""
+    if frame_id not in ('', BASE_FRAME):
+        raise InvalidInput(f'frame_id {frame_id!r} is unknown, needs {BASE_FRAME!r} or nothing')
+
+
+def joints_of(message: JointState, names: tuple[str, ...]) -> Array:
+    """Positions in the order of `names`; joints of other names are not ours and are ignored.
+
+    Raises InvalidInput for missing or repeated joints, for arrays that do not match and for
+    numbers that are not finite.
+    """
+    if len(message.name) != len(message.position):
+        raise InvalidInput(f'{len(message.name)} names but {len(message.position)} positions')
+    positions = dict(zip(message.name, message.position, strict=True))
+    if len(positions) != len(message.name):
+        raise InvalidInput(f'a joint is named twice in {list(message.name)[:20]}')
+    missing = [name for name in names if name not in positions]
+    if missing:
+        raise InvalidInput(f'joints {missing} are missing')
+    joints = np.array([positions[name] for name in names])
+    if not np.isfinite(joints).all():
+        name = names[int(np.argmin(np.isfinite(joints)))]
+        raise InvalidInput(f'{name} is {positions[name]}, needs a finite number')
+    return joints
+
+
+def joint_message(joints: Array, names: tuple[str, ...], stamp: Time) -> JointState:
+    """Joint positions as a message."""
+    message = JointState(name=list(names), position=joints.tolist())
+    message.header.stamp = stamp
+    return message

@@ -1,0 +1,58 @@
+"""From joint states to the pose of the platform or tool, by forward kinematics."""
+
+from collections.abc import Callable
+
+from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import PoseStamped
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+
+from manipulator.errors import NoSolution
+from manipulator.kinematics import ForwardSolution
+from manipulator.machine import Machine
+from manipulator.nodes.diagnostics import Diagnostics, Report
+from manipulator.nodes.intake import Intake
+from manipulator.nodes.messages import joints_of, pose_message
+from manipulator.nodes.parameters import declare
+from manipulator.nodes.qos import MEASUREMENT
+
+
+class PoseNode(Node):
+    """joint_states in, pose out; see docs/interfaces.md."""
+
+    def __init__(self, load: Callable[[str], Machine], default_machine: str) -> None:
+        super().__init__('pose')
+        name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
+        self._kinematics = load(name).kinematics
+        self._solution: ForwardSolution | None = None
+        self._states = Intake(self, 'joint_states', self._on_joint_states)
+        self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
+        self.create_subscription(JointState, 'joint_states', self._states, MEASUREMENT)
+        self._diagnostics = Diagnostics(self, self._report, ('joint_states', 'pose'))
+
+    def _on_joint_states(self, message: JointState) -> None:
+        if not message.name:
+            return
+        joints = joints_of(message, self._kinematics.joint_names)
+        near, self._solution = self._solution, None
+        if near is not None:
+            try:
+                self._solution = self._kinematics.forward(joints, near.pose)
+            except NoSolution:
+                self.get_logger().info('the last pose does not lead to the present one: afresh')
+        if self._solution is None:
+            self._solution = self._kinematics.forward(joints)
+        self._publisher.publish(pose_message(self._solution.pose, message.header.stamp))
+
+    def _report(self) -> Report:
+        values: dict[str, object] = {
+            'age of last joint state (s)': self._states.age,
+            'joint states refused': self._states.refused,
+            'last refusal': self._states.last_refusal,
+        }
+        if self._solution is None:
+            return DiagnosticStatus.OK, 'no joint states', values
+        values['singularity margin'] = self._solution.sigma_min
+        values['residual (mm)'] = self._solution.residual * 1e3
+        values['iterations'] = self._solution.iterations
+        return DiagnosticStatus.OK, 'running', values

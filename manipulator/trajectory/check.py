@@ -1,0 +1,96 @@
+"""Whether a machine can drive a plan: every tick inside the limits, no joint too fast."""
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from manipulator.arrays import Array
+from manipulator.errors import Refused, Unreachable
+from manipulator.machine import Machine
+from manipulator.motion_limits import MotionLimits
+from manipulator.pose import Pose
+from manipulator.trajectory.plan import MotionState, Plan
+
+TOLERANCE = 1.005
+BRANCH_JUMP = 0.5
+"""A step of a joint (rad) within one tick that only another branch of the inverse makes."""
+
+
+@dataclass(frozen=True)
+class Demand:
+    """What a plan asks for most, as the factor by which it would have to be slowed down."""
+
+    slowness: float
+    quantity: str
+
+    @property
+    def fits(self) -> bool:
+        """Whether the plan keeps all limits as it is."""
+        return self.slowness <= TOLERANCE
+
+
+def check_plan(plan: Plan, machine: Machine, near: Array, dt: float) -> Demand:
+    """Drives the plan in thought, tick by tick, from joints `near`.
+
+    Returns what it demands of speed and acceleration. Raises Refused, with time, leg, value and
+    limit, where the way leaves the reach of the machine.
+    """
+    times = np.arange(0.0, plan.checked_duration + dt, dt)
+    state = plan.at(times)
+    joints = joints_along(machine, state.pose, near)
+    admitted = machine.constraints.admits(state.pose, joints)
+    if not admitted.all():
+        first = int(np.argmin(admitted))
+        reason = why_not(machine, state.pose[first], near if first == 0 else joints[first - 1])
+        raise Refused(f'after {times[first]:.2f} s of the way: {reason}')
+    return demand(state, joints, machine.motion, dt)
+
+
+def joints_along(machine: Machine, poses: Pose, near: Array) -> Array:
+    """Joints for a row of poses, each on the branch nearest to the one before it."""
+    kinematics = machine.kinematics
+    joints = kinematics.inverse_or_nan(poses, near)
+    jumps = np.abs(np.diff(joints, axis=0)).max(axis=-1) > BRANCH_JUMP
+    if jumps.any():
+        for i in range(int(np.argmax(jumps)) + 1, len(joints)):
+            joints[i] = kinematics.inverse_or_nan(poses[i], joints[i - 1])
+    return joints
+
+
+def why_not(machine: Machine, pose: Pose, near: Array) -> str:
+    """What keeps the machine from a pose, in words."""
+    try:
+        machine.constraints.check(pose, machine.kinematics.inverse(pose, near))
+    except Unreachable as error:
+        return str(error)
+    return 'out of reach'
+
+
+def demand(state: MotionState, joints: Array, limits: MotionLimits, dt: float) -> Demand:
+    """The worst ratio to a limit; accelerations count by their square root, as time does."""
+    speed = np.diff(joints, axis=0) / dt
+    acceleration = np.diff(speed, axis=0) / dt
+    limits = limits.for_plans
+    readings = {
+        'platform speed': _norm(state.twist[:, :3]) / limits.linear.speed,
+        'turning speed': _norm(state.twist[:, 3:]) / limits.angular.speed,
+        'joint speed': _largest(speed) / limits.joint.speed,
+        'platform acceleration': sqrt(
+            _norm(state.acceleration[:, :3]) / limits.linear.acceleration
+        ),
+        'turning acceleration': sqrt(
+            _norm(state.acceleration[:, 3:]) / limits.angular.acceleration
+        ),
+        'joint acceleration': sqrt(_largest(acceleration) / limits.joint.acceleration),
+    }
+    worst = max(readings, key=lambda name: readings[name])
+    return Demand(readings[worst], worst)
+
+
+def _norm(vectors: Array) -> float:
+    return float(np.sqrt(np.einsum('ij,ij->i', vectors, vectors).max()))
+
+
+def _largest(values: Array) -> float:
+    return float(np.abs(values).max()) if values.size else 0.0

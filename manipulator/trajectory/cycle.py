@@ -1,0 +1,97 @@
+"""Periodic motion: on each axis a sum of sines, as in the experiment of Prokopovich 2019."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import gcd, inf, lcm
+
+import numpy as np
+
+from manipulator import rotation as so3
+from manipulator.arrays import Array, frozen
+from manipulator.errors import InvalidInput
+from manipulator.pose import Pose
+from manipulator.trajectory.plan import MotionState
+
+LONGEST_PERIOD = 60.0
+FREQUENCY_STEP = 1000
+"""Frequencies are rounded to a thousandth of a hertz, so that a common period exists."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle:
+    """x(t) = Σ A sin(2π f t + φ) on x, y, z, roll, pitch and yaw about the centre pose.
+
+    amplitude, frequency and phase are (terms, 6) or (6,): metres and radians, hertz, radians.
+    Position adds to the centre's, the orientation is Rz(yaw)·Ry(pitch)·Rx(roll)·R_centre. Raises
+    InvalidInput for shapes that do not fit, negative frequencies, and frequencies whose common
+    period is above 60 s: a motion that never repeats cannot be checked before it starts.
+    """
+
+    centre: Pose
+    amplitude: Array
+    frequency: Array
+    phase: Array
+    duration: float = inf
+
+    def __post_init__(self) -> None:
+        """Checks and freezes the terms."""
+        for name in ('amplitude', 'frequency', 'phase'):
+            value = frozen(np.atleast_2d(getattr(self, name)))
+            if value.ndim != 2 or value.shape[1] != 6 or not np.isfinite(value).all():
+                raise InvalidInput(f'cycle {name}: needs six finite numbers a term')
+            object.__setattr__(self, name, value)
+        if not self.amplitude.shape == self.frequency.shape == self.phase.shape:
+            raise InvalidInput('cycle: amplitude, frequency and phase differ in their terms')
+        if (self.frequency < 0).any() or (self.frequency > 25).any():
+            raise InvalidInput(f'cycle frequency {self.frequency.tolist()} outside [0, 25] Hz')
+        if self.checked_duration > LONGEST_PERIOD:
+            raise InvalidInput(
+                f'cycle frequencies have a common period of {self.checked_duration:.4g} s, '
+                f'at most {LONGEST_PERIOD:g} s'
+            )
+
+    @property
+    def checked_duration(self) -> float:
+        """The common period of all axes that move; 0 where none does."""
+        moving = self.frequency[(self.amplitude != 0) & (self.frequency > 0)]
+        steps = [round(f * FREQUENCY_STEP) for f in moving.tolist()]
+        fractions = [Fraction(FREQUENCY_STEP, s) for s in steps if s]
+        if not fractions:
+            return 0.0
+        top = lcm(*(f.numerator for f in fractions))
+        return top / gcd(*(f.denominator for f in fractions))
+
+    def at(self, times: Array | float) -> MotionState:
+        """The state at each time (...)."""
+        t = np.asarray(times, dtype=np.float64)
+        x, v, a = self._offsets(t)
+        turn = so3.from_rpy(x[..., 3:])
+        pose = Pose(self.centre.position + x[..., :3], turn @ self.centre.rotation)
+        omega = _angular_velocity(x[..., 3:], v[..., 3:])
+        h = 1e-5
+        ahead, behind = self._offsets(t + h), self._offsets(t - h)
+        alpha = (
+            _angular_velocity(ahead[0][..., 3:], ahead[1][..., 3:])
+            - _angular_velocity(behind[0][..., 3:], behind[1][..., 3:])
+        ) / (2 * h)
+        return MotionState(
+            pose,
+            np.concatenate([v[..., :3], omega], axis=-1),
+            np.concatenate([a[..., :3], alpha], axis=-1),
+        )
+
+    def _offsets(self, t: Array) -> tuple[Array, Array, Array]:
+        frequency = np.round(self.frequency * FREQUENCY_STEP) / FREQUENCY_STEP
+        rate = 2 * np.pi * frequency
+        angle = rate * t[..., None, None] + self.phase
+        sine, cosine = self.amplitude * np.sin(angle), self.amplitude * np.cos(angle)
+        return sine.sum(-2), (rate * cosine).sum(-2), (-(rate**2) * sine).sum(-2)
+
+
+def _angular_velocity(rpy: Array, rates: Array) -> Array:
+    """ω in fixed axes of Rz(y)·Ry(p)·Rx(r) turning at the rates of r, p, y."""
+    (_, sp, sy), (_, cp, cy) = (np.moveaxis(f(rpy), -1, 0) for f in (np.sin, np.cos))
+    roll, pitch, yaw = np.moveaxis(rates, -1, 0)
+    return np.stack(
+        [cy * cp * roll - sy * pitch, sy * cp * roll + cy * pitch, yaw - sp * roll], axis=-1
+    )

@@ -1,0 +1,64 @@
+"""What a plan is: a motion in its own time, worked out and checked before it begins."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from manipulator.arrays import Array, frozen
+from manipulator.pose import Pose
+
+
+@dataclass(frozen=True, eq=False)
+class MotionState:
+    """Pose, twist (..., 6) and its time derivative (..., 6), base axes, at one or many times."""
+
+    pose: Pose
+    twist: Array
+    acceleration: Array
+
+    @classmethod
+    def at_rest(cls, pose: Pose) -> 'MotionState':
+        """Standing still at one pose."""
+        return cls(pose, frozen(np.zeros(6)), frozen(np.zeros(6)))
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether nothing moves, to a micrometre and a microradian a second."""
+        return bool(np.abs(self.twist).max() < 1e-6)
+
+
+class Plan(Protocol):
+    """A motion from time 0 to `duration` (∞ for one that goes on until it is stopped)."""
+
+    @property
+    def duration(self) -> float:
+        """Seconds of the plan's own time."""
+        ...
+
+    @property
+    def checked_duration(self) -> float:
+        """Seconds after which nothing new comes: the duration, or the period of a cycle."""
+        ...
+
+    def at(self, times: Array | float) -> MotionState:
+        """The state at each of the times (...), the end state after the end."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Hold:
+    """Standing still."""
+
+    pose: Pose
+    duration: float = 0.0
+    checked_duration: float = 0.0
+
+    def at(self, times: Array | float) -> MotionState:
+        """The pose at rest, once for each time."""
+        shape = np.shape(times)
+        pose = Pose(
+            np.broadcast_to(self.pose.position, (*shape, 3)),
+            np.broadcast_to(self.pose.rotation, (*shape, 3, 3)),
+        )
+        return MotionState(pose, np.zeros((*shape, 6)), np.zeros((*shape, 6)))

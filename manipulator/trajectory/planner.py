@@ -1,0 +1,39 @@
+"""From a goal to a move that the machine can drive: retimed where it is too fast, or refused."""
+
+from manipulator.arrays import Array
+from manipulator.errors import Refused
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+from manipulator.trajectory.check import check_plan
+from manipulator.trajectory.move import plan_move
+from manipulator.trajectory.plan import MotionState, Plan
+from manipulator.trajectory.straight import plan_straight
+
+ATTEMPTS = 8
+MARGIN = 1.01
+
+
+def check_goal(machine: Machine, goal: Pose, near: Array) -> None:
+    """Raises Unreachable, naming leg, value and limit, when the machine cannot stand there."""
+    machine.constraints.check(goal, machine.kinematics.inverse(goal, near))
+
+
+def plan_to(machine: Machine, start: MotionState, goal: Pose, near: Array, dt: float) -> Plan:
+    """A move from any state of motion to rest at `goal` that keeps all limits at every tick dt.
+
+    From rest it is straight. near: the joints at the start. Raises Unreachable when the goal itself is out of reach, and
+    Refused when the way there is, or cannot be slowed down enough.
+    """
+    check_goal(machine, goal, near)
+    limits, slowness, quantity = machine.motion.for_plans, 1.0, ''
+    for _ in range(ATTEMPTS):
+        move: Plan
+        if start.is_at_rest:
+            move = plan_straight(start.pose, goal, limits, slowness)
+        else:
+            move = plan_move(start, goal, limits, slowness)
+        demand = check_plan(move, machine, near, dt)
+        if demand.fits:
+            return move
+        slowness, quantity = slowness * demand.slowness * MARGIN, demand.quantity
+    raise Refused(f'{quantity} stays above its limit at 1/{slowness:.3g} of full speed')

@@ -1,0 +1,178 @@
+"""Playing plans tick by tick: goals in, setpoints out, and every stop along the checked way.
+
+A plan runs in its own time, whose rate goes from 0 (paused) to 1 (full speed). Stopping, pausing
+and slowing change the rate alone, so the machine never leaves the way that was checked.
+"""
+
+from dataclasses import dataclass
+
+from manipulator.arrays import Array
+from manipulator.errors import Refused, Unreachable
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+from manipulator.trajectory.check import check_plan
+from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.move import Move
+from manipulator.trajectory.plan import Hold, MotionState, Plan
+from manipulator.trajectory.planner import plan_to
+from manipulator.trajectory.straight import StraightMove
+
+SPEEDING_UP_RATE = 2.0
+"""Change of rate per second when a cycle begins, a pause ends or the override is raised."""
+
+MODES: dict[type, str] = {Hold: 'hold', StraightMove: 'move', Move: 'move', Cycle: 'cycle'}
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A pose to go to, known to its sender by the stamp of his message."""
+
+    pose: Pose
+    stamp: float = 0.0
+
+
+@dataclass(frozen=True)
+class MotionStatus:
+    """What goes out on motion_status.
+
+    mode: hold, move, cycle. result: idle, moving, reached, refused, stopped. goal_stamp is that
+    of the goal which the result is about.
+    """
+
+    mode: str = 'hold'
+    result: str = 'idle'
+    goal_stamp: float = 0.0
+    reason: str = ''
+
+
+class Player:
+    """Owns the commanded state of one machine from the moment that it is enabled."""
+
+    def __init__(self, machine: Machine, pose: Pose, joints: Array, dt: float) -> None:
+        """Begins by holding `pose`, where the joints are."""
+        self.status = MotionStatus()
+        self.joints = joints
+        self._machine = machine
+        self._dt = dt
+        self._braking_step = machine.motion.braking_rate * dt
+        self._plan: Plan = Hold(pose)
+        self._time = 0.0
+        self._stamp = 0.0
+        self._rate = 1.0
+        self._override = 1.0
+        self._is_paused = False
+        self._is_stopping = False
+        self._newest: Goal | None = None
+        self._next: Goal | Cycle | None = None
+
+    @property
+    def state(self) -> MotionState:
+        """The commanded state in the plan's own time."""
+        return self._plan.at(self._time)
+
+    @property
+    def rate(self) -> float:
+        """How fast the plan's time runs, 0 to 1."""
+        return self._rate
+
+    def pursue(self, goal: Goal) -> None:
+        """Takes a goal up at the next tick; of several the newest wins."""
+        self._newest = goal
+
+    def start_cycle(self, cycle: Cycle) -> None:
+        """Goes to the cycle's first pose and begins it there.
+
+        Raises Refused or Unreachable, with the moment and the limit, if it cannot be driven.
+        """
+        needed = check_plan(cycle, self._machine, self.joints, self._dt)
+        if not needed.fits:
+            raise Refused(
+                f'cycle: {needed.quantity} is {needed.slowness:.2f} times too fast: '
+                'lower the frequencies by that factor, or the amplitudes'
+            )
+        start = cycle.at(0.0).pose
+        self._begin(plan_to(self._machine, self.state, start, self.joints, self._dt), stamp=0.0)
+        self._newest, self._next, self._is_stopping = None, cycle, False
+
+    def stop(self) -> None:
+        """Brakes along the way, then holds; what was to come is dropped."""
+        self._newest = self._next = None
+        self._is_stopping = True
+
+    def pause(self, is_paused: bool) -> None:
+        """Brakes along the way and stays, or goes on."""
+        self._is_paused = is_paused
+
+    def override(self, rate: float) -> None:
+        """Runs everything at `rate` times its speed; Refused outside [0, 1]."""
+        if not 0.0 <= rate <= 1.0:
+            raise Refused(f'speed override {rate:g} outside [0, 1]')
+        self._override = rate
+
+    def step(self) -> Pose:
+        """Advances by one tick and returns the pose to command."""
+        if self._newest is not None:
+            goal, self._newest = self._newest, None
+            self._take(goal)
+        before = self.state.pose
+        self._advance()
+        pose = self.state.pose
+        try:
+            self.joints = self._machine.kinematics.inverse(pose, self.joints)
+        except Unreachable as error:
+            self._begin(Hold(before), self._stamp)
+            self._report('stopped', self._stamp, str(error))
+            return before
+        return pose
+
+    def _take(self, goal: Goal) -> None:
+        """Goes there at once if it can be joined in motion, else stops first and then goes."""
+        if self._is_stopping and self._rate > 0.0:
+            self._next = goal
+            return
+        state = self.state
+        try:
+            move = plan_to(self._machine, state, goal.pose, self.joints, self._dt)
+        except Unreachable as error:
+            self._report('refused', goal.stamp, str(error))
+        except Refused as error:
+            if state.is_at_rest:
+                self._report('refused', goal.stamp, str(error))
+            else:
+                self._next, self._is_stopping = goal, True
+        else:
+            self._next = None
+            self._begin(move, goal.stamp)
+
+    def _begin(self, plan: Plan, stamp: float) -> None:
+        self._plan, self._time, self._stamp = plan, 0.0, stamp
+        if not isinstance(plan, Hold):
+            self._report('moving', stamp)
+
+    def _report(self, result: str, stamp: float, reason: str = '') -> None:
+        self.status = MotionStatus(MODES[type(self._plan)], result, stamp, reason)
+
+    def _advance(self) -> None:
+        target = 0.0 if self._is_paused or self._is_stopping else self._override
+        rise = min(SPEEDING_UP_RATE * self._dt, self._braking_step)
+        self._rate = min(self._rate + rise, max(self._rate - self._braking_step, target))
+        self._time += self._rate * self._dt
+        if self._is_stopping and self._rate <= 0.0:
+            self._settle('stopped')
+        elif self._time >= self._plan.duration and not isinstance(self._plan, Hold):
+            self._settle('reached')
+
+    def _settle(self, result: str) -> None:
+        """The plan is over: hold its last pose, or begin what waits."""
+        following, self._next = self._next, None
+        stamp = self._stamp
+        self._begin(Hold(self.state.pose), stamp)
+        self._is_stopping = False
+        self._rate = 0.0 if self._is_paused else self._override
+        if isinstance(following, Cycle):
+            self._rate = 0.0
+            self._begin(following, stamp)
+        elif isinstance(following, Goal):
+            self._take(following)
+        else:
+            self._report(result, stamp)

@@ -1,0 +1,95 @@
+from dataclasses import dataclass
+from typing import Literal
+
+import pytest
+
+from manipulator.config import build, parse_yaml, quantity
+from manipulator.errors import ConfigError
+
+
+@dataclass(frozen=True)
+class Servo:
+    name: str
+    sign: Literal[-1, 1]
+    centre_us: float = quantity(500, 2500)
+
+
+@dataclass(frozen=True)
+class Machine:
+    rod_length_mm: float = quantity(1, 2000)
+    range_deg: tuple[float, float] = quantity(-360, 360)
+    servos: tuple[Servo, ...] = ()
+    label: str | None = None
+
+
+GOOD = """
+rod_length_mm: 58
+range_deg: [30, 210]
+servos:
+  - {name: a, sign: 1, centre_us: 1500}
+"""
+
+
+def problems(text):
+    with pytest.raises(ConfigError) as error:
+        build(Machine, parse_yaml(text))
+    return error.value.problems
+
+
+def test_good_file_becomes_frozen_values():
+    machine = build(Machine, parse_yaml(GOOD))
+    assert machine == Machine(58.0, (30.0, 210.0), (Servo('a', 1, 1500.0),), None)
+
+
+def test_misspelt_key_names_itself_and_the_nearest():
+    found = problems(GOOD.replace('rod_length_mm', 'rod_lenght_mm'))
+    assert found == (
+        "rod_lenght_mm: unknown key, did you mean 'rod_length_mm'?",
+        'rod_length_mm: missing',
+    )
+
+
+def test_everything_wrong_is_said_at_once():
+    text = GOOD.replace('58', '.nan').replace('[30, 210]', '[30]').replace('sign: 1', 'sign: 2')
+    found = problems(text + 'label: 7\n')
+    assert len(found) == 4
+    assert 'rod_length_mm: nan is not finite' in found
+    assert 'range_deg: has 1 entries, needs 2' in found
+    assert any(p.startswith('servos[0].sign: 2 is not one of [-1, 1]') for p in found)
+    assert 'label: holds int 7, needs a text' in found
+
+
+def test_metres_in_a_millimetre_key_are_suspected():
+    (found,) = problems(GOOD.replace('58', '0.058'))
+    assert (
+        found
+        == 'rod_length_mm: 0.058 outside [1, 2000] (a factor of 1000: is it in another unit?)'
+    )
+
+
+def test_value_inside_a_list_is_named_by_its_place():
+    (found,) = problems(GOOD.replace('210', '720'))
+    assert found.startswith('range_deg[1]: 720 outside')
+
+
+@pytest.mark.parametrize(
+    ('text', 'word'),
+    [
+        ('a: &x 1\nb: *x', 'aliases'),
+        ('a: 1\na: 2', 'twice'),
+        ('a: !!python/object/apply:os.system ["true"]', 'python/object'),
+        ('- 1\n- 2', 'a list'),
+        ('', 'nothing'),
+        ('a: [1, 2', 'flow sequence'),
+        ('a: ' + '[' * 5000 + ']' * 5000, 'deep'),
+        ('a: ' + 'x' * 2_000_000, 'characters'),
+    ],
+)
+def test_hostile_or_broken_yaml_is_refused_in_words(text, word):
+    with pytest.raises(ConfigError, match=word):
+        parse_yaml(text, 'file.yaml')
+
+
+def test_booleans_are_no_numbers():
+    (found,) = problems(GOOD.replace('58', 'true'))
+    assert 'needs a number' in found

@@ -1,0 +1,57 @@
+import pytest
+
+from manipulator.stamps import StaleMessage, StampGate
+
+
+def test_messages_in_order_are_admitted():
+    gate = StampGate()
+    for k in range(10):
+        gate.admit(100.0 + k, 100.001 + k)
+
+
+def test_reordered_message_is_stale():
+    gate = StampGate()
+    gate.admit(100.2, 100.2)
+    with pytest.raises(StaleMessage, match='reordered'):
+        gate.admit(100.1, 100.21)
+
+
+def test_message_that_queued_up_is_stale_and_the_next_fresh_one_is_not():
+    gate = StampGate()
+    gate.admit(100.0, 100.0)
+    with pytest.raises(StaleMessage, match='1.900 s old'):
+        gate.admit(100.1, 102.0)
+    gate.admit(102.0, 102.0)
+
+
+@pytest.mark.parametrize('offset', [3600.0, -3600.0])
+def test_source_whose_clock_is_off_by_an_hour_is_understood(offset):
+    gate = StampGate()
+    for k in range(5):
+        gate.admit(offset + 100.0 + k, 100.0 + k)
+    assert gate.offset == pytest.approx(-offset)
+    with pytest.raises(StaleMessage, match='old'):
+        gate.admit(offset + 105.0, 107.0)
+
+
+def test_clock_set_back_is_learnt_at_once():
+    gate = StampGate()
+    gate.admit(5000.0, 100.0)
+    gate.admit(101.0, 101.0)
+    gate.admit(102.0, 102.0)
+
+
+def test_clock_that_went_back_between_rare_messages_is_learnt_with_the_second():
+    gate = StampGate()
+    gate.admit(100.0, 100.0)
+    with pytest.raises(StaleMessage):
+        gate.admit(130.0, 160.0)
+    gate.admit(190.0, 220.0)
+
+
+def test_first_message_that_came_late_does_not_hide_later_lateness():
+    gate = StampGate()
+    gate.admit(100.0, 100.4)
+    gate.admit(100.5, 100.5)
+    with pytest.raises(StaleMessage, match='old'):
+        gate.admit(100.6, 101.2)

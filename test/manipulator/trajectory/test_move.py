@@ -1,0 +1,42 @@
+import numpy as np
+
+from hexarm.machines import load
+from manipulator import rotation as so3
+from manipulator.pose import Pose
+from manipulator.trajectory.move import plan_move
+from manipulator.trajectory.plan import MotionState
+
+LIMITS = load('robocake').motion
+
+
+def random_pose(rng, reach=0.1, turn=2.5):
+    return Pose(rng.uniform(-reach, reach, 3), so3.exp(rng.uniform(-turn, turn, 3) / np.sqrt(3)))
+
+
+def random_state(rng):
+    return MotionState(random_pose(rng), rng.uniform(-0.02, 0.02, 6), rng.uniform(-0.5, 0.5, 6))
+
+
+def test_move_begins_with_the_state_and_ends_at_rest_at_the_goal():
+    rng = np.random.default_rng(1)
+    for _ in range(50):
+        start, goal = random_state(rng), random_pose(rng)
+        move = plan_move(start, goal, LIMITS)
+        first, last = move.at(0.0), move.at(move.duration)
+        assert np.abs(start.pose.twist_to(first.pose)).max() < 1e-8
+        np.testing.assert_allclose(first.twist, start.twist, atol=1e-9)
+        np.testing.assert_allclose(first.acceleration, start.acceleration, atol=1e-5)
+        assert np.abs(goal.twist_to(last.pose)).max() < 1e-8
+        assert np.abs(last.twist).max() < 1e-7
+
+
+def test_twist_and_acceleration_are_the_derivatives_of_the_pose():
+    rng = np.random.default_rng(2)
+    for _ in range(20):
+        move = plan_move(random_state(rng), random_pose(rng), LIMITS)
+        t, h = rng.uniform(0.1, 0.9) * move.duration, 1e-5
+        before, now, after = (move.at(t + k * h) for k in (-1, 0, 1))
+        numeric = before.pose.twist_to(after.pose) / (2 * h)
+        np.testing.assert_allclose(now.twist, numeric, atol=1e-5)
+        numeric = (after.twist - before.twist) / (2 * h)
+        np.testing.assert_allclose(now.acceleration, numeric, atol=0.05)
