@@ -7,6 +7,11 @@ from bridge.messages import Command, Fault, Hello, State
 
 
 @dataclass(frozen=True)
+class Opened:
+    """The port is open; the board may be booting."""
+
+
+@dataclass(frozen=True)
 class Connected:
     """The board has announced itself, fits, and has told its state."""
 
@@ -57,7 +62,8 @@ class FaultReported:
 
 
 Event: TypeAlias = (
-    Connected
+    Opened
+    | Connected
     | Disconnected
     | Incompatible
     | StateReceived

@@ -3,6 +3,7 @@
 A machine's joints are rotary (degrees) or linear (millimetres), never both.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -115,6 +116,13 @@ class BoardConfig:
     servos: ServosConfig
     link: LinkConfig
     simulation: SimulationConfig
+
+    @property
+    def hysteresis(self) -> float:
+        """The play of each simulated servo, in rad (or m)."""
+        if self.servos.joints[0].is_linear:
+            return 1e-3 * self.simulation.hysteresis_mm
+        return math.radians(self.simulation.hysteresis_deg)
 
     @classmethod
     def from_machine(cls, machine: MachineFile, source: str = '') -> 'BoardConfig':

@@ -15,6 +15,7 @@ from bridge.events import (
     Event,
     FaultReported,
     Incompatible,
+    Opened,
     StateReceived,
 )
 from bridge.frames import encode
@@ -89,10 +90,11 @@ class Session:
             and self.state.mode in (Mode.ARMED, Mode.HOLDING)
         )
 
-    def opened(self, now: float) -> None:
+    def opened(self, now: float) -> list[Event]:
         """The port is open: wait for the board, silently."""
         self.reader = FrameReader()
         self._forget(Phase.WAITING, now)
+        return [Opened()]
 
     def closed(self, reason: str, now: float) -> list[Event]:
         """The port is gone."""

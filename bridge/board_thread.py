@@ -1,0 +1,116 @@
+"""The fake board in real time: its brain, its servos and its line, in one thread."""
+
+import select
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from bridge.board import Board
+from bridge.board_modes import BoardSettings
+from bridge.calibration import COUNTS_PER_US, Calibration
+from bridge.fake_line import FakeLine
+from bridge.messages import ResetCause
+from bridge.servo import Servos
+from bridge.servo_config import BoardConfig
+from manipulator.arrays import Array
+
+STEP = 0.01
+
+
+@dataclass(frozen=True)
+class FakeMachine:
+    """Board and servos of one machine, before they are put on a line."""
+
+    board: Board
+    servos: Servos
+    calibration: Calibration
+
+    @classmethod
+    def from_config(cls, config: BoardConfig, boot_s: float, hysteresis: float) -> 'FakeMachine':
+        """Unpowered at park; hysteresis in rad (or m)."""
+        calibration = Calibration.from_config(config.servos)
+        dead_band = COUNTS_PER_US * config.simulation.dead_band_us / np.abs(calibration.scale)
+        servos = Servos.at_rest(calibration.park, calibration.speed, dead_band, hysteresis)
+        settings = BoardSettings.from_config(config, boot_s)
+        return cls(Board(settings, round(1000 * config.simulation.battery_v)), servos, calibration)
+
+    def step(self, dt: float) -> None:
+        """Board first, then the servos that it drives."""
+        self.board.step(dt)
+        pulses = [np.nan if pulse is None else pulse for pulse in self.board.pulses]
+        self.servos.step(self.calibration.positions(pulses), dt)
+
+
+class BoardThread(threading.Thread):
+    """Steps the machine at 100 Hz and whenever bytes arrive.
+
+    Board and line are touched in this thread alone; `do` hands a wish into it. on_positions
+    hears the true joint positions 50 times a second, in this thread.
+    """
+
+    def __init__(
+        self, machine: FakeMachine, line: FakeLine, on_positions: Callable[[Array], None]
+    ) -> None:
+        super().__init__(name='board', daemon=True)
+        self.is_mute = False
+        self._machine = machine
+        self._line: FakeLine | None = line
+        self._on_positions = on_positions
+        self._wishes: deque[Callable[[], None]] = deque()
+        self._is_stopping = False
+
+    def do(self, wish: Callable[[], None]) -> None:
+        """Has it done before the next step."""
+        self._wishes.append(wish)
+
+    def plug(self, line: FakeLine | None) -> None:
+        """Pulls the plug, and puts it into another line if there is one; a wish."""
+        if self._line is not None:
+            self._line.close()
+        self._line = line
+        if line is not None:
+            self._machine.board.reset(ResetCause.POWER_ON)
+
+    def close(self) -> None:
+        """Ends the thread and removes the port."""
+        self._is_stopping = True
+        self.join()
+        self.plug(None)
+
+    def run(self) -> None:
+        """The thread's work, until `close`."""
+        start = last = time.monotonic()
+        steps = 0
+        while not self._is_stopping:
+            has_input = self._wait(start + steps * STEP)
+            while self._wishes:
+                self._wishes.popleft()()
+            now = time.monotonic()
+            self._machine.step(now - last)
+            last = now
+            self._exchange(has_input)
+            if now >= start + steps * STEP:
+                # Steps that were missed are not made up for.
+                steps = int((now - start) / STEP) + 1
+                if steps % 2:
+                    self._on_positions(self._machine.servos.positions)
+
+    def _wait(self, until: float) -> bool:
+        """Whether the line has something to read."""
+        lines = [] if self._line is None else [self._line]
+        timeout = max(until - time.monotonic(), 0.0)
+        return bool(select.select(lines, [], [], timeout)[0])
+
+    def _exchange(self, has_input: bool) -> None:
+        output = self._machine.board.take_output()
+        if self._line is None:
+            return
+        if has_input:
+            self._machine.board.feed(self._line.read())
+            output += self._machine.board.take_output()
+        if output and not self.is_mute:
+            self._line.write(output)

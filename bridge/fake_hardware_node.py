@@ -1,0 +1,106 @@
+"""The fake board as a process: a pty that the shipped serial_bridge opens like any port."""
+
+import math
+from pathlib import Path
+
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
+from std_srvs.srv import SetBool, Trigger
+
+from bridge.board_thread import BoardThread, FakeMachine
+from bridge.fake_line import FakeLine
+from bridge.messages import ResetCause
+from bridge.servo_config import BoardConfig, SimulationConfig
+from hexarm import machines
+from manipulator.arrays import Array
+from manipulator.errors import InvalidInput, LinkError
+from manipulator.nodes.parameters import declare
+from manipulator.nodes.qos import MEASUREMENT
+
+PRESETS = {'normal': 1.0, 'bad_day': 6.0}
+"""How many times the machine file's hysteresis: a worn RoboCake has 3° instead of 0.5°."""
+
+
+class FakeHardware(Node):
+    """`fake_hardware`; its topics, services and parameters stand in docs/interfaces.md."""
+
+    def __init__(self) -> None:
+        super().__init__('fake_hardware')
+        name = declare(self, 'machine', 'robocake', 'name or path of the machine file')
+        link = declare(self, 'link', '/tmp/hexarm_board', 'where the port appears: a symlink')
+        boot_s = declare(
+            self,
+            'boot_s',
+            0.3,
+            'silence after a reset, in seconds; a Mega: 1 to 2',
+            (0.0, 10.0),
+        )
+        preset = declare(self, 'preset', 'normal', "'normal' or 'bad_day' (six times the play)")
+        own = declare(
+            self,
+            'hysteresis_deg',
+            -1.0,
+            'play of each servo in degrees; -1: as machine file and preset say',
+            (-1.0, 45.0),
+        )
+        if preset not in PRESETS:
+            raise InvalidInput(f'parameter preset: {preset!r} is not one of {list(PRESETS)}')
+        config = BoardConfig.from_machine(machines.read(name), str(machines.find(name)))
+        hysteresis = math.radians(own) if own >= 0 else PRESETS[preset] * config.hysteresis
+        machine = FakeMachine.from_config(config, boot_s, hysteresis)
+        self._names = machine.calibration.names
+        self._path = Path(link)
+        self._board = machine.board
+        self._add_battery(config.simulation)
+        self._true_joints = self.create_publisher(JointState, 'true_joint_states', MEASUREMENT)
+        self.create_service(Trigger, '~/reset', self._on_reset)
+        self.create_service(SetBool, '~/plug', self._on_plug)
+        self.create_service(SetBool, '~/mute', self._on_mute)
+        self._thread = BoardThread(machine, FakeLine(self._path), self._publish)
+        self._thread.start()
+        self.get_logger().info(f'board on {self._path}')
+
+    def close(self) -> None:
+        """Removes the port."""
+        self._thread.close()
+
+    def _add_battery(self, simulation: SimulationConfig) -> None:
+        description = 'battery voltage that the board measures, in volts'
+        declare(self, 'battery_v', simulation.battery_v, description, (0.0, 60.0), False)
+        self.add_on_set_parameters_callback(self._on_parameters)
+
+    def _on_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        for parameter in parameters:
+            if parameter.name == 'battery_v':
+                self._board.battery_mv = round(1000 * float(parameter.value))
+        return SetParametersResult(successful=True)
+
+    def _publish(self, positions: Array) -> None:
+        message = JointState()
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.name = list(self._names)
+        message.position = positions.tolist()
+        message.velocity = message.effort = [0.0] * len(self._names)
+        self._true_joints.publish(message)
+
+    def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._thread.do(lambda: self._board.reset(ResetCause.WATCHDOG))
+        response.success, response.message = True, 'the board starts again'
+        return response
+
+    def _on_plug(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        try:
+            line = FakeLine(self._path) if request.data else None
+        except LinkError as error:
+            response.success, response.message = False, str(error)
+            return response
+        self._thread.do(lambda: self._thread.plug(line))
+        response.success, response.message = True, 'plugged in' if line else 'unplugged'
+        return response
+
+    def _on_mute(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        self._thread.is_mute = request.data
+        response.success, response.message = True, 'mute' if request.data else 'talks again'
+        return response

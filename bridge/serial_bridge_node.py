@@ -1,0 +1,232 @@
+"""The node between the graph and the board: joint commands down, joint states up."""
+
+import time
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as NoAnswer
+
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool
+from std_srvs.srv import SetBool, Trigger
+
+from bridge.calibration import Calibration
+from bridge.command_gate import CommandGate
+from bridge.events import (
+    CommandFailed,
+    Disconnected,
+    Event,
+    FaultReported,
+    Incompatible,
+    StateReceived,
+)
+from bridge.latencies import Latencies, percentiles_ms
+from bridge.link_monitor import LinkMonitor
+from bridge.link_thread import LinkThread, Ticket
+from bridge.machine_status import MachineStatus
+from bridge.messages import Arm, Clear, Command, Disarm, Stop
+from bridge.serial_port import SerialPort
+from bridge.servo_config import BoardConfig
+from bridge.session import Session
+from hexarm import machines
+from manipulator.errors import ManipulatorError, Refused
+from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
+from manipulator.nodes.parameters import declare
+from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
+
+LEVELS = (OK, WARN, ERROR)
+ANSWER_WITHIN = 1.0
+SAY_AGAIN_AFTER = 2.0
+
+
+class SerialBridge(Node):
+    """`serial_bridge`; its topics, services and parameters stand in docs/interfaces.md."""
+
+    def __init__(self) -> None:
+        super().__init__('serial_bridge')
+        machine = declare(self, 'machine', 'robocake', 'name or path of the machine file')
+        self._port = declare(
+            self, 'port', '/dev/ttyACM0', 'serial port of the board; /dev/serial/by-id/… is best'
+        )
+        baud = declare(
+            self, 'baud', 0, 'bits per second; 0: the machine file says', (0, 4_000_000)
+        )
+        config = BoardConfig.from_machine(machines.read(machine), str(machines.find(machine)))
+        self._baud = baud or config.link.baud
+        self._calibration = Calibration.from_config(config.servos)
+        self._gate = CommandGate(self._calibration, 1e-3 * config.link.setpoint_deadline_ms)
+        self._session = Session(len(self._calibration.names))
+        self._monitor = LinkMonitor(self._session, self._calibration)
+        # Receipt times are monotonic, but read like the system's clock at the start.
+        self._clock_start = time.time() - time.monotonic()
+        self._command_at: float | None = None
+        self._receipt_to_frame, self._setpoint_to_frame = Latencies(), Latencies()
+        self._said: tuple[MachineStatus, dict[str, object]] | None = None
+        self._make_interfaces()
+        self._link = LinkThread(
+            lambda: SerialPort(self._port, self._baud),
+            self._session,
+            self._on_event,
+            self._on_written,
+        )
+        self._link.start()
+
+    def close(self) -> None:
+        """Gives the port back; the board's deadline does what the machine file says."""
+        self._link.close()
+
+    def _make_interfaces(self) -> None:
+        self._joint_states = self.create_publisher(JointState, 'joint_states', MEASUREMENT)
+        self._machine_state = self.create_publisher(DiagnosticStatus, 'machine_state', LATCHED)
+        self.create_subscription(JointState, 'joint_command', self._on_command, COMMAND)
+        self.create_subscription(Bool, 'emergency_stop', self._on_emergency_stop, COMMAND)
+        self.create_service(SetBool, '~/enable', self._on_enable)
+        self.create_service(Trigger, '~/clear_fault', self._on_clear_fault)
+        self._diagnostics = Diagnostics(self, self._report, ('joint_command',))
+
+    # From the graph (the executor's thread)
+
+    def _on_command(self, message: JointState) -> None:
+        now = time.monotonic()
+        self._command_at = now
+        stamp = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
+        if stamp == 0:
+            self.get_logger().info('joint_command without a stamp: taken as now', once=True)
+        try:
+            self._refuse_unless_enabled()
+            joints = self._monitor.joints
+            setpoint = self._gate.admit(
+                message.name,
+                message.position,
+                stamp or None,
+                now + self._clock_start,
+                None if joints is None else joints.positions,
+            )
+        except ManipulatorError as error:
+            self._monitor.refuse(str(error))
+            self._warn(f'joint_command refused: {error}')
+            return
+        self._link.put_setpoint(Ticket(setpoint, now, stamp or None))
+
+    def _refuse_unless_enabled(self) -> None:
+        if not (self._monitor.is_enabled_here and self._session.accepts_setpoints):
+            self._gate.restart()
+            current = self._monitor.status
+            raise Refused(f'{current.word}{f" ({current.reason})" if current.reason else ""}')
+
+    def _on_emergency_stop(self, message: Bool) -> None:
+        if message.data:
+            self._link.request(Stop()).add_done_callback(self._say_stop_failed)
+
+    def _say_stop_failed(self, done: 'Future[None]') -> None:
+        if done.exception() is not None:
+            self.get_logger().error(f'STOP did not reach the board: {done.exception()}')
+
+    def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        if request.data:
+            park = self._calibration.counts(self._calibration.park)
+            done = 'arming: the servos go to park one by one'
+            response.success, response.message = self._ask(Arm(park), done)
+        else:
+            response.success, response.message = self._ask(Disarm(), 'disarmed: no more pulses')
+        return response
+
+    def _on_clear_fault(
+        self, request: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
+        done = 'cleared: nothing moves until a new command'
+        response.success, response.message = self._ask(Clear(), done)
+        return response
+
+    def _ask(self, command: Command, done: str) -> tuple[bool, str]:
+        """Whether the board obeyed, and what to say."""
+        try:
+            self._link.request(command).result(ANSWER_WITHIN)
+        except Refused as error:
+            trouble = self._monitor.trouble
+            return False, f'{error}{f": {trouble}" if trouble else ""}'
+        except NoAnswer:
+            return False, f'no answer within {ANSWER_WITHIN:g} s'
+        self._gate.restart()
+        return True, done
+
+    # From the board (the link's thread)
+
+    def _on_event(self, event: Event) -> None:
+        now = time.monotonic()
+        self._monitor.note(event, now)
+        match event:
+            case StateReceived():
+                self._publish_joints()
+            case FaultReported() | CommandFailed():
+                self._warn(self._monitor.last_refusal)
+            case Disconnected(reason) | Incompatible(reason):
+                self._warn(reason)
+        self._publish_status()
+
+    def _on_written(self, ticket: Ticket, now: float) -> None:
+        self._receipt_to_frame.add(now - ticket.received)
+        if ticket.stamped is not None and not self._gate.has_notable_offset:
+            self._setpoint_to_frame.add(time.time() - ticket.stamped)
+
+    def _publish_joints(self) -> None:
+        joints = self._monitor.joints
+        if joints is None or not any(joints.is_known):
+            return
+        known = [i for i, is_known in enumerate(joints.is_known) if is_known]
+        message = JointState()
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.name = [self._calibration.names[i] for i in known]
+        message.position = joints.positions[known].tolist()
+        message.velocity = joints.velocities[known].tolist()
+        message.effort = [0.0] * len(known)
+        self._joint_states.publish(message)
+
+    def _publish_status(self) -> None:
+        """Publishes the machine's state when it has changed."""
+        current = self._monitor.status
+        values: dict[str, object] = {
+            'reason': current.reason,
+            'port': self._port,
+            'board': self._monitor.board,
+            'joints_unknown': ' '.join(self._monitor.unknown_joints),
+        }
+        if (current, values) == self._said:
+            return
+        if self._said is None or self._said[0] != current:
+            reason = f' ({current.reason})' if current.reason else ''
+            self.get_logger().info(f'machine {current.word}{reason}')
+        self._said = current, values
+        name = f'{self.get_name()}: machine state'
+        self._machine_state.publish(status(LEVELS[current.level], name, current.word, values))
+
+    def _warn(self, text: str) -> None:
+        self.get_logger().warning(text, throttle_duration_sec=SAY_AGAIN_AFTER)
+
+    def _report(self) -> Report:
+        if not self._link.is_alive():
+            raise RuntimeError('the thread of the serial link has died')
+        current, state, reader = self._monitor.status, self._session.state, self._session.reader
+        age = time.monotonic() - self._command_at if self._command_at is not None else None
+        values: dict[str, object] = {
+            'link': self._session.phase.value,
+            'port': self._port,
+            **percentiles_ms('round_trip', self._session.round_trips.seconds),
+            **self._setpoint_to_frame.report('setpoint_to_frame'),
+            **self._receipt_to_frame.report('receipt_to_frame'),
+            'frames_sent': self._session.setpoints_sent,
+            'last_command_age_s': 'none yet' if age is None else age,
+            'refusals': self._monitor.refusals,
+            'last_refusal': self._monitor.last_refusal,
+            'bad_frames_received': reader.bad_frames + reader.overruns,
+        }
+        if self._gate.has_notable_offset:
+            values['joint_command_clock_offset_s'] = self._gate.clock_offset
+        if state is not None:
+            values |= {
+                'battery_v': 1e-3 * state.battery_mv,
+                'board_bad_frames': state.bad_frames,
+                'board_overruns': state.overruns,
+                'board_refusals': state.refused,
+            }
+        return LEVELS[current.level], current.reason or current.word, values
