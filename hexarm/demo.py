@@ -25,6 +25,7 @@ MACHINE = 'robocake'
 CENTRE = np.array([0.0, 0.0, 0.045])
 RADIUS, TILT, PERIOD, TURNS = 0.008, math.radians(4.0), 4.0, 2
 STREAM_PERIOD = 0.02
+PAUSE = 0.4
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -73,6 +74,7 @@ def tour(client: 'Client') -> Observation:
         say(text)
         recorder.line_to(goal)
         client.go_to(goal)
+        client.spin(PAUSE)
     try:
         say('a goal out of reach: x = 40 mm')
         client.go_to(Pose.from_xyz_rpy((0.04, 0.0, 0.045)))
@@ -119,7 +121,7 @@ def report(observation: Observation, picture: Path) -> None:
     result = measure(observation, load(MACHINE).kinematics)
     print()
     for name, value in result.rows():
-        print(f'  {name:<42} {value}')
+        print(f'  {name:<46} {value}')
     draw(result, picture)
     print(f'\nThe picture is in {picture}.')
 

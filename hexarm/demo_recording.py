@@ -48,7 +48,7 @@ class Recorder:
             corners=tuple(self._corners),
             curve=self._curve,
             bridge=self._values('serial_bridge'),
-            goals_refused=int(self._values('trajectory').get('goals refused', 0)),
+            goals_refused=int(self._values('trajectory').get('goals_refused', 0)),
         )
 
     def _values(self, node: str) -> dict[str, str]:

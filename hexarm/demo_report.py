@@ -51,12 +51,9 @@ class Result:
         yield 'contour error rms, max', f'{_rms(contour):.3f} mm, {contour.max():.3f} mm'
         yield 'time lag on the circle', f'{self.lag * 1e3:.0f} ms'
         yield 'orientation error rms, max', f'{_rms(turn):.3f}°, {turn.max():.3f}°'
-        for text, key in (
-            ('setpoint to frame p50', 'setpoint to frame p50 (ms)'),
-            ('setpoint to frame p99', 'setpoint to frame p99 (ms)'),
-        ):
-            yield text, f'{bridge.get(key, "?")} ms'
-        yield 'frames sent', bridge.get('frames sent', '?')
+        p50, p99 = (bridge[f'setpoint_to_frame_{p}_ms'] for p in ('p50', 'p99'))
+        yield 'setpoint published to frame written p50, p99', f'{p50} ms, {p99} ms'
+        yield 'frames sent', bridge['frames_sent']
         yield 'goals refused (one was out of reach)', str(self.observation.goals_refused)
 
 

@@ -19,11 +19,12 @@ PR_SET_PDEATHSIG = 1
 
 @dataclass(frozen=True)
 class Executable:
-    """One node as a process: its module and entry, and its own parameters."""
+    """One node as a process: its module and entry, its own parameters, the file it waits for."""
 
     module: str
     entry: str
     parameters: dict[str, str] = field(default_factory=dict)
+    needs: Path | None = None
 
 
 def machine_graph(kind: str, machine: str, port: str, link: Path) -> list[Executable]:
@@ -31,11 +32,11 @@ def machine_graph(kind: str, machine: str, port: str, link: Path) -> list[Execut
     room = {'hexapod': 'hexapod_control', 'arm': 'arm_control'}[kind]
     common = {'machine': machine}
     nodes = [Executable(room, entry, common) for entry in ('ik', 'pose', 'trajectory')]
-    if port == 'fake':
-        nodes.append(Executable('bridge', 'fake_hardware', common | {'link': str(link)}))
-        port = str(link)
-    nodes.append(Executable('bridge', 'serial_bridge', common | {'port': port}))
-    return nodes
+    if port != 'fake':
+        return [Executable('bridge', 'serial_bridge', common | {'port': port}), *nodes]
+    fake = Executable('bridge', 'fake_hardware', common | {'link': str(link)})
+    bridge = Executable('bridge', 'serial_bridge', common | {'port': str(link)}, needs=link)
+    return [fake, *nodes, bridge]
 
 
 class Graph:
@@ -49,6 +50,7 @@ class Graph:
     def __enter__(self) -> 'Graph':
         """Starts every node."""
         for node in self._nodes:
+            _wait_for(node.needs)
             self._processes[node.entry] = subprocess.Popen(
                 _command(node, self._namespace),
                 start_new_session=True,
@@ -59,14 +61,12 @@ class Graph:
         return self
 
     def __exit__(self, *exception: object) -> None:
-        """Stops every node: asked first, killed where asking does not help."""
-        for process in self._processes.values():
-            if process.poll() is None:
-                process.send_signal(signal.SIGTERM)
+        """Stops every node, the board last: asked first, killed where asking does not help."""
         deadline = time.monotonic() + PATIENCE
-        for process in self._processes.values():
+        for process in reversed(self._processes.values()):
+            process.terminate()
             try:
-                process.wait(max(0.0, deadline - time.monotonic()))
+                process.wait(max(0.1, deadline - time.monotonic()))
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
@@ -87,6 +87,12 @@ class Graph:
 def link_folder() -> 'tempfile.TemporaryDirectory[str]':
     """A private folder for the fake board's port."""
     return tempfile.TemporaryDirectory(prefix='hexarm-')
+
+
+def _wait_for(path: Path | None) -> None:
+    deadline = time.monotonic() + PATIENCE
+    while path is not None and not path.exists() and time.monotonic() < deadline:
+        time.sleep(0.01)
 
 
 def _command(node: Executable, namespace: str) -> list[str]:

@@ -3,10 +3,10 @@
 import argparse
 import sys
 
-from hexarm import demo, up
+from hexarm import demo, fk, ik, machine_list, up
 from manipulator.errors import ManipulatorError
 
-COMMANDS = (up, demo)
+COMMANDS = (up, demo, ik, fk, machine_list)
 
 
 def main(words: list[str] | None = None) -> int:

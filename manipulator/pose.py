@@ -24,11 +24,18 @@ class Pose:
     rotation: Array
 
     def __post_init__(self) -> None:
-        """Copies and freezes both arrays; raises InvalidInput on a wrong shape or on NaN, ∞."""
-        for name, tail in (('position', (3,)), ('rotation', (3, 3))):
-            array = frozen(getattr(self, name))
-            if array.shape[-len(tail) :] != tail:
-                raise InvalidInput(f'{name} has shape {array.shape}, needs (..., {tail})')
+        """Copies, freezes and stretches both arrays to the same leading axes.
+
+        Raises InvalidInput on shapes that do not fit and on NaN, ∞.
+        """
+        position, rotation = frozen(self.position), frozen(self.rotation)
+        if position.shape[-1:] != (3,):
+            raise InvalidInput(f'position has shape {position.shape}, needs (..., 3)')
+        if rotation.shape[-2:] != (3, 3):
+            raise InvalidInput(f'rotation has shape {rotation.shape}, needs (..., 3, 3)')
+        if position.shape[:-1] != rotation.shape[:-2]:
+            position, rotation = _stretched(position, rotation)
+        for name, array in (('position', position), ('rotation', rotation)):
             if not np.isfinite(array).all():
                 raise InvalidInput(f'{name} is not finite: {array.ravel()[:9].tolist()}')
             object.__setattr__(self, name, array)
@@ -102,3 +109,17 @@ class Pose:
         """The twist with which `moved` arrives at `target`; (..., 6)."""
         turn = so3.log(target.rotation @ np.swapaxes(self.rotation, -1, -2))
         return np.concatenate([target.position - self.position, turn], axis=-1)
+
+
+def _stretched(position: Array, rotation: Array) -> tuple[Array, Array]:
+    """Read-only copies with the leading axes that both broadcast to."""
+    try:
+        shape = np.broadcast_shapes(position.shape[:-1], rotation.shape[:-2])
+    except ValueError as error:
+        raise InvalidInput(
+            f'position of shape {position.shape} does not fit rotation of shape {rotation.shape}'
+        ) from error
+    return (
+        frozen(np.broadcast_to(position, (*shape, 3))),
+        frozen(np.broadcast_to(rotation, (*shape, 3, 3))),
+    )

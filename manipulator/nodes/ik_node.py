@@ -83,9 +83,9 @@ class IkNode(Node):
 
     def _report(self) -> Report:
         values = {
-            'age of last setpoint (s)': self._setpoint.age,
-            'setpoints refused': self._setpoint.refused,
-            'last refusal': self._setpoint.last_refusal,
+            'last_setpoint_age_s': self._setpoint.age,
+            'setpoints_refused': self._setpoint.refused,
+            'last_refusal': self._setpoint.last_refusal,
         }
         if self._setpoint.age > 1.0:
             return DiagnosticStatus.OK, 'no setpoints', values

@@ -18,7 +18,7 @@ from manipulator.nodes.qos import MEASUREMENT
 
 
 class PoseNode(Node):
-    """joint_states in, pose out; see docs/interfaces.md."""
+    """joint_states in, pose out while all joints are known; see docs/interfaces.md."""
 
     def __init__(self, load: Callable[[str], Machine], default_machine: str) -> None:
         super().__init__('pose')
@@ -31,7 +31,8 @@ class PoseNode(Node):
         self._diagnostics = Diagnostics(self, self._report, ('joint_states', 'pose'))
 
     def _on_joint_states(self, message: JointState) -> None:
-        if not message.name:
+        if not set(self._kinematics.joint_names) <= set(message.name):
+            self._solution = None
             return
         joints = joints_of(message, self._kinematics.joint_names)
         near, self._solution = self._solution, None
@@ -46,13 +47,13 @@ class PoseNode(Node):
 
     def _report(self) -> Report:
         values: dict[str, object] = {
-            'age of last joint state (s)': self._states.age,
-            'joint states refused': self._states.refused,
-            'last refusal': self._states.last_refusal,
+            'last_joint_state_age_s': self._states.age,
+            'joint_states_refused': self._states.refused,
+            'last_refusal': self._states.last_refusal,
         }
         if self._solution is None:
             return DiagnosticStatus.OK, 'no joint states', values
-        values['singularity margin'] = self._solution.sigma_min
-        values['residual (mm)'] = self._solution.residual * 1e3
+        values['singularity_margin'] = self._solution.sigma_min
+        values['residual_mm'] = self._solution.residual * 1e3
         values['iterations'] = self._solution.iterations
         return DiagnosticStatus.OK, 'running', values

@@ -44,6 +44,8 @@ class TrajectoryNode(Node):
         self._published: MotionStatus | None = None
         self._override = 1.0
         self._machine_state = ''
+        self._refusals = 0
+        self._last_refusal = ''
         self._jitter = Jitter(self._dt)
         self._connect()
         self._timer = self.create_timer(self._dt, self._tick)
@@ -84,6 +86,7 @@ class TrajectoryNode(Node):
         self._enabled_player().pursue(Goal(pose_of(message), seconds(message.header.stamp)))
 
     def _on_bad_goal(self, message: PoseStamped, error: ManipulatorError) -> None:
+        self._last_refusal = str(error)
         mode = self._status.mode
         self._set_status(MotionStatus(mode, 'refused', seconds(message.header.stamp), str(error)))
 
@@ -120,6 +123,8 @@ class TrajectoryNode(Node):
 
     def _log_refusal(self, new: MotionStatus) -> None:
         if new.result == 'refused':
+            self._refusals += 1
+            self._last_refusal = new.reason
             self.get_logger().warning(f'goal refused: {new.reason}', throttle_duration_sec=1.0)
 
     def _set_status(self, new: MotionStatus) -> None:
@@ -200,10 +205,10 @@ class TrajectoryNode(Node):
         values = {
             'mode': self._status.mode,
             'result': self._status.result,
-            'goals refused': self._goals.refused,
-            'last refusal': self._goals.last_refusal,
-            'age of last pose (s)': self._poses.age,
-            'tick jitter p50 (ms)': self._jitter.quantile(0.5) * 1e3,
-            'tick jitter p99 (ms)': self._jitter.quantile(0.99) * 1e3,
+            'goals_refused': self._goals.refused + self._refusals,
+            'last_refusal': self._last_refusal,
+            'last_pose_age_s': self._poses.age,
+            'tick_jitter_p50_ms': self._jitter.quantile(0.5) * 1e3,
+            'tick_jitter_p99_ms': self._jitter.quantile(0.99) * 1e3,
         }
         return OK, self._status.result, values

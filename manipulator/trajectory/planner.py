@@ -21,8 +21,8 @@ def check_goal(machine: Machine, goal: Pose, near: Array) -> None:
 def plan_to(machine: Machine, start: MotionState, goal: Pose, near: Array, dt: float) -> Plan:
     """A move from any state of motion to rest at `goal` that keeps all limits at every tick dt.
 
-    From rest it is straight. near: the joints at the start. Raises Unreachable when the goal itself is out of reach, and
-    Refused when the way there is, or cannot be slowed down enough.
+    From rest it is straight. near: the joints at the start. Raises Unreachable when the goal
+    itself is out of reach, and Refused when the way there is, or cannot be slowed down enough.
     """
     check_goal(machine, goal, near)
     limits, slowness, quantity = machine.motion.for_plans, 1.0, ''

@@ -1,0 +1,55 @@
+"""How subcommands take numbers and answer: a table for people, JSON for programs, 2 for no."""
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from manipulator.errors import ManipulatorError
+
+REFUSED = 2
+
+Lines = list[str]
+Answer = tuple[Mapping[str, Any], Lines]
+"""What a program reads, and what a person does."""
+
+
+def add_machine(parser: argparse.ArgumentParser) -> None:
+    """The arguments MACHINE and --json; negative numbers may have an exponent."""
+    parser.add_argument('machine', metavar='MACHINE', help='a shipped name or the path of a file')
+    parser.add_argument('--json', action='store_true', help='answer for programs')
+    parser._negative_number_matcher = re.compile(r'-(\d|\.\d|inf|nan)')
+
+
+def add_pose(parser: argparse.ArgumentParser) -> None:
+    """The arguments --xyz and --rpy."""
+    parser.add_argument(
+        '--xyz', nargs=3, type=float, required=True, metavar=('X', 'Y', 'Z'), help='metres'
+    )
+    parser.add_argument(
+        '--rpy', nargs=3, type=float, default=(0.0, 0.0, 0.0), metavar=('R', 'P', 'Y'),
+        help='roll, pitch, yaw about x, y, z in radians (default 0 0 0)',
+    )  # fmt: skip
+
+
+def answering(answer: Callable[[argparse.Namespace], Answer]) -> Callable[..., int]:
+    """A subcommand's `run`: prints the answer, or why there is none."""
+
+    def run(arguments: argparse.Namespace) -> int:
+        try:
+            for_programs, for_people = answer(arguments)
+        except ManipulatorError as error:
+            if arguments.json:
+                print(json.dumps({'error': str(error)}, ensure_ascii=False))
+            else:
+                print(f'hexarm: {error}', file=sys.stderr)
+            return REFUSED
+        if arguments.json:
+            print(json.dumps(for_programs, ensure_ascii=False))
+        else:
+            print('\n'.join(for_people))
+        return 0
+
+    return run
