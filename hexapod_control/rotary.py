@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hexapod_control.forward import ForwardByLengths
+from hexapod_control.forward import XYZXY, ForwardByLengths
 from hexapod_control.geometry import LEGS, RotaryGeometry
 from hexapod_control.leg_closure import TURN, LegClosure
 from hexapod_control.leg_jacobian import leg_jacobian, smallest_singular_value
-from manipulator.arrays import Array
+from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
 from manipulator.pose import Pose
@@ -34,6 +34,7 @@ class RotaryHexapod:
     closure: LegClosure = field(init=False)
     newton: ForwardByLengths = field(init=False)
     home_side: float = field(init=False)
+    tip_columns: tuple[Array, Array, Array] = field(init=False)
 
     def __post_init__(self) -> None:
         """Finds home and the sign of det J there."""
@@ -43,6 +44,9 @@ class RotaryHexapod:
         newton = ForwardByLengths(g.platform_points, self.characteristic_length)
         for name, value in (('home', home), ('closure', closure), ('newton', newton)):
             object.__setattr__(self, name, value)
+        cranks = (g.crank_centres, _scaled(g, g.tangents), _scaled(g, g.ups))
+        columns = tuple(frozen(points.T.take(XYZXY, axis=0)) for points in cranks)
+        object.__setattr__(self, 'tip_columns', columns)
         try:
             joints = self.inverse(home)
         except Unreachable as error:
@@ -90,13 +94,19 @@ class RotaryHexapod:
         angles = np.asarray(joints, dtype=np.float64)
         if angles.shape != (LEGS,):
             raise NoSolution(f'joints have shape {angles.shape}, a pose needs ({LEGS},)')
-        if not math.isfinite(angles.sum()):
+        if not all(map(math.isfinite, angles.tolist())):
             raise NoSolution(f'joints are not finite: {angles.tolist()}')
-        tips = self.crank_tips(angles)
+        centres, along, up = self.tip_columns
+        tips = centres + np.cos(angles) * along + np.sin(angles) * up
         lengths = self.geometry.rod_lengths
         if near is not None:
-            return self.newton.solve(tips, lengths, near)
-        return self.newton.solve(tips, lengths, self.home, self.home_side, self.trusted_margin)
+            return self.newton.solve_columns(tips, lengths, near, None, 0.0)
+        solution = self.newton.solve_columns(
+            tips, lengths, self.home, self.home_side, self.trusted_margin
+        )
+        if (self.tip_rates(solution.pose, angles) >= 0.0).any():
+            raise NoSolution('the pose found bends a leg the other way than at home')
+        return solution
 
     def crank_tips(self, joints: Array) -> Array:
         """Where crank meets rod, (..., 6, 3), base frame, metres."""
@@ -170,6 +180,11 @@ class RotaryHexapod:
             f'{1e3 * longest[leg, column]:.5g} mm)',
             int(leg) + 1,
         )
+
+
+def _scaled(geometry: RotaryGeometry, directions: Array) -> Array:
+    scaled: Array = geometry.crank_lengths[:, None] * directions
+    return scaled
 
 
 def _nearest(middle: Array, half: Array, near: Array) -> Array:

@@ -8,7 +8,7 @@ from manipulator.pose import Pose
 
 numbers = st.floats(-10, 10)
 poses = st.builds(
-    lambda xyz, rpy: Pose.from_xyz_rpy(xyz, rpy),
+    Pose.from_xyz_rpy,
     st.tuples(numbers, numbers, numbers),
     st.tuples(numbers, numbers, numbers),
 )

@@ -1,0 +1,107 @@
+"""The whole workspace: the poses that a machine reaches from home without leaving its limits.
+
+docs/kinematics.md, section 7. Works for every machine whose joints follow from its pose.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from manipulator import rotation as so3
+from manipulator.arrays import Mask
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+
+CHECKS_PER_LENGTH = 70
+CHECKS_PER_STEP = 12
+BURN_IN = 80
+THINNING = 8
+WALKERS = 1000
+BISECTIONS = 50
+
+
+def admits(machine: Machine, pose: Pose) -> Mask:
+    """Which of the poses (N,) close on home's branch and keep every limit."""
+    joints = machine.kinematics.inverse_or_nan(pose)
+    inside = np.asarray(np.isfinite(joints).all(axis=-1), dtype=np.bool_)
+    inside[inside] = machine.constraints.admits(pose[inside], joints[inside])
+    return inside
+
+
+def sample(
+    machine: Machine,
+    count: int,
+    generator: np.random.Generator,
+    characteristic_length: float = 0.07,
+) -> Pose:
+    """`count` poses spread evenly over the connected component of home.
+
+    Walkers set out from home and take random twists, rotations made lengths by
+    characteristic_length (m). A step is at most 12/70 of that length and is taken only if the
+    poses of its path, 1/70 apart, are all admitted: a walker can leave the component only through
+    a gap narrower than that. A path and its reverse are equally likely, so the walk's
+    limit is the even distribution. Poses of one walker are neighbours: take many poses.
+    """
+    home = machine.kinematics.home
+    walkers = min(count, WALKERS)
+    pose = Pose(np.tile(home.position, (walkers, 1)), np.tile(home.rotation, (walkers, 1, 1)))
+    rounds = -(-count // walkers)
+    found = []
+    for tick in range(BURN_IN + (rounds - 1) * THINNING + 1):
+        if tick >= BURN_IN and (tick - BURN_IN) % THINNING == 0:
+            found.append(pose)
+        pose = _walked(machine, pose, generator, characteristic_length)
+    return Pose(
+        np.concatenate([p.position for p in found])[:count],
+        np.concatenate([p.rotation for p in found])[:count],
+    )
+
+
+def axis_range(
+    machine: Machine, axis: int, characteristic_length: float = 0.07
+) -> tuple[float, float]:
+    """How far home moves along one axis alone: 0–2 are x, y, z in m, 3–5 about them in rad.
+
+    The lowest and highest offset before the first limit, in steps of a 70th of the
+    characteristic length, then by bisection.
+    """
+    step = characteristic_length / CHECKS_PER_LENGTH
+    if axis >= 3:
+        step /= characteristic_length
+    return -_travel(machine, axis, -step), _travel(machine, axis, step)
+
+
+def _walked(machine: Machine, pose: Pose, generator: np.random.Generator, length: float) -> Pose:
+    """Every walker after one step, or where it was when the step's path is not free."""
+    walkers = pose.position.shape[0]
+    twist = generator.standard_normal((walkers, 6))
+    twist /= np.sqrt((twist * twist).sum(axis=1, keepdims=True))
+    twist *= generator.uniform(0.0, CHECKS_PER_STEP / CHECKS_PER_LENGTH * length, (walkers, 1))
+    twist[:, 3:] /= length
+    free = np.arange(walkers)
+    for part in range(CHECKS_PER_STEP, 0, -1):
+        there = pose[free].moved(twist[free] * (part / CHECKS_PER_STEP))
+        free = free[admits(machine, there)]
+    position, rotation = pose.position.copy(), pose.rotation.copy()
+    moved = pose[free].moved(twist[free])
+    position[free], rotation[free] = moved.position, moved.rotation
+    return Pose(position, rotation)
+
+
+def _travel(machine: Machine, axis: int, step: float) -> float:
+    """The distance from home to the first limit, along `axis` in the direction of `step`."""
+    steps = np.arange(1, 100 * CHECKS_PER_LENGTH)
+    inside = admits(machine, _shifted(machine.kinematics.home, axis, step * steps))
+    last = int(np.argmin(inside))
+    low, high = last * step, (last + 1) * step
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        free = admits(machine, _shifted(machine.kinematics.home, axis, [middle]))[0]
+        low, high = (middle, high) if free else (low, middle)
+    return abs(low)
+
+
+def _shifted(home: Pose, axis: int, offsets: ArrayLike) -> Pose:
+    along = np.asarray(offsets, dtype=np.float64)
+    twists = np.zeros((along.size, 6))
+    twists[:, axis] = along
+    return Pose(home.position + twists[:, :3], so3.exp(twists[:, 3:]) @ home.rotation)

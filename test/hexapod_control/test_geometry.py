@@ -1,0 +1,92 @@
+import dataclasses
+
+import numpy as np
+import pytest
+
+from hexapod_control.geometry import HexagonConfig, JointsConfig
+from manipulator.config import build
+from manipulator.errors import ConfigError
+
+
+@pytest.fixture
+def hexagon(robocake_content):
+    return build(HexagonConfig, robocake_content['geometry'])
+
+
+@pytest.fixture
+def measured(hexagon):
+    """The same machine, written down by coordinates."""
+    g = hexagon.geometry()
+    return {
+        'crank_centres_mm': (g.crank_centres * 1e3).tolist(),
+        'crank_tangents': (g.tangents * 3).tolist(),
+        'platform_joints_mm': (g.platform_points * 1e3).tolist(),
+        'crank_length_mm': 17.5,
+        'rod_length_mm': [58.0] * 6,
+        'home_height_mm': 41.19,
+    }
+
+
+def test_first_and_second_leg_stand_where_the_paper_puts_them(hexagon):
+    g = hexagon.geometry()
+    np.testing.assert_allclose(g.crank_centres[0], [0.096492, -0.00579, 0.0], atol=1e-12)
+    np.testing.assert_allclose(g.platform_points[0], [0.069992, 0.030, 0.0], atol=1e-12)
+    turned = [
+        0.5 * 0.096492 - np.sqrt(0.75) * 0.00579,
+        np.sqrt(0.75) * 0.096492 + 0.5 * 0.00579,
+        0.0,
+    ]
+    np.testing.assert_allclose(g.crank_centres[1], turned, atol=1e-12)
+
+
+def test_odd_and_even_legs_mirror_each_other(hexagon):
+    g = hexagon.geometry()
+    for points in (g.crank_centres, g.platform_points):
+        # The mirror plane between legs 1 and 6 stands at −30°.
+        angle = -np.pi / 3
+        mirror = np.array([[np.cos(angle), np.sin(angle)], [np.sin(angle), -np.cos(angle)]])
+        np.testing.assert_allclose(points[0, :2] @ mirror, points[5, :2], atol=1e-12)
+
+
+def test_crank_planes_are_vertical_and_right_angled(hexagon):
+    g = hexagon.geometry()
+    frames = np.stack([g.tangents, g.ups, g.normals], axis=1)
+    np.testing.assert_allclose(
+        frames @ np.swapaxes(frames, 1, 2), np.broadcast_to(np.eye(3), (6, 3, 3)), atol=1e-12
+    )
+    np.testing.assert_allclose(g.ups, np.broadcast_to([0, 0, 1], (6, 3)), atol=1e-12)
+
+
+def test_coordinates_describe_the_same_machine_as_the_parameters(hexagon, measured):
+    a, b = hexagon.geometry(), build(JointsConfig, measured).geometry()
+    for field in dataclasses.fields(a):
+        np.testing.assert_allclose(getattr(a, field.name), getattr(b, field.name), atol=1e-12)
+
+
+def test_a_tilted_crank_plane_contains_its_tangent_and_leans_up(measured):
+    measured['crank_tangents'][0] = [0.0, 1.0, 0.5]
+    g = build(JointsConfig, measured).geometry()
+    assert g.ups[0] @ g.tangents[0] == pytest.approx(0.0, abs=1e-12)
+    assert g.ups[0, 2] > 0.8
+
+
+@pytest.mark.parametrize('tangent', [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+def test_a_tangent_that_spans_no_plane_names_its_leg(measured, tangent):
+    measured['crank_tangents'][3] = tangent
+    with pytest.raises(ConfigError, match='leg 4'):
+        build(JointsConfig, measured).geometry()
+
+
+def test_metres_in_a_millimetre_field_are_noticed(robocake_content):
+    robocake_content['geometry']['rod_length_mm'] = 0.058
+    with pytest.raises(ConfigError, match='another unit'):
+        build(HexagonConfig, robocake_content['geometry'])
+
+
+def test_lengths_are_one_number_or_six(robocake_content):
+    robocake_content['geometry']['rod_length_mm'] = [58.0, 58.1, 58.2, 58.3, 58.4, 58.5]
+    g = build(HexagonConfig, robocake_content['geometry']).geometry()
+    np.testing.assert_allclose(g.rod_lengths, np.linspace(0.058, 0.0585, 6), atol=1e-12)
+    robocake_content['geometry']['rod_length_mm'] = [58.0] * 5
+    with pytest.raises(ConfigError, match='5 entries, needs 6'):
+        build(HexagonConfig, robocake_content['geometry'])

@@ -1,0 +1,242 @@
+import numpy as np
+import pytest
+
+from hexapod_control.geometry import HexagonConfig, RotaryGeometry
+from hexapod_control.rotary import RotaryHexapod
+from hexapod_control.workspace import sample
+from manipulator.config import build
+from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
+from manipulator.pose import Pose
+
+
+@pytest.fixture(scope='module')
+def hexapod(robocake):
+    return robocake.kinematics
+
+
+@pytest.fixture(scope='module')
+def many(robocake):
+    return sample(robocake, 10_000, np.random.default_rng(1))
+
+
+def rod_lengths(hexapod, pose, joints):
+    """By definition: crank tips from rotation of the crank, platform joints from the pose."""
+    g = hexapod.geometry
+    turned = np.cos(joints)[..., None] * g.tangents + np.sin(joints)[..., None] * g.ups
+    tips = g.crank_centres + g.crank_lengths[:, None] * turned
+    ends = np.einsum('...ij,kj->...ki', pose.rotation, g.platform_points)
+    return np.linalg.norm(ends + pose.position[..., None, :] - tips, axis=-1)
+
+
+def moved_by(dx=0.0, dy=0.0, dz=0.0, roll=0.0, pitch=0.0, yaw=0.0):
+    return Pose.from_xyz_rpy([dx, dy, 0.04119 + dz], [roll, pitch, yaw])
+
+
+def test_home_angles_are_those_of_the_paper(hexapod):
+    degrees = np.degrees(hexapod.inverse(hexapod.home))
+    np.testing.assert_allclose(degrees, 120.0045, atol=5e-5)
+
+
+def test_the_other_elbow_at_home(hexapod):
+    degrees = np.degrees(hexapod.inverse(hexapod.home, near=np.zeros(6)))
+    np.testing.assert_allclose(degrees, -21.9792, atol=5e-5)
+
+
+def test_rods_keep_their_length_over_the_whole_workspace(hexapod, many):
+    lengths = rod_lengths(hexapod, many, hexapod.inverse(many))
+    assert np.abs(lengths - 0.058).max() < 1e-12
+
+
+def test_rods_keep_their_length_on_the_other_elbow(hexapod, many):
+    joints = hexapod.inverse(many[:500], near=np.zeros(6))
+    assert np.abs(rod_lengths(hexapod, many[:500], joints) - 0.058).max() < 1e-12
+    assert (hexapod.tip_rates(many[:500], joints) >= -1e-9).any()
+
+
+def test_forward_from_home_returns_the_pose_in_six_iterations(hexapod, many):
+    joints = hexapod.inverse(many)
+    solutions = [hexapod.forward(q) for q in joints]
+    assert max(s.iterations for s in solutions) <= 6
+    found = Pose(
+        np.stack([s.pose.position for s in solutions]),
+        np.stack([s.pose.rotation for s in solutions]),
+    )
+    error = np.abs(many.twist_to(found))
+    assert error[:, :3].max() < 1e-9
+    assert error[:, 3:].max() < 1e-8
+
+
+def test_each_crank_may_be_near_another_elbow_and_another_turn(hexapod):
+    pose = moved_by(0.003, -0.002, 0.004, 0.03)
+    elbow_out = hexapod.inverse(pose)
+    elbow_in = hexapod.inverse(pose, np.zeros(6))
+    wanted = np.where([True, False] * 3, elbow_out + 2 * np.pi, elbow_in - 4 * np.pi)
+    np.testing.assert_allclose(hexapod.inverse(pose, wanted + 0.1), wanted, atol=1e-12)
+
+
+def test_near_may_differ_from_pose_to_pose(hexapod):
+    poses = Pose(np.tile(hexapod.home.position, (2, 1)), np.tile(np.eye(3), (2, 1, 1)))
+    joints = hexapod.inverse(poses, np.array([np.full(6, 2.0), np.zeros(6)]))
+    np.testing.assert_allclose(np.degrees(joints[:, 0]), [120.0045, -21.9792], atol=5e-5)
+
+
+def test_angles_are_continuous_where_a_joint_passes_over_the_crank_axis(robocake_content):
+    content = {**robocake_content['geometry'], 'crank_shift_mm': 0.0, 'joint_shift_mm': 0.0}
+    geometry = build(HexagonConfig, content | {'home_height_mm': 50.0}).geometry()
+    machine = RotaryHexapod(geometry, 0.07, 0.3, np.radians(120.0))
+    poses = Pose.from_xyz_rpy([[0.0, y, 0.05] for y in np.linspace(-0.01, 0.01, 2001)])
+    joints = machine.inverse(poses)
+    gap = poses.transform(geometry.platform_points)[:, 0] - geometry.crank_centres[0]
+    across = gap @ geometry.tangents[0]
+    assert across[0] * across[-1] < 0
+    assert np.abs(np.diff(joints, axis=0)).max() < 1e-3
+    assert np.abs(rod_lengths(machine, poses, joints) - 0.058).max() < 1e-12
+
+
+@pytest.mark.parametrize('centre', [-2.0, 0.0, 2.0, 9.0])
+def test_angles_stay_within_half_a_turn_of_the_crank_centre(hexapod, many, centre):
+    other = RotaryHexapod(hexapod.geometry, 0.07, 0.3, centre)
+    joints = other.inverse(many)
+    assert np.abs(joints - centre).max() <= np.pi + 1e-12
+    turns = (joints - hexapod.inverse(many)) / (2 * np.pi)
+    np.testing.assert_allclose(turns, np.rint(turns), atol=1e-12)
+
+
+def test_many_chunks_give_what_one_gives(hexapod, many):
+    twice = Pose(np.concatenate([many.position] * 2), np.concatenate([many.rotation] * 2))
+    joints = hexapod.inverse(twice)
+    np.testing.assert_array_equal(joints[:10_000], joints[10_000:])
+    np.testing.assert_allclose(joints[9000], hexapod.inverse(many[9000]), rtol=1e-13)
+
+
+@pytest.mark.parametrize('xyz', [(0.0, 0.0, 0.060), (0.017, 0.0, 0.04119), (0.0, -0.02, 0.04)])
+def test_unreachable_pose_says_which_rod_is_short_and_by_how_much(hexapod, xyz):
+    with pytest.raises(Unreachable, match=r'leg \d: rod too short by') as caught:
+        hexapod.inverse(Pose.from_xyz_rpy(xyz))
+    miss = float(str(caught.value).split(' by ')[1].split(' mm')[0])
+    g, leg = hexapod.geometry, caught.value.leg - 1
+    angles = np.linspace(-np.pi, np.pi, 100_001)
+    tips = g.crank_centres[leg] + g.crank_lengths[leg] * (
+        np.cos(angles)[:, None] * g.tangents[leg] + np.sin(angles)[:, None] * g.ups[leg]
+    )
+    gap = np.linalg.norm(g.platform_points[leg] + xyz - tips, axis=1).min()
+    assert miss == pytest.approx(1e3 * (gap - g.rod_lengths[leg]), rel=0.01)
+
+
+def test_a_rod_too_long_is_named_as_such(hexapod):
+    g = hexapod.geometry
+    inside = Pose.from_xyz_rpy(g.crank_centres[2] - g.platform_points[2] + [0, 0, 1e-3])
+    with pytest.raises(Unreachable, match='leg 3: rod too long by'):
+        hexapod.inverse(inside)
+
+
+def test_near_that_is_not_finite_is_refused(hexapod):
+    with pytest.raises(InvalidInput, match='near'):
+        hexapod.inverse(hexapod.home, np.array([np.nan] + [2.0] * 5))
+
+
+def test_a_model_that_does_not_close_names_leg_and_lengths(hexapod):
+    g = hexapod.geometry
+    rods = [0.058] * 3 + [0.030] + [0.058] * 2
+    short = RotaryGeometry(
+        g.crank_centres, g.tangents, g.platform_points, g.crank_lengths, rods, 0.04119
+    )
+    with pytest.raises(ConfigError, match=r'leg 4: rod too short by .* \(30 mm, needs'):
+        RotaryHexapod(short, 0.07, 0.3, 2.0)
+
+
+def test_crank_rates_are_how_angles_follow_the_pose(hexapod, many):
+    poses, step = many[:200], 1e-7
+    joints = hexapod.inverse(poses)
+    rates = hexapod.crank_rates(poses, joints)
+    for axis, twist in enumerate(np.eye(6) * step):
+        ahead, behind = (hexapod.inverse(poses.moved(t)) for t in (twist, -twist))
+        slope = (ahead - behind) / (2 * step)
+        np.testing.assert_allclose(rates[..., axis], slope, rtol=1e-4, atol=1e-3)
+
+
+def test_leverage_vanishes_where_crank_and_rod_come_into_line(hexapod):
+    leverage = []
+    for dx in (0.0, 0.014, 0.0156, 0.015627):
+        pose = moved_by(dx)
+        leverage.append(hexapod.crank_leverage(pose, hexapod.inverse(pose)).min())
+    assert leverage == sorted(leverage, reverse=True)
+    assert leverage[0] > 0.5
+    assert leverage[-1] < 0.01
+
+
+def test_crank_and_rod_in_line_have_no_rates(hexapod):
+    g = hexapod.geometry
+    pose = hexapod.home
+    rod = pose.transform(g.platform_points)[0] - g.crank_centres[0]
+    joints = hexapod.inverse(pose).copy()
+    joints[0] = np.arctan2(rod @ g.ups[0], rod @ g.tangents[0])
+    with pytest.raises(NoSolution, match='in line'):
+        hexapod.crank_rates(pose, joints)
+
+
+def singular_pose(hexapod):
+    """The height at which det J vanishes on the way down from home, by bisection."""
+
+    def side(height):
+        pose = Pose.from_xyz_rpy([0.0, 0.0, height])
+        joints = hexapod.inverse(pose)
+        return np.linalg.det(hexapod.leg_jacobian(pose, joints)) * hexapod.home_side, pose, joints
+
+    low, high = 0.005, 0.030
+    assert side(low)[0] < 0 < side(high)[0]
+    for _ in range(80):
+        middle = (low + high) / 2
+        low, high = (low, middle) if side(middle)[0] > 0 else (middle, high)
+    return side(low)[1:]
+
+
+def test_jacobian_refuses_a_forward_singularity(hexapod):
+    pose, joints = singular_pose(hexapod)
+    assert hexapod.sigma_min(pose, joints) < 1e-9
+    with pytest.raises(NoSolution, match='singularity'):
+        hexapod.jacobian(pose, joints)
+
+
+def test_cold_start_refuses_what_lies_below_the_trusted_margin(hexapod):
+    pose = moved_by(roll=0.345)
+    joints = hexapod.inverse(pose)
+    assert hexapod.sigma_min(pose, joints) < 0.3
+    with pytest.raises(NoSolution, match='margin'):
+        hexapod.forward(joints)
+    warm = hexapod.forward(joints, moved_by(roll=0.344))
+    assert np.abs(pose.twist_to(warm.pose)).max() < 1e-8
+
+
+def test_cranks_that_no_platform_joins_are_refused(hexapod):
+    joints = np.radians([30.0, 210.0, 30.0, 210.0, 120.0, 60.0])
+    with pytest.raises(NoSolution):
+        hexapod.forward(joints)
+
+
+def test_cold_answers_outside_are_right_refused_or_have_a_twin_inside(robocake, hexapod):
+    """Where no rule can tell, the same six angles belong to a pose inside the limits as well."""
+    generator = np.random.default_rng(6)
+    xyz = generator.uniform([-0.02, -0.02, 0.02339], [0.02, 0.02, 0.06], (40_000, 3))
+    poses = Pose.from_xyz_rpy(xyz, generator.uniform(-0.25, 0.25, (40_000, 3)))
+    joints = hexapod.inverse_or_nan(poses)
+    closed = np.flatnonzero(np.isfinite(joints).all(axis=1))
+    outside = closed[~robocake.constraints.admits(poses[closed], joints[closed])]
+    assert len(outside) > 200
+    refused = right = twins = 0
+    for k in outside:
+        try:
+            found = hexapod.forward(joints[k]).pose
+        except NoSolution:
+            refused += 1
+            continue
+        if np.abs(poses[k].twist_to(found)).max() < 1e-6:
+            right += 1
+        elif robocake.constraints.admits(found, joints[k]):
+            side = np.linalg.det(hexapod.leg_jacobian(poses[k], joints[k]))
+            assert side * hexapod.home_side < 0
+            twins += 1
+        # What is left is a wrong pose beyond a limit, where Constraints speak up.
+    assert refused > 0
+    assert right > 0
+    assert twins <= 0.25 * len(outside)
