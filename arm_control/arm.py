@@ -1,0 +1,124 @@
+"""The serial arm as a `Kinematics`: six joint angles, one pose of the tool."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from arm_control.branches import nearest_branch, unwrapped
+from arm_control.chain import Chain
+from arm_control.inverse_method import InverseMethod, fitting_method
+from arm_control.joint_limits import JOINT_NAMES, JointLimits
+from manipulator.arrays import Array, frozen
+from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
+from manipulator.kinematics import ForwardSolution
+from manipulator.pose import Pose
+
+
+@dataclass(frozen=True, eq=False)
+class SerialArm:
+    """Kinematics of six revolute joints in radians; the moving frame is the tool's.
+
+    length (metres) divides linear velocities in σmin; rest (6,) are the joints at home.
+    """
+
+    chain: Chain
+    limits: JointLimits
+    length: float
+    rest: Array
+    home: Pose = field(init=False)
+    method: InverseMethod = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Raises ConfigError when home lies outside the joint ranges."""
+        rest = frozen(self.rest)
+        outside = np.flatnonzero((rest < self.limits.low) | (rest > self.limits.high))
+        if outside.size:
+            low, high = np.degrees(self.limits.low), np.degrees(self.limits.high)
+            raise ConfigError(
+                [
+                    f'home_deg[{i}]: {np.degrees(rest[i]):.4g} outside [{low[i]:g}, {high[i]:g}]'
+                    for i in outside
+                ]
+            )
+        object.__setattr__(self, 'rest', rest)
+        object.__setattr__(self, 'home', self.chain.forward(rest))
+        method = fitting_method(self.chain, self.limits, self.length)
+        object.__setattr__(self, 'method', method)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """joint_1 to joint_6, base first."""
+        return JOINT_NAMES
+
+    @property
+    def joint_unit(self) -> str:
+        """Radians."""
+        return 'rad'
+
+    def inverse_all(self, pose: Pose, near: Array | None = None) -> Array:
+        """Every branch (..., k, 6), by whole turns nearest to `near` within the joint ranges.
+
+        NaN rows are branches that do not close. k is 8 where there is a closed form; without
+        one, rows may repeat and a branch may be missing.
+        """
+        start = self._near(near)
+        found = self.method.branches(pose, start)
+        return unwrapped(found, start[..., None, :], self.limits.low, self.limits.high)
+
+    def inverse(self, pose: Pose, near: Array | None = None) -> Array:
+        """Joints (..., 6) on the branch nearest to `near` (default: home's joints).
+
+        Branches within the joint ranges come first. Raises Unreachable with what does not reach,
+        by how much, where no branch closes.
+        """
+        joints = self.inverse_or_nan(pose, near)
+        lost = np.argwhere(np.isnan(joints[..., 0]))
+        if len(lost):
+            index = tuple(int(i) for i in lost[0])
+            place = f'pose {list(index)}: ' if index else ''
+            raise Unreachable(place + self.method.refusal(pose[index] if index else pose))
+        return joints
+
+    def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
+        """As `inverse`, with NaN for poses out of reach."""
+        start = self._near(near)
+        branches = self.inverse_all(pose, start)
+        return nearest_branch(branches, start, self.limits.low, self.limits.high)
+
+    def forward(self, joints: Array, near: Pose | None = None) -> ForwardSolution:
+        """The tool's pose: explicit, so that `near` changes nothing.
+
+        Raises NoSolution unless joints are six finite numbers.
+        """
+        checked = np.asarray(joints, dtype=np.float64)
+        if checked.shape != (len(JOINT_NAMES),) or not np.isfinite(checked).all():
+            raise NoSolution(f'joints {checked.tolist()} are not six finite angles')
+        pose = self.chain.forward(checked)
+        return ForwardSolution(pose, 0, 0.0, float(self.sigma_min(pose, checked)))
+
+    def jacobian(self, pose: Pose, joints: Array) -> Array:
+        """The tool's twist of unit joint rates (..., 6, 6), from the joints alone.
+
+        It exists in singular postures too, where its rank falls: never raises NoSolution.
+        """
+        return self.chain.jacobian(self._checked(joints))
+
+    def sigma_min(self, pose: Pose, joints: Array) -> Array:
+        """The smallest singular value (...) of the Jacobian with metres divided by `length`."""
+        scaled = self.chain.jacobian(self._checked(joints, finite=False))
+        scaled[..., :3, :] /= self.length
+        lost = np.isnan(scaled.sum(axis=(-2, -1)))
+        values = np.linalg.svd(np.where(lost[..., None, None], 0.0, scaled), compute_uv=False)
+        result: Array = np.where(lost, np.nan, values[..., -1])
+        return result
+
+    def _near(self, near: Array | None) -> Array:
+        return self.rest if near is None else self._checked(near)
+
+    def _checked(self, joints: Array, finite: bool = True) -> Array:
+        array = np.asarray(joints, dtype=np.float64)
+        if array.shape[-1:] != (len(JOINT_NAMES),):
+            raise InvalidInput(f'joints have shape {array.shape}, needs (..., 6)')
+        if finite and not np.isfinite(array).all():
+            raise InvalidInput(f'joints are not finite: {array.ravel()[:6].tolist()}')
+        return array

@@ -1,0 +1,36 @@
+"""Choosing among the branches of an inverse: turns by 2π, joint range, nearness."""
+
+import numpy as np
+
+from manipulator.arrays import Array
+
+TURN = 2 * np.pi
+OUTSIDE_COST = 1e6
+"""What a radian outside the range costs against radians of distance: range comes first."""
+
+
+def unwrapped(joints: Array, near: Array, low: Array, high: Array) -> Array:
+    """`joints` moved by whole turns: nearest to `near` within [low, high] where a turn fits.
+
+    Where none fits, the turn nearest to the range.
+    """
+    nearest = near + np.remainder(joints - near + np.pi, TURN) - np.pi
+    up = np.ceil((low - nearest - 1e-12) / TURN).clip(min=0.0)
+    down = np.ceil((nearest - high - 1e-12) / TURN).clip(min=0.0)
+    moved = nearest + TURN * np.where(up > 0, up, -down)
+    is_closer = _outside(moved, low, high) < _outside(nearest, low, high)
+    result: Array = np.where(is_closer, moved, nearest)
+    return result
+
+
+def nearest_branch(branches: Array, near: Array, low: Array, high: Array) -> Array:
+    """One (..., n) of the unwrapped branches (..., k, n); NaN where all are NaN."""
+    distance = ((branches - near[..., None, :]) ** 2).sum(axis=-1)
+    cost = distance + OUTSIDE_COST * _outside(branches, low, high).sum(axis=-1)
+    best = np.argmin(np.where(np.isnan(cost), np.inf, cost), axis=-1)
+    chosen: Array = np.take_along_axis(branches, best[..., None, None], axis=-2)[..., 0, :]
+    return chosen
+
+
+def _outside(joints: Array, low: Array, high: Array) -> Array:
+    return np.maximum(low - joints, 0.0) + np.maximum(joints - high, 0.0)

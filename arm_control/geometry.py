@@ -1,0 +1,129 @@
+"""The three forms in which a machine file gives a serial arm's geometry, each as a `Chain`."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from arm_control.chain import Chain
+from manipulator.arrays import Array
+from manipulator.config import quantity
+from manipulator.errors import ConfigError
+from manipulator.pose import Pose
+
+JOINTS = 6
+SixAngles = tuple[float, float, float, float, float, float]
+Three = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class LengthsConfig:
+    """The arm of Fadeev and Loginov: straight up along z at zero angles, wrist centre C on top.
+
+    Joint axes z, −x, −x, z, −x, z (docs/arm-kinematics.md, 2); tool_mm is from C to the tool.
+    """
+
+    L1_mm: float = quantity(0, 5000)
+    L2_mm: float = quantity(1, 5000)
+    L3_mm: float = quantity(1, 5000)
+    tool_mm: float = quantity(0, 5000)
+    home_deg: SixAngles = quantity(-360, 360)
+
+    def chain(self) -> Chain:
+        """Axes and points by the paper's figure 1."""
+        shoulder = self.L1_mm * 1e-3
+        elbow = shoulder + self.L2_mm * 1e-3
+        wrist = elbow + self.L3_mm * 1e-3
+        up, across = [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]
+        heights = np.array([0.0, shoulder, elbow, wrist, wrist, wrist])
+        return Chain(
+            np.array([up, across, across, up, across, up]),
+            np.outer(heights, up),
+            Pose(np.array([0.0, 0.0, wrist + self.tool_mm * 1e-3]), np.eye(3)),
+        )
+
+
+@dataclass(frozen=True)
+class DhRow:
+    """One line of a standard Denavit–Hartenberg table; offset_deg is θ at joint angle zero."""
+
+    a_mm: float = quantity(-5000, 5000)
+    alpha_deg: float = quantity(-360, 360)
+    d_mm: float = quantity(-5000, 5000)
+    offset_deg: float = quantity(-360, 360, default=0.0)
+
+
+@dataclass(frozen=True)
+class DhConfig:
+    """Standard Denavit–Hartenberg parameters: each link is Rz(θ)·Tz(d)·Tx(a)·Rx(α)."""
+
+    dh: tuple[DhRow, DhRow, DhRow, DhRow, DhRow, DhRow]
+    home_deg: SixAngles = quantity(-360, 360)
+    tool_mm: float = quantity(0, 5000, default=0.0)
+
+    def chain(self) -> Chain:
+        """Joint i turns about the z axis of frame i − 1; the tool lies along z of frame 6."""
+        frame = np.eye(4)
+        axes, points = [], []
+        for row in self.dh:
+            axes.append(frame[:3, 2])
+            points.append(frame[:3, 3])
+            frame = frame @ _link(row)
+        tool = frame[:3, 3] + self.tool_mm * 1e-3 * frame[:3, 2]
+        return Chain(np.array(axes), np.array(points), Pose(tool, frame[:3, :3]))
+
+
+@dataclass(frozen=True)
+class Screw:
+    """A joint axis at zero angles, right-handed, of any length but zero, and a point on it."""
+
+    axis: Three = quantity(-1000, 1000)
+    point_mm: Three = quantity(-10_000, 10_000)
+
+    def __post_init__(self) -> None:
+        """Raises ConfigError for an axis without direction."""
+        if np.linalg.norm(self.axis) < 1e-6:
+            raise ConfigError([f'axis: {list(self.axis)} has no direction'])
+
+
+@dataclass(frozen=True)
+class ScrewsConfig:
+    """Joint axes in base axes at zero angles, and the tool's pose there."""
+
+    screws: tuple[Screw, Screw, Screw, Screw, Screw, Screw]
+    tool_position_mm: Three = quantity(-10_000, 10_000)
+    tool_rpy_deg: Three = quantity(-360, 360)
+    home_deg: SixAngles = quantity(-360, 360)
+
+    def chain(self) -> Chain:
+        """As given, with axes of unit length."""
+        axes = np.array([screw.axis for screw in self.screws])
+        return Chain(
+            axes / np.linalg.norm(axes, axis=1, keepdims=True),
+            np.array([screw.point_mm for screw in self.screws]) * 1e-3,
+            Pose.from_xyz_rpy(
+                np.array(self.tool_position_mm) * 1e-3, np.radians(self.tool_rpy_deg)
+            ),
+        )
+
+
+ArmGeometry = LengthsConfig | DhConfig | ScrewsConfig
+FORMS: dict[str, type[ArmGeometry]] = {
+    'L1_mm': LengthsConfig,
+    'dh': DhConfig,
+    'screws': ScrewsConfig,
+}
+"""The key by which each form is told."""
+
+
+def _link(row: DhRow) -> Array:
+    theta, alpha = np.radians([row.offset_deg, row.alpha_deg])
+    (ct, ca), (st, sa) = np.cos([theta, alpha]), np.sin([theta, alpha])
+    a, d = row.a_mm * 1e-3, row.d_mm * 1e-3
+    return np.array(
+        [
+            [ct, -st * ca, st * sa, a * ct],
+            [st, ct * ca, -ct * sa, a * st],
+            [0.0, sa, ca, d],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )

@@ -1,0 +1,63 @@
+"""What the inverses of a chain have in common, and which one fits a chain."""
+
+from typing import Protocol
+
+import numpy as np
+
+from arm_control.chain import Chain
+from arm_control.joint_limits import JointLimits
+from arm_control.numerical import Numerical
+from arm_control.parallel_axes import ParallelAxes
+from arm_control.spherical_wrist import SphericalWrist
+from manipulator.arrays import Array
+from manipulator.pose import Pose
+
+EXACT = 1e-9
+"""Metres, and sines of angles: how well axes must meet or be parallel for a closed form."""
+
+
+class InverseMethod(Protocol):
+    """All joint angles of a pose, on every branch that the method knows."""
+
+    def branches(self, pose: Pose, near: Array) -> Array:
+        """Joints (..., k, 6), not yet unwrapped; NaN rows for branches that do not close.
+
+        near (..., 6) gives the joints that the pose leaves free, as in an aligned wrist.
+        """
+        ...
+
+    def refusal(self, pose: Pose) -> str:
+        """Why one pose has no branch: what, how far, and how far would be reachable."""
+        ...
+
+
+def fitting_method(chain: Chain, limits: JointLimits, length: float) -> InverseMethod:
+    """The closed form that the chain admits, else the numerical one (length in metres)."""
+    axes = chain.axes
+    if _are_parallel(axes[1], axes[2]) and not _are_parallel(axes[0], axes[1]):
+        centre = _meeting_point(chain, 4, 5)
+        if centre is not None and _is_on_axis(chain, 3, centre):
+            return SphericalWrist(chain, centre)
+        if centre is not None and _are_parallel(axes[1], axes[3]):
+            return ParallelAxes(chain, centre)
+    return Numerical(chain, length, limits.low, limits.high)
+
+
+def _are_parallel(a: Array, b: Array) -> bool:
+    return bool(np.linalg.norm(np.cross(a, b)) < EXACT)
+
+
+def _is_on_axis(chain: Chain, joint: int, point: Array) -> bool:
+    off_axis = np.cross(chain.axes[joint], point - chain.points[joint])
+    return bool(np.linalg.norm(off_axis) < EXACT)
+
+
+def _meeting_point(chain: Chain, first: int, second: int) -> Array | None:
+    """Where two axes meet, None when they pass each other or run parallel."""
+    a, b = chain.axes[first], chain.axes[second]
+    if _are_parallel(a, b):
+        return None
+    p, q = chain.points[first], chain.points[second]
+    along, *_ = np.linalg.lstsq(np.stack([a, -b], axis=1), q - p, rcond=None)
+    point: Array = p + along[0] * a
+    return point if _is_on_axis(chain, second, point) else None

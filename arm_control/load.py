@@ -1,0 +1,42 @@
+"""From a machine file's sections to a serial arm that the nodes can use."""
+
+import numpy as np
+
+from arm_control.arm import SerialArm
+from arm_control.geometry import FORMS
+from arm_control.joint_limits import ArmLimits
+from arm_control.resolved_rate import ResolvedRate
+from manipulator.config import build
+from manipulator.errors import ConfigError
+from manipulator.machine import Machine, MachineFile
+from manipulator.motion_limits import MotionLimits
+
+KIND = 'serial_arm'
+
+
+def arm(machine_file: MachineFile) -> Machine:
+    """The machine of one file; its kinematics is a `SerialArm`. ConfigError names each fault."""
+    kinematics = serial_arm(machine_file)
+    motion = MotionLimits.from_config(machine_file.motion)
+    return Machine(kinematics, kinematics.limits.constraints(), motion)
+
+
+def serial_arm(machine_file: MachineFile) -> SerialArm:
+    """The kinematics and joint limits of one file."""
+    if machine_file.kind != KIND:
+        raise ConfigError([f'kind: {machine_file.kind!r} is not {KIND!r}'])
+    told = [form for key, form in FORMS.items() if key in machine_file.geometry]
+    if len(told) != 1:
+        raise ConfigError([f'geometry: needs one of the keys {list(FORMS)}, has {len(told)}'])
+    geometry = build(told[0], machine_file.geometry, 'geometry')
+    limits = build(ArmLimits, machine_file.limits, 'limits')
+    length = limits.characteristic_length_mm * 1e-3
+    rest = np.radians(geometry.home_deg)
+    return SerialArm(geometry.chain(), limits.joint_limits(), length, rest)
+
+
+def jogging(machine_file: MachineFile) -> ResolvedRate:
+    """The resolved-rate step of one file's arm, within its joint and motion limits."""
+    limits = build(ArmLimits, machine_file.limits, 'limits')
+    motion = MotionLimits.from_config(machine_file.motion)
+    return ResolvedRate(serial_arm(machine_file), motion, limits.damping_onset)

@@ -1,0 +1,178 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from arm_control.arm import SerialArm
+from arm_control.chain import Chain
+from arm_control.load import serial_arm
+from arm_control.numerical import Numerical
+from manipulator.errors import InvalidInput, NoSolution, Unreachable
+from manipulator.pose import Pose
+
+
+def within_range(arm, count, seed):
+    return np.random.default_rng(seed).uniform(arm.limits.low, arm.limits.high, (count, 6))
+
+
+def apart(a, b):
+    return np.abs(np.remainder(a - b + np.pi, 2 * np.pi) - np.pi).max(axis=-1)
+
+
+def test_every_branch_takes_the_tool_to_the_pose(arm):
+    poses = arm.chain.forward(within_range(arm, 300, 1))
+    branches = arm.inverse_all(poses)
+    assert branches.shape == (300, 8, 6)
+    closes = ~np.isnan(branches).any(axis=-1)
+    reached = arm.chain.forward(np.nan_to_num(branches))
+    targets = Pose(poses.position[:, None], poses.rotation[:, None])
+    assert np.abs(reached.twist_to(targets)[closes]).max() < 1e-9
+
+
+def test_the_joints_that_made_the_pose_are_among_the_branches(arm):
+    joints = within_range(arm, 300, 2)
+    branches = arm.inverse_all(arm.chain.forward(joints))
+    assert np.nanmin(apart(branches, joints[:, None]), axis=-1).max() < 1e-6
+
+
+def test_branches_differ(arm):
+    poses = arm.chain.forward(within_range(arm, 100, 3))
+    for branches in arm.inverse_all(poses):
+        closing = branches[~np.isnan(branches).any(axis=-1)]
+        for i, one in enumerate(closing):
+            assert all(apart(one, other) > 1e-6 for other in closing[:i])
+
+
+def test_inverse_stays_with_the_joints_it_is_near_to(arm):
+    joints = within_range(arm, 300, 4)
+    nudge = np.random.default_rng(5).uniform(-0.01, 0.01, (300, 6))
+    found = arm.inverse(arm.chain.forward(joints), joints + nudge)
+    regular = arm.sigma_min(arm.home, joints) > 0.02
+    assert regular.sum() > 200
+    assert np.abs(found - joints)[regular].max() < 1e-7
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.integers(0, 2**32 - 1), st.sets(st.integers(0, 5)))
+def test_singular_postures_are_inverted_exactly_too(arm, seed, zeroed):
+    joints = within_range(arm, 1, seed)[0]
+    joints[list(zeroed)] = 0.0
+    pose = arm.chain.forward(joints)
+    found = arm.inverse(pose, joints)
+    assert np.abs(arm.chain.forward(found).twist_to(pose)).max() < 1e-7
+
+
+def test_an_aligned_wrist_keeps_the_joints_it_had(arm_6r):
+    joints = np.array([0.3, 0.4, 1.0, 0.8, 0.0, -0.5])
+    found = arm_6r.inverse(arm_6r.chain.forward(joints), joints)
+    assert np.abs(found - joints).max() < 1e-9
+
+
+def test_whole_turns_are_chosen_near_but_within_the_range(arm_6r):
+    joints = np.radians([10.0, 20.0, 80.0, 30.0, 60.0, 300.0])
+    pose = arm_6r.chain.forward(joints)
+    assert np.degrees(arm_6r.inverse(pose, joints)[5]) == pytest.approx(300.0)
+    assert np.degrees(arm_6r.inverse(pose, joints * (1, 1, 1, 1, 1, 0))[5]) == pytest.approx(-60.0)
+    beyond = joints + np.radians([0, 0, 0, 0, 0, 70.0])
+    last = np.degrees(arm_6r.inverse_all(arm_6r.chain.forward(beyond), beyond)[:, 5])
+    assert {10.0, 190.0} <= set(last.round(6))
+    assert (np.abs(last) <= 350.0).all()
+
+
+def test_branches_within_the_joint_ranges_come_before_nearer_ones(arm_6r):
+    inside = np.radians([10.0, 20.0, 80.0, 30.0, 60.0, 0.0])
+    pose = arm_6r.chain.forward(inside)
+    branches = arm_6r.inverse_all(pose, inside)
+    outside = (branches < arm_6r.limits.low) | (branches > arm_6r.limits.high)
+    assert outside.any()
+    start = branches[outside.any(axis=-1)][0]
+    found = arm_6r.inverse(pose, start)
+    assert (found >= arm_6r.limits.low).all()
+    assert (found <= arm_6r.limits.high).all()
+
+
+def test_a_straight_path_stays_on_one_branch(arm):
+    start = arm.home
+    joints = arm.rest
+    for k in range(100):
+        pose = Pose(start.position + k * np.array([1e-3, 5e-4, 1e-3]), start.rotation)
+        following = arm.inverse(pose, joints)
+        assert np.abs(following - joints).max() < 0.05
+        joints = following
+
+
+@pytest.mark.parametrize(
+    ('position', 'reason'),
+    [
+        ([1.0, 0.0, 0.42], 'wrist centre 1 m from the shoulder, reach is 0.8 m'),
+        ([0.0, 1.2, 0.42], 'wrist centre 1.2 m from the shoulder, reach is 0.8 m'),
+    ],
+)
+def test_out_of_reach_says_what_and_by_how_much(arm_6r, position, reason):
+    with pytest.raises(Unreachable, match=reason):
+        arm_6r.inverse(Pose(position, np.eye(3)))
+
+
+@pytest.mark.parametrize('name', ['ur5', 'puma560'])
+def test_too_near_to_an_offset_shoulder_is_named(machine_file, name):
+    arm = serial_arm(machine_file(name))
+    tool = arm.chain.home.rotation.T @ (arm.chain.home.position - arm.chain.points[5])
+    pose = Pose(np.array([0.01, 0.0, 0.5]) + tool, np.eye(3))
+    with pytest.raises(Unreachable, match=r"0\.01 m from joint 1's axis, needs at least"):
+        arm.inverse(pose)
+
+
+def test_arrays_mark_or_name_what_is_out_of_reach(arm):
+    near, far = arm.home.position, np.array([5.0, 0.0, 0.0])
+    poses = Pose(np.stack([near, far, near]), np.stack([arm.home.rotation] * 3))
+    lost = np.isnan(arm.inverse_or_nan(poses)).all(axis=-1)
+    assert lost.tolist() == [False, True, False]
+    with pytest.raises(Unreachable, match=r'pose \[1\]: .* m from the shoulder'):
+        arm.inverse(poses)
+
+
+def test_joints_that_are_no_six_finite_numbers_are_refused(arm_6r):
+    for joints in (np.zeros(5), np.full(6, np.nan)):
+        with pytest.raises(NoSolution):
+            arm_6r.forward(joints)
+        with pytest.raises(InvalidInput):
+            arm_6r.inverse(arm_6r.home, joints)
+
+
+@pytest.fixture(scope='module')
+def bent_arm(machine_file):
+    """An arm without any closed form: every axis of the paper's arm a little off."""
+    straight = serial_arm(machine_file('arm_6r'))
+    rng = np.random.default_rng(7)
+    axes = straight.chain.axes + rng.uniform(-0.1, 0.1, (6, 3))
+    chain = Chain(
+        axes / np.linalg.norm(axes, axis=1, keepdims=True),
+        straight.chain.points + rng.uniform(-0.02, 0.02, (6, 3)),
+        straight.chain.home,
+    )
+    return SerialArm(chain, straight.limits, straight.length, straight.rest)
+
+
+def test_an_arm_without_closed_form_is_solved_numerically(bent_arm):
+    assert isinstance(bent_arm.method, Numerical)
+    joints = within_range(bent_arm, 40, 8)
+    poses = bent_arm.chain.forward(joints)
+    found = bent_arm.inverse_or_nan(poses)
+    reached = ~np.isnan(found).any(axis=-1)
+    assert reached.mean() == 1.0
+    assert np.abs(bent_arm.chain.forward(found).twist_to(poses)).max() < 1e-9
+
+
+def test_the_numerical_inverse_stays_near(bent_arm):
+    joints = within_range(bent_arm, 40, 9)
+    joints = joints[bent_arm.sigma_min(bent_arm.home, joints) > 0.05]
+    nudge = np.random.default_rng(10).uniform(-0.02, 0.02, joints.shape)
+    found = bent_arm.inverse(bent_arm.chain.forward(joints), joints + nudge)
+    assert np.abs(found - joints).max() < 1e-8
+
+
+def test_the_numerical_inverse_says_by_how_much_it_missed(bent_arm):
+    with pytest.raises(Unreachable, match=r'best of 33 starts missed by .* m and'):
+        bent_arm.inverse(replace(bent_arm.home, position=[3.0, 0.0, 0.0]))
