@@ -1,0 +1,224 @@
+"""Every pose that six leg lengths allow: all real solutions of the general forward problem.
+
+The equations of forward_ideal.py are multiplied up to one degree. The null space of their
+coefficient matrix holds the evaluation at every solution, and on it the multiplication by e_j is a
+small matrix whose eigenvectors are these evaluations: no start value, no path, no chance.
+docs/forward-modes.md derives it and shows why no solution can be missed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hexapod_control import weighted_monomials as monomials
+from hexapod_control.forward_ideal import Generators, LegEquations, turned
+from hexapod_control.leg_jacobian import leg_jacobian, rods, smallest_singular_value
+from manipulator import rotation as so3
+from manipulator.arrays import Array, Mask
+from manipulator.errors import InvalidInput, NoSolution
+from manipulator.pose import Pose
+
+DEGREE = 8
+NULL_VALUE = 1e-6  # a singular value is zero below this part of the largest
+INFINITE = 1e-5  # |e·e| of a solution without a finite rotation, |e| being 1
+REAL = 1e-9  # imaginary part of e, |e| being 1, that is rounding alone
+NEARLY_REAL = 1e-4  # and that can come of two real solutions which almost meet
+DOUBLE = 1e-5  # σmin where two solutions meet
+SAME = 1e-5  # distance of two poses that are one, as part of the platform's size
+TOLERANCE = 1e-10  # of the leg lengths, relative
+MOST_ITERATIONS = 40
+
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class AssemblyModes:
+    """All poses of the platform for one set of leg lengths.
+
+    sigma_min is each mode's smallest singular value of the leg Jacobian about the platform's
+    origin, rotations scaled by the platform joints' rms distance from their centroid.
+    complex_count is the number of all solutions, each with its multiplicity; infinite_count of
+    these have no finite rotation. `is_complete` is true when no solution can be missing.
+    """
+
+    poses: tuple[Pose, ...]
+    sigma_min: tuple[float, ...]
+    complex_count: int
+    infinite_count: int
+    is_complete: bool
+
+    @property
+    def has_double_root(self) -> bool:
+        """Whether two modes meet in a singular pose; it is listed once, to about 1e-6 only."""
+        return any(s < DOUBLE for s in self.sigma_min)
+
+
+def assembly_modes(
+    base_points: ArrayLike, platform_points: ArrayLike, lengths: ArrayLike
+) -> AssemblyModes:
+    """Every pose (rotations proper) with joints (6, 3) and leg lengths (6,) in metres.
+
+    Sorted by height, the highest first, then by x, y and the angle of rotation. A crank platform
+    asks with the crank tips as base points and the rods as legs. Raises InvalidInput on wrong
+    shapes or lengths ≤ 0, NoSolution where the lengths do not fix finitely many poses.
+    """
+    base, platform, legs = _checked(base_points, platform_points, lengths)
+    equations = LegEquations.of(base, platform, legs)
+    null_space = _null_space(_multiples(equations.generators()))
+    e, is_whole = _solutions(null_space)
+    quaternions, is_real = _nearly_real(e)
+    starts = _placed(equations, quaternions)
+    position = starts.position + base[0] - starts.rotation @ platform[0]
+    poses, closed = _polished(base, platform, legs, Pose(position, starts.rotation))
+    found = np.any(closed.reshape(2, -1), axis=0)
+    modes, sigma = _distinct(base, platform, poses[closed])
+    return AssemblyModes(
+        modes,
+        sigma,
+        null_space.shape[1],
+        int(np.sum(np.abs(np.sum(e * e, axis=1)) < INFINITE)),
+        is_whole and bool(np.all(found, where=is_real)),
+    )
+
+
+def _checked(
+    base_points: ArrayLike, platform_points: ArrayLike, lengths: ArrayLike
+) -> tuple[Array, Array, Array]:
+    wanted = {'base points': (6, 3), 'platform points': (6, 3), 'leg lengths': (6,)}
+    arrays = [np.asarray(x, dtype=np.float64) for x in (base_points, platform_points, lengths)]
+    for (name, shape), array in zip(wanted.items(), arrays, strict=True):
+        if array.shape != shape or not np.isfinite(array).all():
+            raise InvalidInput(f'{name} have shape {array.shape}, need {shape} finite numbers')
+    for leg, length in enumerate(arrays[2], start=1):
+        if length <= 0.0:
+            raise InvalidInput(f'leg {leg}: length {length:.4g} m is not above 0')
+    return arrays[0], arrays[1], arrays[2]
+
+
+def _multiples(generators: list[Generators]) -> Array:
+    """All monomial multiples of the equations that have degree 8, one a row, scaled."""
+    start = monomials.offsets(DEGREE)
+    blocks = []
+    for equations in generators:
+        norm = np.sqrt(sum(np.sum(c * c, axis=1) for c in equations.coefficients))
+        used = norm > np.finfo(float).tiny
+        for power in range(monomials.S_POWERS + 1 - len(equations.coefficients)):
+            rest = DEGREE - equations.degree - 2 * power
+            if rest < 0:
+                continue
+            weights = monomials.scales(rest)
+            block = np.zeros((int(used.sum()), len(weights), start[-1]))
+            rows = np.arange(len(weights))[:, None]
+            for k, coefficient in enumerate(equations.coefficients):
+                columns = monomials.product_index(rest, equations.degree - 2 * k)
+                values = (coefficient[used] / norm[used, None])[:, None, :]
+                block[:, rows, start[power + k] + columns] = values * weights[:, None]
+            blocks.append(block.reshape(-1, start[-1]))
+    matrix: Array = np.vstack(blocks) / monomials.row_scales(DEGREE)
+    return matrix
+
+
+def _null_space(matrix: Array) -> Array:
+    """A basis (rows, count) of the functionals that vanish on all rows of `matrix`.
+
+    The eigenvectors of the Gram matrix are found fast and without fail, but to the square root of
+    the precision; one step of iterative refinement restores it.
+    """
+    gram = matrix.T @ matrix
+    values, vectors = np.linalg.eigh(gram)
+    count = int(np.sum(values < NULL_VALUE**2 * values[-1]))
+    null, rest = vectors[:, :count], vectors[:, count:]
+    error = rest.T @ (matrix.T @ (matrix @ null))
+    result: Array = null - rest @ (error / values[count:, None])
+    return result
+
+
+def _solutions(null_space: Array) -> tuple[Complex, bool]:
+    """Every solution's quaternion (count, 4) of length 1, and whether none can be missing."""
+    index, factor = monomials.shift_table(DEGREE)
+    by_e = factor[..., None] * null_space[index]
+    directions, mixture = _DIRECTION
+    denominator = np.tensordot(directions, by_e, axes=1)
+    left, values, right = np.linalg.svd(denominator, full_matrices=False)
+    if null_space.shape[1] == 0 or values[-1] < 1e-9 * values[0]:
+        raise NoSolution('the leg lengths do not fix finitely many poses')
+    inverse = (right.conj().T / values) @ left.conj().T
+    _, vectors = np.linalg.eig(inverse @ np.tensordot(mixture, by_e, axes=1))
+    # an eigenvector is the evaluation at a solution: read e off it
+    seen = denominator @ vectors
+    e = np.einsum('mk,jmk->kj', seen.conj(), by_e @ vectors)
+    return e / np.linalg.norm(e, axis=1)[:, None], bool(values[-1] > 1e-6 * values[0])
+
+
+def _nearly_real(e: Complex) -> tuple[Array, Mask]:
+    """The real unit quaternions among e, and which of them are real beyond doubt."""
+    square = np.sum(e * e, axis=1)
+    straight = e * np.exp(-0.5j * np.angle(square))[:, None]
+    imaginary = np.linalg.norm(straight.imag, axis=1)
+    near = imaginary < NEARLY_REAL
+    real = straight.real[near]
+    return real / np.linalg.norm(real, axis=1)[:, None], imaginary[near] < REAL
+
+
+def _placed(equations: LegEquations, e: Array) -> Pose:
+    """Leg 1's platform joint from leg 1's base joint, metres, for rotations e (m, 4): 2m poses.
+
+    The leg equations (3) fix the place up to their weakest direction, along which leg 1's length
+    leaves two points; both are kept, since they are both solutions where base and platform are
+    planar and parallel.
+    """
+    rotation = turned(e)
+    b = equations.b @ np.swapaxes(rotation, -1, -2)
+    right_side = np.sum(equations.a * b, axis=-1) - equations.d
+    u, s, v = np.linalg.svd(b - equations.a, full_matrices=False)
+    along = np.einsum('mij,mi->mj', u, right_side)[:, :2] / np.maximum(s[:, :2], 1e-12)
+    middle = np.einsum('mj,mji->mi', along, v[:, :2])
+    height = np.sqrt(np.maximum(equations.length**2 - np.sum(middle**2, axis=-1), 0.0))
+    offset = height[:, None] * v[:, 2]
+    position = equations.scale * np.concatenate([middle + offset, middle - offset])
+    return Pose(position, np.concatenate([rotation, rotation]))
+
+
+def _polished(base: Array, platform: Array, lengths: Array, poses: Pose) -> tuple[Pose, Mask]:
+    """The poses after Newton's method, and which of them have the leg lengths wanted."""
+    for _ in range(MOST_ITERATIONS):
+        error = lengths - np.linalg.norm(rods(base, platform, poses), axis=-1)
+        worst = np.max(np.abs(error), axis=-1, initial=0.0)
+        if np.all(worst < 1e-15 * lengths.max()):
+            break
+        inverse = np.linalg.pinv(leg_jacobian(base, platform, poses), rcond=1e-12)
+        poses = poses.moved(np.einsum('mij,mj->mi', inverse, error))
+    closed: Mask = worst < TOLERANCE * lengths.max()
+    return poses, closed
+
+
+def _distinct(
+    base: Array, platform: Array, poses: Pose
+) -> tuple[tuple[Pose, ...], tuple[float, ...]]:
+    """Each pose once, sorted, with its σmin."""
+    size = float(np.sqrt(np.mean(np.sum((platform - platform.mean(axis=0)) ** 2, axis=1))))
+    angle = np.linalg.norm(so3.log(poses.rotation), axis=-1)
+    keys = np.column_stack([-poses.position[:, 2], -poses.position[:, 0], -poses.position[:, 1]])
+    order = np.lexsort([angle, *np.round(keys.T[::-1] / (SAME * size))])
+    chosen: list[int] = []
+    for k in order:
+        apart = [
+            np.abs(poses.position[k] - poses.position[c]).max() / size
+            + np.abs(poses.rotation[k] - poses.rotation[c]).max()
+            for c in chosen
+        ]
+        if all(a > SAME for a in apart):
+            chosen.append(int(k))
+    kept = poses[chosen]
+    sigma = smallest_singular_value(leg_jacobian(base, platform, kept), size)
+    return tuple(kept[k] for k in range(len(chosen))), tuple(float(s) for s in sigma)
+
+
+def _fixed_directions() -> tuple[Complex, Array]:
+    """A complex direction on which no real e is small, and a real one to tell solutions apart."""
+    normal = np.random.default_rng(2).normal(size=(3, 4))
+    return normal[0] + 1j * normal[1], normal[2]
+
+
+_DIRECTION = _fixed_directions()

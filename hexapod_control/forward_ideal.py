@@ -1,0 +1,145 @@
+"""The polynomial equations of the forward problem, for any six leg lengths.
+
+Unknowns: the rotation as a quaternion e of any length (N = e·e), and one coordinate s of the
+platform's place; a second one, t, is eliminated here. docs/forward-modes.md derives every
+equation; the numbers in brackets are its numbers.
+"""
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+
+from hexapod_control import weighted_monomials as monomials
+from manipulator.arrays import Array, frozen
+from manipulator.errors import NoSolution
+
+HIGHEST = 6
+LEAST_RANK_VALUE = 1e-9
+
+
+@dataclass(frozen=True)
+class Generators:
+    """Equations of one degree: coefficients[k] (count, monomials of degree − 2k) go with sᵏ."""
+
+    degree: int
+    coefficients: tuple[Array, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class LegEquations:
+    """Base and platform joints seen from leg 1's, and the linear part of the leg equations.
+
+    a, b (5, 3) and the first length are in units of `scale` metres. The leg equations (3) are
+    K·(p, w) + q(e) = 0 with K = u·diag(sigma)·v, and (p, w) = s·kappa1 + t·kappa2 + Q(e) (5).
+    """
+
+    a: Array
+    b: Array
+    d: Array
+    length: float
+    scale: float
+    u: Array
+    sigma: Array
+    v: Array
+    kappa1: Array
+    kappa2: Array
+
+    @classmethod
+    def of(cls, base_points: Array, platform_points: Array, lengths: Array) -> 'LegEquations':
+        """From joints (6, 3) and lengths (6,) in metres.
+
+        Raises NoSolution where the platform's joints are an affine image of the base's.
+        """
+        a, b = base_points[1:] - base_points[0], platform_points[1:] - platform_points[0]
+        scale = float(np.sqrt((np.sum(a * a) + np.sum(b * b)) / 6))
+        a, b, legs = a / scale, b / scale, lengths / scale
+        d = (legs[0] ** 2 + np.sum(a * a, axis=1) + np.sum(b * b, axis=1) - legs[1:] ** 2) / 2
+        u, sigma, v = np.linalg.svd(np.hstack([-a, b]))
+        if sigma[3] < LEAST_RANK_VALUE * sigma[0]:
+            raise NoSolution(
+                'the joints of base and platform are affine images of each other: '
+                'their modes are infinitely many, or not to be found by this method'
+            )
+        # In the plane of the two weakest directions, t takes the one on which p and w differ
+        # most in length: there u2(e) below never vanishes for a real e.
+        weakest = v[4:]
+        unlike = (weakest * [-1.0, -1.0, -1.0, 1.0, 1.0, 1.0]) @ weakest.T
+        values, turns = np.linalg.eigh(unlike)
+        kappa = turns[:, np.argsort(np.abs(values))].T @ weakest
+        return cls(a, b, d, float(legs[0]), scale, u, sigma, v, kappa[0], kappa[1])
+
+    def generators(self) -> list[Generators]:
+        """The cubics (8), quartics (7) and sextics (9)."""
+        e, fits = _samples()
+        n, q5, Q, u1, u2, c = self._parts(e)
+        alpha, beta = self.sigma[4] * self.v[4] @ np.stack([self.kappa1, self.kappa2]).T
+        i, j = np.triu_indices(4, 1)
+        cubics = (q5[:, None] * u2 - beta * c, alpha * u2 - beta * u1)
+        quartics = tuple(x[:, i] * u2[:, j] - x[:, j] * u2[:, i] for x in (c, u1))
+        groups = [(3, cubics), (4, quartics)]
+        for part in (slice(0, 3), slice(3, 6)):
+            groups.append((6, self._sextics(n, Q, u1, u2, c, part)))
+        return [
+            Generators(degree, tuple((fits[degree - 2 * k] @ x).T for k, x in enumerate(values)))
+            for degree, values in groups
+        ]
+
+    def _parts(self, e: Array) -> tuple[Array, Array, Array, Array, Array, Array]:
+        """N, the fifth row q5 of (4), Q of (5), and u1, u2, c of (6), at the points e (m, 4)."""
+        n = np.sum(e * e, axis=1)
+        q = n[:, None] * self.d - np.einsum('ni,mij,nj->mn', self.a, turned(e), self.b)
+        y = q @ self.u
+        Q = -(y[:, :4] / self.sigma[:4]) @ self.v[:4]
+        u1, u2, c = (_closure(e, x) for x in (self.kappa1, self.kappa2, Q))
+        return n, y[:, 4], Q, u1, u2, c
+
+    def _sextics(
+        self, n: Array, Q: Array, u1: Array, u2: Array, c: Array, part: slice
+    ) -> tuple[Array, Array, Array]:
+        """|p|² = N²·L1² (or |w|²) times u2_i·u2_j, with t·u2 replaced by −(s·u1 + c): (9)."""
+        x1, x2, Qx = self.kappa1[part], self.kappa2[part], Q[:, part]
+        i, j = np.triu_indices(4)
+
+        def both(x: Array, y: Array) -> Array:
+            product: Array = (x[:, i] * y[:, j] + x[:, j] * y[:, i]) / 2
+            return product
+
+        q1, q2 = (Qx @ x1)[:, None], (Qx @ x2)[:, None]
+        rest = (np.sum(Qx * Qx, axis=1) - (self.length * n) ** 2)[:, None]
+        x12, x22 = x1 @ x2, x2 @ x2
+        return (
+            rest * both(u2, u2) - 2 * q2 * both(c, u2) + x22 * both(c, c),
+            2 * (q1 * both(u2, u2) - q2 * both(u1, u2) - x12 * both(c, u2) + x22 * both(c, u1)),
+            x1 @ x1 * both(u2, u2) - 2 * x12 * both(u1, u2) + x22 * both(u1, u1),
+        )
+
+
+def turned(e: Array) -> Array:
+    """N times the rotation matrix of quaternions e = (scalar, vector), (m, 4) to (m, 3, 3)."""
+    w, x, y, z = e.T
+    rows = [
+        [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0)
+
+
+def _closure(e: Array, pw: Array) -> Array:
+    """The quaternion e·w − p·e, (m, 4), for (p, w) = pw (6,) or (m, 6): zero where w = Rᵀp."""
+    pw = np.broadcast_to(pw, (len(e), 6))
+    p, w, x = pw[:, :3], pw[:, 3:], e[:, 1:]
+    scalar = np.sum((p - w) * x, axis=1)
+    vector = e[:, :1] * (w - p) + np.cross(x, w + p)
+    return np.column_stack([scalar, vector])
+
+
+@functools.cache
+def _samples() -> tuple[Array, tuple[Array, ...]]:
+    """Fixed points e, and for each degree the matrix from values there to coefficients."""
+    count = 2 * len(monomials.exponents(HIGHEST))
+    e = np.random.default_rng(1).normal(size=(count, 4))
+    e /= np.linalg.norm(e, axis=1)[:, None]
+    fits = (np.linalg.pinv(monomials.evaluate(k, e)) for k in range(HIGHEST + 1))
+    return frozen(e), tuple(frozen(f) for f in fits)

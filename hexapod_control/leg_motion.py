@@ -1,0 +1,105 @@
+"""The motion of a platform whose legs all move linearly: Lapikov et al. 2014, section 4."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from hexapod_control import euler
+from hexapod_control.leg_jacobian import rods
+from hexapod_control.linear_geometry import LinearGeometry
+from manipulator import rotation as so3
+from manipulator.arrays import Array, frozen
+from manipulator.errors import InvalidInput, Unreachable
+from manipulator.pose import Pose
+
+Solver = Callable[[Array, Pose], Pose]
+"""From leg lengths (6,) in metres and a pose nearby to the pose."""
+
+PAPER_LENGTH = 0.150
+PAPER_TARGET = (0.020, 0.020, 0.200)
+
+
+@dataclass(frozen=True, eq=False)
+class LegMotion:
+    """Steps 0 … n of a motion: lengths (n + 1, 6) in metres, and as many poses."""
+
+    lengths: Array
+    poses: Pose
+
+    @property
+    def share(self) -> Array:
+        """The part of the way done at each step, 0 … 1."""
+        return frozen(np.linspace(0.0, 1.0, len(self.lengths)))
+
+    @property
+    def euler_zxz(self) -> Array:
+        """α, β, γ of Lapikov et al. 2014, section 4; γ is 0 where the platform is level."""
+        return euler.to_zxz(self.poses.rotation)
+
+    @property
+    def rotation_vectors(self) -> Array:
+        """The orientations as rotation vectors (n + 1, 3) in radians, unique unlike the angles."""
+        return so3.log(self.poses.rotation)
+
+    @property
+    def straight(self) -> Pose:
+        """The poses along a straight line, with a turn about one axis, both even in time."""
+        first, last = self.poses[0], self.poses[-1]
+        return first.moved(self.share[:, None] * first.twist_to(last))
+
+    @property
+    def position_deviation(self) -> Array:
+        """How far each position lies from the straight motion's at that step, metres."""
+        return np.asarray(np.linalg.norm(self.straight.twist_to(self.poses)[:, :3], axis=1))
+
+    @property
+    def angle_deviation(self) -> Array:
+        """By what angle each orientation differs from the straight motion's, radians."""
+        return np.asarray(np.linalg.norm(self.straight.twist_to(self.poses)[:, 3:], axis=1))
+
+
+def leg_motion(solve: Solver, first: Array, last: Array, start: Pose, steps: int) -> LegMotion:
+    """Leg lengths from `first` to `last`, (6,) metres, linearly in equal steps.
+
+    Each step's forward solution starts from the last one's, so that the small steps keep the
+    assembly mode of `start`. Raises InvalidInput for steps < 1, NoSolution from the solver.
+    """
+    if steps < 1:
+        raise InvalidInput(f'{steps} steps, a motion needs at least 1')
+    lengths = np.linspace(first, last, steps + 1)
+    poses = []
+    pose = start
+    for now in lengths:
+        pose = solve(now, pose)
+        poses.append(pose)
+    joined = Pose(np.stack([p.position for p in poses]), np.stack([p.rotation for p in poses]))
+    return LegMotion(frozen(lengths), joined)
+
+
+def paper_motion(geometry: LinearGeometry, solve: Solver, steps: int = 100) -> LegMotion:
+    """The experiment of section 4: level with all legs 150 mm, to (20, 20, 200) mm unturned.
+
+    With the paper's own φb = φmp, a 6-6 geometry cannot even be built: see architecture.py.
+    """
+    start = level_pose(geometry, PAPER_LENGTH)
+    target = Pose(np.array(PAPER_TARGET), np.eye(3))
+    last = np.linalg.norm(rods(geometry.base_points, geometry.platform_points, target), axis=-1)
+    return leg_motion(solve, np.full(6, PAPER_LENGTH), last, start, steps)
+
+
+def level_pose(geometry: LinearGeometry, length: float) -> Pose:
+    """The pose above the base, level and unturned, in which all legs have one length (metres).
+
+    Raises Unreachable where the joints' circles do not allow it.
+    """
+    offset = geometry.platform_points - geometry.base_points
+    across = np.hypot(offset[:, 0], offset[:, 1])
+    if np.any(across >= length):
+        leg = int(np.argmax(across >= length))
+        message = f'leg {leg + 1}: length {length:.4g} m not above {across[leg]:.4g} m'
+        raise Unreachable(message, leg + 1)
+    heights = np.sqrt(length**2 - across**2) - offset[:, 2]
+    if np.ptp(heights) > 1e-9 * length:
+        raise Unreachable('no level pose has six equal leg lengths')
+    return Pose(np.array([0.0, 0.0, float(heights[0])]), np.eye(3))

@@ -1,0 +1,105 @@
+"""Where the joints of a linear platform are: the paper's parameters or explicit coordinates."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hexapod_control.architecture import check_architecture
+from hexapod_control.geometry import LEGS, SixPoints
+from manipulator.arrays import Array, frozen
+from manipulator.config import quantity
+from manipulator.errors import ConfigError, InvalidInput
+
+
+@dataclass(frozen=True, eq=False)
+class LinearGeometry:
+    """Joint centres (6, 3) in metres: base_points in the base frame, platform_points in its own.
+
+    home_height is the platform's height at home, where it is level.
+    """
+
+    base_points: Array
+    platform_points: Array
+    home_height: float
+
+    def __post_init__(self) -> None:
+        """Freezes the points; raises InvalidInput on any other shape."""
+        for name in ('base_points', 'platform_points'):
+            points = frozen(getattr(self, name))
+            if points.shape != (LEGS, 3):
+                raise InvalidInput(f'{name} have shape {points.shape}, need ({LEGS}, 3)')
+            object.__setattr__(self, name, points)
+
+
+@dataclass(frozen=True)
+class PlatesConfig:
+    """The `geometry` section by the parameters of Lapikov et al. 2014, section 3.
+
+    Six joints on a circle of each plate, at the angles φ, 2π/3 − φ, 2π/3 + φ, 4π/3 − φ, 4π/3 + φ,
+    −φ (eqs 2 and 3). A platform angle of 0 joins them in pairs: the 6-3. 30° spaces them evenly.
+    The joint heights are from each plate's plane to its joints, towards the other plate.
+    """
+
+    base_radius_mm: float = quantity(5, 3000)
+    base_angle_deg: float = quantity(0, 60)
+    platform_radius_mm: float = quantity(5, 3000)
+    platform_angle_deg: float = quantity(0, 60)
+    base_joint_height_mm: float = quantity(0, 500)
+    platform_joint_height_mm: float = quantity(0, 500)
+    home_height_mm: float = quantity(1, 5000)
+
+    def geometry(self) -> LinearGeometry:
+        """The joints in metres; ConfigError where no leg lengths fix a pose."""
+        base = joint_circle(self.base_radius_mm, np.radians(self.base_angle_deg))
+        platform = joint_circle(self.platform_radius_mm, np.radians(self.platform_angle_deg))
+        base[:, 2] = self.base_joint_height_mm
+        platform[:, 2] = -self.platform_joint_height_mm
+        return _checked(base, platform, self.home_height_mm)
+
+
+@dataclass(frozen=True)
+class PointsConfig:
+    """The `geometry` section by coordinates, in millimetres: a machine as it was measured."""
+
+    base_joints_mm: SixPoints = quantity(-3000, 3000)
+    platform_joints_mm: SixPoints = quantity(-3000, 3000)
+    home_height_mm: float = quantity(1, 5000)
+
+    def geometry(self) -> LinearGeometry:
+        """The joints in metres; ConfigError where no leg lengths fix a pose."""
+        base, platform = np.array(self.base_joints_mm), np.array(self.platform_joints_mm)
+        return _checked(base, platform, self.home_height_mm)
+
+
+@dataclass(frozen=True)
+class LinearLimits:
+    """The `limits` section of a linear platform's machine file.
+
+    A stroke is a leg's length between its joint centres. The passive cone is how far a leg may
+    swing, at either end, from its direction at home.
+    """
+
+    stroke_range_mm: tuple[float, float] = quantity(1, 10_000)
+    passive_cone_deg: float = quantity(1, 180)
+    singularity_margin: float = quantity(0.001, 2)
+    characteristic_length_mm: float = quantity(1, 3000)
+
+    def __post_init__(self) -> None:
+        """Raises ConfigError for a stroke that is empty."""
+        low, high = self.stroke_range_mm
+        if not low < high:
+            raise ConfigError([f'stroke_range_mm: [{low:g}, {high:g}] is no range'])
+
+
+def joint_circle(radius: float, first_angle: float) -> Array:
+    """Six joints (6, 3) at z = 0, by Lapikov et al. 2014, eqs (2) and (3); angle in radians."""
+    third = 2 * np.pi / 3
+    angles = np.repeat([0.0, third, 2 * third, 0.0], [1, 2, 2, 1])
+    angles += first_angle * np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+    return radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(LEGS)])
+
+
+def _checked(base_mm: Array, platform_mm: Array, home_height_mm: float) -> LinearGeometry:
+    geometry = LinearGeometry(base_mm * 1e-3, platform_mm * 1e-3, home_height_mm * 1e-3)
+    check_architecture(geometry.base_points, geometry.platform_points)
+    return geometry
