@@ -1,0 +1,96 @@
+"""Boards that must all pass the same tests, behind `feed(bytes)`, `step(dt)`, `take_output()`."""
+
+import dataclasses
+
+import pytest
+
+from bridge.board import Board
+from bridge.board_modes import BoardSettings
+from bridge.frames import encode
+from bridge.framing import FrameReader
+from bridge.messages import Ack, Arm, Fault, Hello, ResetCause, State
+
+RANGE = (1100, 4900)
+JOINTS = 6
+PARK = (3000, 2900, 3100, 3000, 2900, 3100)
+SETTINGS = BoardSettings(
+    count_ranges=(RANGE,) * JOINTS,
+    count_speeds=(12_600.0,) * JOINTS,
+    arm_interval_us=150_000,
+    minimum_battery_mv=6400,
+    boot_us=300_000,
+)
+
+
+class BoardDriver:
+    """Plays the host to one board; time passes in steps of 5 ms."""
+
+    def __init__(self, make_board, **changes):
+        self.board = make_board(dataclasses.replace(SETTINGS, **changes))
+        self.reader = FrameReader()
+        self.sequence = 0
+
+    def run(self, seconds):
+        """Messages that the board sent meanwhile."""
+        messages = []
+        for _ in range(round(seconds / 0.005)):
+            self.board.step(0.005)
+            messages += [frame.message for frame in self.reader.feed(self.board.take_output())]
+        return messages
+
+    def say(self, message, sequence=None):
+        """Under the next sequence number, or a given one."""
+        if sequence is None:
+            sequence = self.sequence = (self.sequence + 1) & 0xFFFF
+        self.board.feed(encode(message, sequence))
+        return sequence
+
+    def ask(self, message, sequence=None):
+        """The result of a command."""
+        sequence = self.say(message, sequence)
+        (ack,) = [m for m in self.run(0.04) if isinstance(m, Ack)]
+        assert ack.sequence == sequence
+        return ack.result
+
+    def arm(self, park=PARK):
+        self.run(0.4)
+        result = self.ask(Arm(park))
+        self.run(1.0)
+        return result
+
+    def state(self):
+        return [m for m in self.run(0.04) if isinstance(m, State)][-1]
+
+    def counts(self):
+        return tuple(joint.count for joint in self.state().joints)
+
+    def faults(self):
+        return [m for m in self.run(0.04) if isinstance(m, Fault)]
+
+    def hellos(self, seconds):
+        return [m for m in self.run(seconds) if isinstance(m, Hello)]
+
+    def reset(self, cause=ResetCause.WATCHDOG):
+        self.board.reset(cause)
+
+
+BOARDS = {'python': Board}
+
+
+@pytest.fixture(params=BOARDS)
+def make_driver(request):
+    """A BoardDriver for settings that differ from the usual ones."""
+    return lambda **changes: BoardDriver(BOARDS[request.param], **changes)
+
+
+@pytest.fixture
+def driver(make_driver):
+    """A board that has just been switched on."""
+    return make_driver()
+
+
+@pytest.fixture
+def armed(driver):
+    """A board whose servos are all on, at PARK."""
+    driver.arm()
+    return driver

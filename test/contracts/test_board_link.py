@@ -1,0 +1,158 @@
+"""What every board does on the line: announces itself, answers, survives garbage."""
+
+import random
+
+import pytest
+
+from bridge import cobs
+from bridge.frames import checksum, encode
+from bridge.messages import (
+    Ack,
+    Arm,
+    Clear,
+    Disarm,
+    FaultCode,
+    Known,
+    Mode,
+    ResetCause,
+    Result,
+    Setpoint,
+    State,
+    Stop,
+)
+
+PARK = (3000, 2900, 3100, 3000, 2900, 3100)
+MOVED = tuple(count + 200 for count in PARK)
+
+
+def test_silent_while_it_boots_then_announces_itself_disarmed(driver):
+    assert driver.run(0.29) == []
+    hello, state = driver.run(0.02)
+    assert (hello.version, hello.joint_count) == (1, 6)
+    assert hello.reset_cause is ResetCause.POWER_ON
+    assert state.mode is Mode.DISARMED
+    assert {joint.known for joint in state.joints} == {Known.UNKNOWN}
+    assert driver.board.pulses == (None,) * 6
+
+
+def test_bytes_during_the_boot_are_lost(driver):
+    driver.run(0.1)
+    driver.say(Arm(PARK))
+    assert not [m for m in driver.run(1.0) if isinstance(m, Ack)]
+    assert driver.state().mode is Mode.DISARMED
+
+
+def test_says_hello_again_only_while_the_host_is_silent(driver):
+    assert 3 <= len(driver.hellos(1.3)) <= 5
+    spoken = []
+    for _ in range(10):
+        driver.say(Disarm())
+        spoken += driver.hellos(0.2)
+    assert spoken == []
+    assert driver.hellos(1.0)
+
+
+def test_state_comes_fifty_times_a_second_and_echoes_the_last_sequence(armed):
+    armed.say(Setpoint(200, MOVED), 1000)
+    states = [m for m in armed.run(1.0) if isinstance(m, State)]
+    assert len(states) == 50
+    assert {state.echo for state in states} == {1000}
+    ages = [state.echo_age_us for state in states[:3]]
+    assert ages == [ages[0], ages[0] + 20_000, ages[0] + 40_000]
+    assert states[-1].echo_age_us == 65535
+
+
+def test_a_repeated_command_is_answered_again_but_not_done_again(armed):
+    armed.say(Stop())
+    armed.run(0.1)
+    cleared = armed.say(Clear())
+    armed.run(0.1)
+    assert armed.ask(Clear(), cleared) is Result.OK
+    armed.say(Stop())
+    armed.run(0.1)
+    assert armed.ask(Clear(), cleared) is Result.STALE
+    assert armed.state().mode is Mode.STOPPED
+
+
+def test_a_late_arm_after_disarm_moves_nothing(driver):
+    driver.run(0.4)
+    driver.say(Disarm(), 10)
+    driver.run(0.1)
+    assert driver.ask(Arm(PARK), 9) is Result.STALE
+    assert driver.board.pulses == (None,) * 6
+
+
+def test_a_late_stop_stops(armed):
+    assert armed.ask(Stop(), armed.sequence - 1) is Result.OK
+    assert armed.state().mode is Mode.STOPPED
+
+
+@pytest.mark.parametrize('step', [0, -1, -100, 0x8000])
+def test_a_setpoint_that_is_not_newer_is_refused(armed, step):
+    armed.say(Setpoint(200, MOVED))
+    armed.run(0.1)
+    armed.say(Setpoint(200, PARK), (armed.sequence + step) & 0xFFFF)
+    assert [fault.code for fault in armed.faults()] == [FaultCode.STALE]
+    assert armed.counts() == MOVED
+
+
+def test_sequence_numbers_wrap(armed):
+    armed.sequence = 20_000
+    armed.say(Setpoint(200, PARK))
+    armed.sequence = 45_000
+    armed.say(Setpoint(200, PARK))
+    armed.sequence = 65_534
+    for k in range(4):
+        armed.say(Setpoint(200, tuple(count + k for count in PARK)))
+        armed.run(0.02)
+    assert armed.counts() == tuple(count + 3 for count in PARK)
+    assert armed.state().refused == 0
+
+
+def test_unknown_and_malformed_frames_are_refused_and_counted(armed):
+    for code, payload, fault in [(0x10, b'', 'UNKNOWN_TYPE'), (0x01, b'\1', 'MALFORMED')]:
+        body = bytes([code, 9, 9]) + payload
+        armed.board.feed(cobs.encode(body + checksum(body).to_bytes(2, 'little')) + b'\0')
+        assert [f.code.name for f in armed.faults()] == [fault]
+    assert armed.state().refused == 2
+    assert armed.state().mode is Mode.ARMED
+
+
+def test_garbage_moves_nothing_and_the_next_frame_works(armed):
+    rng = random.Random(7)
+    good = encode(Setpoint(200, MOVED), 1)
+    for _ in range(3000):
+        mutated = bytearray(good)
+        mutated[rng.randrange(len(good))] ^= rng.randrange(1, 256)
+        armed.board.feed(bytes(mutated) if rng.random() < 0.5 else rng.randbytes(40))
+    armed.board.feed(b'\0')
+    state = armed.state()
+    assert tuple(joint.count for joint in state.joints) == PARK
+    assert state.bad_frames > 1000
+    armed.say(Setpoint(200, MOVED))
+    armed.run(0.1)
+    assert armed.counts() == MOVED
+
+
+def test_a_flood_of_refusals_does_not_fill_the_line(armed):
+    for _ in range(500):
+        armed.say(Setpoint(200, (0,) * 6))
+    assert len(armed.faults()) <= 2
+    assert armed.state().refused == 500
+
+
+def test_a_restarted_board_is_silent_disarmed_and_says_why(armed):
+    armed.reset(ResetCause.WATCHDOG)
+    assert armed.board.pulses == (None,) * 6
+    assert armed.run(0.29) == []
+    hello, state = armed.run(0.02)
+    assert hello.reset_cause is ResetCause.WATCHDOG
+    assert (state.mode, state.echo, state.refused) == (Mode.DISARMED, 0, 0)
+
+
+def test_after_a_restart_any_sequence_is_taken(armed):
+    armed.sequence = 40_000
+    armed.say(Setpoint(200, PARK))
+    armed.reset()
+    armed.sequence = 5
+    assert armed.arm() is Result.OK
