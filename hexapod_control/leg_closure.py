@@ -9,7 +9,7 @@ from manipulator.arrays import Array, frozen
 from manipulator.pose import Pose
 
 TURN = 2.0 * np.pi
-CHUNK = 8192
+CHUNK = 2048  # stays in cache, and below where BLAS sets its threads to work
 
 
 @dataclass(frozen=True, eq=False)

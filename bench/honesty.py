@@ -1,0 +1,67 @@
+"""How honest a cold start is where the machine should not be: outside its workspace."""
+
+import numpy as np
+
+from bench.row import Row
+from manipulator import rotation as so3
+from manipulator.arrays import Array
+from manipulator.errors import NoSolution
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+
+LOWEST, HIGHEST, SIDEWAYS = 0.02339, 0.07, 0.025
+TRIES = 3000
+
+
+def honesty_rows(machine: Machine) -> list[Row]:
+    """For reachable poses above the lid, but beyond a limit, by their largest tilt."""
+    found = []
+    for tilt in (0.25, 0.6):
+        poses, joints = outside(machine, tilt, np.random.default_rng(3))
+        shares = judged(machine, poses, joints)
+        found += [
+            Row(f'cold start outside, tilt ≤ {tilt}: {name}', f'{100 * share:.2f} %')
+            for name, share in shares.items()
+        ]
+    return found
+
+
+def outside(machine: Machine, tilt: float, generator: np.random.Generator) -> tuple[Pose, Array]:
+    positions, rotations, angles, count = [], [], [], 0
+    while count < TRIES:
+        n = 200_000
+        box = [SIDEWAYS, SIDEWAYS]
+        xyz = generator.uniform([*(-b for b in box), LOWEST], [*box, HIGHEST], (n, 3))
+        axis = generator.standard_normal((n, 3))
+        axis /= np.sqrt((axis * axis).sum(axis=1, keepdims=True))
+        turn = so3.exp(axis * tilt * generator.uniform(0, 1, (n, 1)) ** (1 / 3))
+        poses = Pose(xyz, turn)
+        joints = machine.kinematics.inverse_or_nan(poses)
+        closed = np.flatnonzero(np.isfinite(joints).all(axis=1))
+        out = closed[~machine.constraints.admits(poses[closed], joints[closed])]
+        positions.append(poses.position[out])
+        rotations.append(poses.rotation[out])
+        angles.append(joints[out])
+        count += len(out)
+    poses = Pose(np.concatenate(positions)[:TRIES], np.concatenate(rotations)[:TRIES])
+    return poses, np.concatenate(angles)[:TRIES]
+
+
+def judged(machine: Machine, poses: Pose, joints: Array) -> dict[str, float]:
+    """Shares of the answers; a twin is a pose within all limits that has the same six angles."""
+    kinematics = machine.kinematics
+    names = ('right', 'refused', 'wrong, but beyond a limit', 'the twin within all limits')
+    counts = dict.fromkeys(names, 0)
+    for k in range(TRIES):
+        try:
+            found = kinematics.forward(joints[k]).pose
+        except NoSolution:
+            counts['refused'] += 1
+            continue
+        if np.abs(poses[k].twist_to(found)).max() < 1e-6:
+            counts['right'] += 1
+        elif machine.constraints.admits(found, joints[k]):
+            counts['the twin within all limits'] += 1
+        else:
+            counts['wrong, but beyond a limit'] += 1
+    return {name: count / TRIES for name, count in counts.items()}

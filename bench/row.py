@@ -1,0 +1,32 @@
+"""One line of the table, and how times are taken."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Row:
+    """A figure, what it should reach, and whether it does."""
+
+    name: str
+    value: str
+    goal: str = ''
+    reached: bool = True
+
+
+def interleaved_medians(tasks: Sequence[Callable[[int], object]], rounds: int) -> list[float]:
+    """Seconds of one call of each task, the medians over rounds in which all take their turn.
+
+    Each task is told the round, so that it can take another input each time. Turns by turns,
+    what else the computer does falls on all tasks alike.
+    """
+    times = np.empty((rounds, len(tasks)))
+    for k in range(rounds):
+        for column, task in enumerate(tasks):
+            before = time.perf_counter()
+            task(k)
+            times[k, column] = time.perf_counter() - before
+    return [float(t) for t in np.median(times, axis=0)]
