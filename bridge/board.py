@@ -5,7 +5,7 @@ as docs/protocol.md says. The simulated chip has the same three methods.
 """
 
 from bridge.board_modes import PULSE_PERIOD_US, BoardModes, BoardSettings
-from bridge.frames import Unreadable, encode
+from bridge.frames import DELIMITER, Unreadable, encode
 from bridge.framing import FrameReader
 from bridge.messages import (
     NO_JOINT,
@@ -106,7 +106,8 @@ class Board:
             self._has_said_hello = True
             uptime_ms = now_us // 1000 & 0xFFFF_FFFF
             joint_count = len(self.settings.count_ranges)
-            self._say(Hello(self.settings.version, self._cause, joint_count, uptime_ms))
+            hello = Hello(self.settings.version, self._cause, joint_count, uptime_ms)
+            self._say(hello, ahead=DELIMITER)  # ends what the boot loader may have said
             self._hello_at_us = now_us + HELLO_PERIOD_US
         if self._fault_to_say is not None:
             self._say(self._fault_to_say)
@@ -152,9 +153,9 @@ class Board:
         self._refused += 1
         self._fault_to_say = fault
 
-    def _say(self, message: Message) -> None:
+    def _say(self, message: Message, ahead: bytes = b'') -> None:
         self._sent = self._sent + 1 & HIGHEST_U16
-        wire = encode(message, self._sent)
+        wire = ahead + encode(message, self._sent)
         if len(self._output) + len(wire) <= MAX_OUTPUT_BYTES:
             self._output += wire
 

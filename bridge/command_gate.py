@@ -28,7 +28,7 @@ class CommandGate:
         self._calibration = calibration
         self._deadline = deadline
         self._stamps = StampGate()
-        self._names: tuple[str, ...] = ()
+        self._names: tuple[str, ...] | None = None
         self._order: list[int] = []
         self._last: Array | None = None
         self._last_at = float('-inf')

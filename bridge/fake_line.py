@@ -28,12 +28,12 @@ class FakeLine:
         self._other_end = other_end
         try:
             self._make_link()
-        except OSError as error:
-            self._close_ends()
-            raise LinkError(f'{path} cannot be made: {error.strerror}') from error
         except LinkError:
             self._close_ends()
             raise
+        except OSError as error:
+            self._close_ends()
+            raise LinkError(f'{path} cannot be made: {error.strerror}') from error
 
     def fileno(self) -> int:
         """For select."""

@@ -62,6 +62,17 @@ class Result(enum.IntEnum):
     WRONG_JOINTS = 6
 
 
+REASONS = {
+    Result.STALE: 'the board has heard a newer frame',
+    Result.STOPPED: 'the board is stopped: clear the stop first',
+    Result.FAULT: 'the board has a fault: clear it first',
+    Result.UNDERVOLTAGE: 'the battery is too low',
+    Result.OUT_OF_RANGE: 'a position is out of range',
+    Result.WRONG_JOINTS: 'the board has another number of joints',
+}
+"""Why a command was not obeyed, for people."""
+
+
 class FaultCode(enum.IntEnum):
     """Why a frame was refused, or why the mode is FAULT."""
 

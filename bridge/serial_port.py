@@ -45,7 +45,7 @@ class SerialPort:
         return int(self._port.fileno())
 
     def read(self) -> bytes:
-        """What has arrived; LinkError when the port has vanished."""
+        """What has arrived, once select says that something has; LinkError: it was the end."""
         try:
             received = os.read(self.fileno(), MAX_READ)
         except BlockingIOError:
@@ -72,5 +72,7 @@ class SerialPort:
 
 
 def _reason(error: Exception) -> str:
-    number = getattr(error, 'errno', None)
+    """What the error number means; pyserial drops the one of termios, which stands behind it."""
+    behind = error.__context__
+    number = getattr(error, 'errno', None) or (behind.args[0] if behind and behind.args else None)
     return _REASONS.get(number or 0) or f'cannot be used: {error}'

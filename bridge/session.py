@@ -18,10 +18,11 @@ from bridge.events import (
     Opened,
     StateReceived,
 )
-from bridge.frames import encode
+from bridge.frames import DELIMITER, encode
 from bridge.framing import FrameReader
 from bridge.messages import (
     PROTOCOL_VERSION,
+    REASONS,
     Ack,
     Command,
     Fault,
@@ -160,7 +161,8 @@ class Session:
                 return []
             raise Refused('a STOP is under way')
         failed = self._fail_pending(f'{type(command).__name__.upper()} came after it')
-        wire = self._send(command)
+        # The delimiter ahead ends whatever half a frame the board may have got before.
+        wire = self._send(command, ahead=DELIMITER)
         self._pending = _Pending(command, self._sequence, wire, now, tries=1)
         return failed
 
@@ -169,9 +171,9 @@ class Session:
         output, self._output = bytes(self._output), bytearray()
         return output
 
-    def _send(self, message: Setpoint | Command) -> bytes:
+    def _send(self, message: Setpoint | Command, ahead: bytes = b'') -> bytes:
         self._sequence = self._sequence + 1 & 0xFFFF
-        wire = encode(message, self._sequence)
+        wire = ahead + encode(message, self._sequence)
         self._output += wire
         return wire
 
@@ -233,20 +235,10 @@ class Session:
         if pending is None or ack.sequence != pending.sequence:
             return []
         if ack.result is not Result.OK:
-            return self._fail_pending(_REASONS[ack.result])
+            return self._fail_pending(REASONS[ack.result])
         self._pending = None
         return [Acknowledged(pending.command)]
 
     def _fail_pending(self, reason: str) -> list[Event]:
         pending, self._pending = self._pending, None
         return [CommandFailed(pending.command, reason)] if pending else []
-
-
-_REASONS = {
-    Result.STALE: 'the board has heard a newer frame',
-    Result.STOPPED: 'the board is stopped: clear the stop first',
-    Result.FAULT: 'the board has a fault: clear it first',
-    Result.UNDERVOLTAGE: 'the battery is too low',
-    Result.OUT_OF_RANGE: 'a position is out of range',
-    Result.WRONG_JOINTS: 'the board has another number of joints',
-}

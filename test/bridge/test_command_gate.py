@@ -1,0 +1,141 @@
+import math
+
+import numpy as np
+import pytest
+
+from bridge.calibration import Calibration
+from bridge.command_gate import CommandGate
+from bridge.servo_config import BoardConfig
+from hexarm import machines
+from manipulator.errors import InvalidInput, ManipulatorError, Refused
+
+CALIBRATION = Calibration.from_config(BoardConfig.from_machine(machines.read('robocake')).servos)
+NAMES = list(CALIBRATION.names)
+PARK = CALIBRATION.park
+NOW = 1000.0
+
+
+@pytest.fixture
+def gate():
+    return CommandGate(CALIBRATION, deadline=0.2)
+
+
+def admit(gate, positions=PARK, names=NAMES, stamp=None, receipt=NOW, present=PARK):
+    return gate.admit(names, positions, stamp, receipt, present)
+
+
+def test_a_good_command_becomes_a_setpoint_with_the_deadline(gate):
+    setpoint = admit(gate)
+    assert setpoint.deadline_ms == 200
+    assert setpoint.counts == (3000,) * 6
+
+
+def test_joints_may_come_in_any_order(gate):
+    wanted = PARK + np.radians([1, 2, 3, 4, 5, 6])
+    order = [3, 0, 5, 1, 4, 2]
+    shuffled = admit(gate, wanted[order], [NAMES[i] for i in order])
+    assert shuffled == admit(gate, wanted)
+    assert len(set(shuffled.counts)) == 6
+
+
+@pytest.mark.parametrize(
+    ('names', 'problem'),
+    [
+        ([*NAMES[:5], 'crank_7'], "unknown joint 'crank_7'"),
+        ([*NAMES[:5], 'crank_1'], 'joint crank_1 stands twice'),
+        (NAMES[:4], 'no position for crank_5, crank_6'),
+        ([], 'no position for crank_1'),
+        ([f'j{i}' for i in range(10_000)], "unknown joint 'j0'"),
+        (['x' * 100_000], "unknown joint 'x{80}'"),
+    ],
+)
+def test_wrong_names_are_named(gate, names, problem):
+    with pytest.raises(InvalidInput, match=problem) as caught:
+        admit(gate, np.full(len(names), 2.0), names)
+    assert len(str(caught.value)) < 300
+
+
+def test_names_without_positions_are_refused(gate):
+    with pytest.raises(InvalidInput, match='6 joint names, but 5 positions'):
+        admit(gate, PARK[:5])
+
+
+@pytest.mark.parametrize('bad', [math.nan, math.inf, 3.9])
+def test_a_bad_value_refuses_the_whole_and_the_next_good_command_works(gate, bad):
+    wanted = PARK.copy()
+    wanted[3] = bad
+    with pytest.raises(InvalidInput, match='crank_4'):
+        admit(gate, wanted)
+    assert admit(gate).counts == (3000,) * 6
+
+
+def test_reordered_and_old_commands_are_refused(gate):
+    admit(gate, stamp=50.0, receipt=NOW)
+    with pytest.raises(InvalidInput, match='reordered'):
+        admit(gate, stamp=49.9, receipt=NOW + 0.01)
+    with pytest.raises(InvalidInput, match='old'):
+        admit(gate, stamp=50.1, receipt=NOW + 2.0)
+    admit(gate, stamp=52.1, receipt=NOW + 2.1)
+
+
+def test_a_sender_whose_clock_is_off_by_an_hour_is_heard_and_reported(gate):
+    for k in range(10):
+        admit(gate, stamp=NOW - 3600 + 0.01 * k, receipt=NOW + 0.01 * k)
+    assert gate.clock_offset == pytest.approx(3600)
+    assert gate.has_notable_offset
+
+
+def test_the_first_command_must_start_where_the_joints_are(gate):
+    wanted = PARK.copy()
+    wanted[1] += math.radians(13)
+    with pytest.raises(Refused, match=r'crank_2: .* would jump by .* from where the joint is'):
+        admit(gate, wanted)
+    wanted[1] -= math.radians(2)
+    assert admit(gate, wanted).counts[1] != 3000
+
+
+def test_a_stream_at_the_servos_speed_passes_and_a_faster_one_does_not(gate):
+    speed, angle = CALIBRATION.speed, 0.0
+    for k in range(10):
+        angle = 0.95 * speed * 0.01 * k
+        admit(gate, PARK + angle * np.array([1, 0, 0, 0, 0, 0]), receipt=NOW + 0.01 * k)
+    leap = PARK + (angle + speed * 0.035) * np.array([1, 0, 0, 0, 0, 0])
+    with pytest.raises(Refused, match=r'crank_1: .* from the last command'):
+        admit(gate, leap, receipt=NOW + 0.1)
+
+
+def test_after_a_silence_the_joints_count_and_not_the_last_command(gate):
+    admit(gate, PARK)
+    moved = PARK + 0.15
+    with pytest.raises(Refused, match='where the joint is'):
+        admit(gate, PARK, receipt=NOW + 0.3, present=PARK + 0.3)
+    admit(gate, moved, receipt=NOW + 0.3, present=moved)
+
+
+def test_repeating_a_leap_does_not_make_it_pass(gate):
+    admit(gate, PARK)
+    refused = 0
+    for k in range(1, 100):
+        try:
+            admit(gate, PARK + 1.0, receipt=NOW + 0.01 * k)
+        except Refused:
+            refused += 1
+    assert refused == 99
+
+
+def test_without_known_joints_nothing_passes(gate):
+    for present in (None, np.full(6, np.nan), np.append(PARK[:5], np.nan)):
+        with pytest.raises(Refused, match='not known yet'):
+            admit(gate, present=present)
+
+
+def test_after_restart_the_joints_count_again(gate):
+    admit(gate, PARK)
+    gate.restart()
+    with pytest.raises(Refused, match='where the joint is'):
+        admit(gate, PARK, present=PARK + 0.5)
+
+
+def test_every_refusal_is_one_of_ours(gate):
+    with pytest.raises(ManipulatorError):
+        admit(gate, ['a'] * 0, ['b'])

@@ -1,0 +1,199 @@
+"""The I/O thread on a real pty, with the fake board at the other end."""
+
+import os
+import threading
+import time
+
+import pytest
+
+from bridge.board_thread import BoardThread, FakeMachine
+from bridge.events import Connected, Disconnected, StateReceived
+from bridge.fake_line import FakeLine
+from bridge.link_thread import LinkThread, Ticket
+from bridge.messages import Arm, Clear, Mode, ResetCause, Setpoint, Stop
+from bridge.serial_port import SerialPort
+from bridge.servo_config import BoardConfig
+from bridge.session import Session
+from hexarm import machines
+from manipulator.errors import Refused
+
+CONFIG = BoardConfig.from_machine(machines.read('robocake'))
+PARK = (3000,) * 6
+
+
+class Rig:
+    """A link thread, the board it talks to, and all that it said."""
+
+    def __init__(self, path):
+        self.path = path
+        self.events = []
+        self.written = []
+        self.changed = threading.Condition()
+        self.machine = FakeMachine.from_config(CONFIG, boot_s=0.1, hysteresis=0.0)
+        self.board = BoardThread(self.machine, FakeLine(path), lambda positions: None)
+        self.link = LinkThread(
+            lambda: SerialPort(str(path), 250_000),
+            Session(6),
+            self._note,
+            lambda ticket, now: self.written.append(ticket),
+        )
+        self.board.start()
+        self.link.start()
+
+    def _note(self, event):
+        with self.changed:
+            if not isinstance(event, StateReceived):
+                self.events.append(event)
+            self.changed.notify_all()
+
+    def wait_for(self, condition):
+        with self.changed:
+            assert self.changed.wait_for(condition, timeout=5.0), self.events
+
+    def wait_for_event(self, kind, count=1):
+        self.wait_for(lambda: sum(isinstance(e, kind) for e in self.events) >= count)
+
+    def wait_for_mode(self, mode):
+        self.wait_for(lambda: self.link.session.state and self.link.session.state.mode is mode)
+
+    def arm(self):
+        self.wait_for_event(Connected)
+        self.link.request(Arm(PARK)).result(2.0)
+        self.wait_for_mode(Mode.ARMED)
+
+    def put(self, counts):
+        self.link.put_setpoint(Ticket(Setpoint(200, counts), time.monotonic()))
+
+    def close(self):
+        self.link.close()
+        self.board.close()
+
+
+@pytest.fixture
+def rig(tmp_path):
+    rig = Rig(tmp_path / 'board')
+    yield rig
+    rig.close()
+
+
+@pytest.fixture
+def no_board(tmp_path):
+    """A link that looks for a port which is not there."""
+    events = []
+    link = LinkThread(lambda: SerialPort(str(tmp_path / 'no'), 250_000), Session(6), events.append)
+    link.start()
+    yield link, events
+    link.close()
+
+
+def test_setpoints_reach_the_servos(rig):
+    rig.arm()
+    rig.put((3200,) * 6)
+    rig.wait_for(lambda: rig.link.session.state.joints[0].count == 3200)
+    assert [ticket.setpoint.counts for ticket in rig.written] == [(3200,) * 6]
+    rig.wait_for_mode(Mode.HOLDING)
+
+
+def test_the_newest_setpoint_wins(rig):
+    rig.arm()
+    for k in range(2000):
+        rig.put((3000 + k % 100,) * 6)
+    rig.put((3250,) * 6)
+    rig.wait_for(lambda: rig.link.session.state.joints[0].count == 3250)
+    assert rig.written[-1].setpoint.counts == (3250,) * 6
+
+
+def test_setpoints_while_disarmed_are_dropped_and_not_kept_for_later(rig):
+    rig.wait_for_event(Connected)
+    rig.put((3300,) * 6)
+    rig.arm()
+    assert rig.written == []
+    assert rig.machine.board.pulses == (3000.0,) * 6
+
+
+def test_a_setpoint_older_than_its_deadline_is_not_written(rig):
+    rig.arm()
+    rig.link.put_setpoint(Ticket(Setpoint(200, (3300,) * 6), time.monotonic() - 0.25))
+    rig.put((3100,) * 6)
+    rig.wait_for(lambda: rig.link.session.state.joints[0].count == 3100)
+    assert [ticket.setpoint.counts for ticket in rig.written] == [(3100,) * 6]
+
+
+def test_stop_is_answered_and_further_stops_too(rig):
+    rig.arm()
+    futures = [rig.link.request(Stop()) for _ in range(5)]
+    assert [future.result(2.0) for future in futures] == [None] * 5
+    rig.wait_for_mode(Mode.STOPPED)
+    with pytest.raises(Refused, match='clear the stop first'):
+        rig.link.request(Arm(PARK)).result(2.0)
+    rig.link.request(Clear()).result(2.0)
+
+
+def test_an_unplugged_board_is_lost_and_found_again_disarmed(rig):
+    rig.arm()
+    rig.board.do(lambda: rig.board.plug(None))
+    rig.wait_for_event(Disconnected)
+    assert 'has vanished' in rig.events[-1].reason
+    assert not rig.path.exists()
+    with pytest.raises(Refused, match='no board'):
+        rig.link.request(Arm(PARK)).result(2.0)
+    line = FakeLine(rig.path)
+    rig.board.do(lambda: rig.board.plug(line))
+    rig.wait_for_event(Connected, 2)
+    assert rig.link.session.state.mode is Mode.DISARMED
+    assert rig.machine.board.pulses == (None,) * 6
+
+
+def test_a_reset_in_motion_ends_disarmed(rig):
+    rig.arm()
+    rig.put((3200,) * 6)
+    rig.board.do(lambda: rig.machine.board.reset(ResetCause.WATCHDOG))
+    rig.wait_for_event(Connected, 2)
+    rig.put((3200,) * 6)
+    assert rig.link.session.state.mode is Mode.DISARMED
+
+
+def test_a_mute_board_is_lost_though_the_port_is_open(rig):
+    rig.arm()
+    rig.board.is_mute = True
+    rig.wait_for_event(Disconnected)
+    assert 'silent' in rig.events[-1].reason
+    rig.board.is_mute = False
+    rig.wait_for_event(Connected, 2)
+
+
+def test_a_missing_port_is_said_and_looked_for(no_board):
+    link, events = no_board
+    with pytest.raises(Refused, match='no board to talk to: no port'):
+        link.request(Stop()).result(2.0)
+    deadline = time.monotonic() + 5.0
+    while len(events) < 3 and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert 'does not exist' in events[2].reason
+
+
+def test_a_device_that_sends_noise_without_end_stalls_nothing(tmp_path):
+    line = FakeLine(tmp_path / 'noise')
+    is_over = threading.Event()
+    noise = os.urandom(4000)
+
+    def shout():
+        while not is_over.is_set():
+            line.write(noise)
+
+    shouter = threading.Thread(target=shout)
+    link = LinkThread(lambda: SerialPort(str(line.path), 250_000), Session(6), lambda event: None)
+    shouter.start()
+    link.start()
+    try:
+        deadline = time.monotonic() + 5.0
+        while link.session.reader.bad_frames < 1000 and time.monotonic() < deadline:
+            time.sleep(0.01)
+        with pytest.raises(Refused, match='waiting for HELLO'):
+            link.request(Stop()).result(2.0)
+        assert link.session.reader.bad_frames >= 1000
+    finally:
+        is_over.set()
+        shouter.join()
+        link.close()
+        line.close()
