@@ -29,7 +29,16 @@ setup(
         ],
         'plot': ['matplotlib>=3.8'],
         'terminal': ['rich>=13'],
-        'test': ['pytest>=8', 'hypothesis>=6.100', 'mypy>=1.11', 'ruff>=0.6', 'types-PyYAML>=6.0'],
+        'test': [
+            'pytest>=8',
+            'hypothesis>=6.100',
+            'mypy>=1.11',
+            'ruff>=0.6',
+            'types-PyYAML>=6.0',
+            'colcon-core>=0.18',
+            'colcon-ros>=0.5',
+            'setuptools>=70.1,<80',  # builds wheels by itself, and still what colcon calls
+        ],
     },
     entry_points={
         'console_scripts': [

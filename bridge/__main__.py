@@ -3,6 +3,7 @@
 import sys
 
 from bridge import executables
+from manipulator.nodes.run import run_named
 
 if __name__ == '__main__':
-    sys.exit(getattr(executables, sys.argv.pop(1))())
+    sys.exit(run_named(executables.fake_hardware, executables.serial_bridge))

@@ -1,5 +1,7 @@
 """The executables of parallel platforms: hexapod_trajectory, hexapod_ik, hexapod_pose."""
 
+from rclpy.node import Node
+
 from hexarm.machines import load
 from manipulator.nodes.run import run_node
 
@@ -8,14 +10,18 @@ MACHINE = 'robocake'
 
 def trajectory() -> int:
     """Runs the trajectory node."""
-    from manipulator.nodes.trajectory_node import TrajectoryNode  # noqa: PLC0415 (starts faster)
 
-    return run_node(lambda: TrajectoryNode(load, MACHINE))
+    def make() -> Node:
+        from manipulator.nodes.trajectory_node import TrajectoryNode  # noqa: PLC0415 (needs ruckig)
+
+        return TrajectoryNode(load, MACHINE)
+
+    return run_node(make)
 
 
 def ik() -> int:
     """Runs the inverse kinematics node."""
-    from manipulator.nodes.ik_node import IkNode  # noqa: PLC0415
+    from manipulator.nodes.ik_node import IkNode  # noqa: PLC0415 (starts faster)
 
     return run_node(lambda: IkNode(load, MACHINE))
 

@@ -13,6 +13,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from manipulator.errors import ManipulatorError
+from manipulator.requirements import missing
 
 
 def run_node(make_node: Callable[[], Node]) -> int:
@@ -25,8 +26,9 @@ def run_node(make_node: Callable[[], Node]) -> int:
     rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
     try:
         node = make_node()
-    except (ManipulatorError, ParameterException) as error:
-        print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {error}', file=sys.stderr)
+    except (ManipulatorError, ParameterException, ModuleNotFoundError) as error:
+        said = missing(error) if isinstance(error, ModuleNotFoundError) else str(error)
+        print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {said}', file=sys.stderr)
         try_shutdown()
         return 1
     executor = EventsExecutor()
@@ -42,6 +44,17 @@ def run_node(make_node: Callable[[], Node]) -> int:
         node.destroy_node()
         try_shutdown()
     return 0
+
+
+def run_named(*executables: Callable[[], int | None]) -> int | None:
+    """`python -m ROOM NAME …`: runs the executable of that name; status 2 where there is none."""
+    named = {run.__name__: run for run in executables}
+    name = sys.argv[1] if len(sys.argv) > 1 else ''
+    if name not in named:
+        print(f'needs one of the names {", ".join(named)}', file=sys.stderr)
+        return 2
+    sys.argv[:2] = [name]
+    return named[name]()
 
 
 class _StopRequest:

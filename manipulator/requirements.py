@@ -1,0 +1,16 @@
+"""What to say when a library that only some commands need is not installed."""
+
+INSTALL = {
+    'ruckig': 'python3 -m pip install ruckig',
+    'serial': 'python3 -m pip install pyserial',
+    'matplotlib': 'python3 -m pip install matplotlib',
+    'rclpy': 'install ROS 2 Jazzy and source its setup.bash, or pip install hexarm[ros]',
+}
+
+
+def missing(error: ModuleNotFoundError) -> str:
+    """One sentence with the way out; a module that is not ours to name is raised again."""
+    name = (error.name or '').split('.')[0]
+    if name not in INSTALL:
+        raise error
+    return f'needs the Python module {name}: {INSTALL[name]}'

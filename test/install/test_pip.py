@@ -1,0 +1,101 @@
+"""`pip install .` in an environment of its own, and no installation at all."""
+
+import json
+import os
+import subprocess
+import sys
+import sysconfig
+import venv
+
+import pytest
+
+TOOLS = {'hexarm', 'hexapod_ik', 'hexapod_pose', 'hexapod_trajectory', 'serial_bridge'}
+
+
+@pytest.fixture(scope='module')
+def scratch(source, run, tmp_path_factory):
+    """A virtual environment with hexarm from a wheel; dependencies come from ours."""
+    folder = tmp_path_factory.mktemp('pip')
+    pip = (sys.executable, '-m', 'pip', '--disable-pip-version-check')
+    offline = ('--no-deps', '--no-index')
+    run(*pip, 'wheel', *offline, '--no-build-isolation', '-w', folder, source)
+    (wheel,) = folder.glob('hexarm-*.whl')
+    environment = folder / 'environment'
+    venv.create(environment, symlinks=True)
+    run(*pip, '--python', environment / 'bin' / 'python', 'install', *offline, wheel)
+    (packages,) = environment.glob('lib/python3*/site-packages')
+    (packages / 'dependencies.pth').write_text(sysconfig.get_path('purelib') + '\n')
+    return environment
+
+
+@pytest.fixture
+def nowhere(tmp_path):
+    """Options of a process that starts far from the source tree, without its paths."""
+    kept = {k: v for k, v in os.environ.items() if k != 'PYTHONPATH'}
+    return {'cwd': tmp_path, 'env': kept}
+
+
+def test_every_command_is_in_bin(scratch, executables):
+    assert executables >= TOOLS
+    assert executables <= {file.name for file in (scratch / 'bin').iterdir()}
+
+
+def test_machine_files_are_found_in_the_environment(scratch, machines, run, nowhere):
+    answer = json.loads(run(scratch / 'bin' / 'hexarm', 'machines', '--json', **nowhere))
+    assert {entry['name'] for entry in answer['machines']} == machines
+    config = scratch / 'share' / 'hexarm' / 'config'
+    assert {entry['path'] for entry in answer['machines']} == {
+        str(config / f'{name}.yaml') for name in machines
+    }
+
+
+def test_installed_kinematics_answers(scratch, run, nowhere):
+    words = ('ik', 'robocake', '--xyz', '0', '0', '0.04119', '--json')
+    joints = json.loads(run(scratch / 'bin' / 'hexarm', *words, **nowhere))['joints']
+    assert joints['positions'] == pytest.approx([2.0945] * 6, abs=1e-3)
+
+
+def test_source_tree_runs_without_installation(source, machines, run):
+    answer = json.loads(run(sys.executable, '-m', 'hexarm', 'machines', '--json', cwd=source))
+    assert {entry['path'] for entry in answer['machines']} == {
+        str(source / 'config' / f'{name}.yaml') for name in machines
+    }
+
+
+def refusal(source, *words, **variables):
+    """Status and message of a module of the source tree that does not start."""
+    done = subprocess.run(
+        [sys.executable, '-m', *words],
+        check=False,
+        cwd=source,
+        env=os.environ | variables,
+        text=True,
+        capture_output=True,
+        timeout=30,
+    )
+    return done.returncode, done.stderr.strip()
+
+
+@pytest.mark.parametrize(
+    ('room', 'names'),
+    [('hexapod_control', 'ik, pose, trajectory'), ('bridge', 'fake_hardware, serial_bridge')],
+)
+def test_room_without_an_executable_lists_its_own(source, room, names):
+    assert refusal(source, room, 'ink') == (2, f'needs one of the names {names}')
+
+
+def test_node_of_the_source_tree_names_the_machines_that_it_ships(source):
+    words = ('hexapod_control', 'ik', '--ros-args', '-p', 'machine:=robocale')
+    status, said = refusal(source, *words)
+    assert status == 1
+    assert said.startswith("ik: no machine is called 'robocale', did you mean 'robocake'?")
+    assert len(said.splitlines()) == 1
+
+
+def test_missing_ruckig_is_said_in_one_sentence(source, tmp_path):
+    (tmp_path / 'ruckig.py').write_text('raise ModuleNotFoundError("gone", name="ruckig")\n')
+    paths = os.pathsep.join([str(tmp_path), os.environ.get('PYTHONPATH', '')])
+    assert refusal(source, 'hexapod_control', 'trajectory', PYTHONPATH=paths) == (
+        1,
+        'trajectory: needs the Python module ruckig: python3 -m pip install ruckig',
+    )
