@@ -62,11 +62,15 @@ def test_cold_forward_finds_the_pose_that_made_the_joints(subject):
 def test_warm_forward_finds_the_pose_from_one_nearby(subject):
     twists = np.random.default_rng(21).uniform(-1, 1, (POSES, 6)) * ([5e-4] * 3 + [0.01] * 3)
     starts = subject.poses.moved(twists)
+    iterations = np.zeros(2)
     for k in range(POSES):
         solution = subject.machine.kinematics.forward(subject.joints[k], starts[k])
+        cold = subject.machine.kinematics.forward(subject.joints[k])
+        iterations += solution.iterations, cold.iterations
         error = subject.poses[k].twist_to(solution.pose)
         assert np.abs(error[:3]).max() < 1e-9
         assert np.abs(error[3:]).max() < 1e-8
+    assert iterations[0] <= 0.9 * iterations[1]
 
 
 def test_forward_reports_what_the_pose_deserves(subject):

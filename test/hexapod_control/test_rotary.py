@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from hexapod_control.geometry import HexagonConfig, RotaryGeometry
 from hexapod_control.rotary import RotaryHexapod
@@ -240,3 +242,55 @@ def test_cold_answers_outside_are_right_refused_or_have_a_twin_inside(robocake, 
     assert refused > 0
     assert right > 0
     assert twins <= 0.25 * len(outside)
+
+
+def test_a_warm_start_follows_a_pose_that_a_cold_start_takes_for_its_twin(hexapod):
+    # Below the lid and beyond the singularity; its angles fit a pose inside as well.
+    pose = Pose.from_xyz_rpy([0.0, 0.0, 0.005])
+    joints = hexapod.inverse(pose)
+    start = pose.moved([0.0003, 0.0, 0.0003, 0.0, 0.005, 0.0])
+    assert np.abs(pose.twist_to(hexapod.forward(joints, start).pose)).max() < 1e-9
+    assert np.linalg.det(hexapod.leg_jacobian(pose, joints)) * hexapod.home_side < 0
+    try:
+        assert hexapod.forward(joints).pose.position[2] > 0.015
+    except NoSolution as refusal:
+        assert 'margin' in str(refusal)
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=40, deadline=None)
+def test_any_crank_machine_closes_and_comes_back(seed):
+    """RoboCake with joints, lengths and crank planes of its own in every leg."""
+    generator = np.random.default_rng(seed)
+    turn = np.arange(6) * np.pi / 3
+    sigma = np.array([-1.0, 1.0] * 3)
+
+    def around(radial, along, height):
+        x, y = (np.cos(turn), np.sin(turn)), (-np.sin(turn), np.cos(turn))
+        flat = np.multiply(x, radial) + np.multiply(y, along)
+        return np.vstack([flat, np.broadcast_to(height, 6)]).T
+
+    machine = RotaryHexapod(
+        RotaryGeometry(
+            around(96.5, sigma * 5.8, 0.0) * 1e-3 + generator.uniform(-2e-3, 2e-3, (6, 3)),
+            around(0.0, -sigma, 0.0) + generator.uniform(-0.1, 0.1, (6, 3)),
+            around(70.0, -sigma * 30.0, 0.0) * 1e-3 + generator.uniform(-2e-3, 2e-3, (6, 3)),
+            generator.uniform(0.016, 0.020, 6),
+            generator.uniform(0.057, 0.060, 6),
+            0.041,
+        ),
+        0.07,
+        0.2,
+        2.0,
+    )
+    twists = generator.uniform(-1, 1, (20, 6)) * ([0.004] * 3 + [0.06] * 3)
+    start = Pose(np.tile(machine.home.position, (20, 1)), machine.home.rotation)
+    poses = start.moved(twists)
+    joints = machine.inverse_or_nan(poses)
+    closed = np.isfinite(joints).all(axis=1)
+    assert closed.sum() >= 10
+    poses, joints = poses[closed], joints[closed]
+    assert np.abs(rod_lengths(machine, poses, joints) - machine.geometry.rod_lengths).max() < 1e-12
+    for k, angles in enumerate(joints):
+        found = machine.forward(angles).pose
+        assert np.abs(poses[k].twist_to(found)).max() < 1e-8
