@@ -11,9 +11,10 @@ from manipulator.arrays import Array
 class DampedInverse:
     """J = U·Σ·Vᵀ, with metres divided by the arm's length, and the gain of each direction.
 
-    Above `onset` a direction's gain is 1/σ exactly. Below, it is σ/(σ² + λ²) with
-    λ = (onset/2)·(1 − (σ/onset)²): smooth at the onset, at most 1/(0.87·onset), 0 at σ = 0
-    (after Maciejewski and Klein, Int. J. Robotics Research 7(6), 1988: numerical filtering).
+    Down to `onset` ε a direction's gain is 1/σ exactly, below it 4σε² / (ε² + σ²)²: the damped
+    σ / (σ² + λ²) with λ = (ε/2)·(1 − (σ/ε)²), so that value and slope are continuous. No gain
+    exceeds 1.3/ε, and none is left at σ = 0 (numerical filtering after Maciejewski and Klein,
+    Int. J. Robotics Research 7(6), 1988).
     """
 
     left: Array
@@ -25,12 +26,11 @@ class DampedInverse:
     def of(cls, scaled_jacobian: Array, onset: float) -> 'DampedInverse':
         """Decomposes one scaled Jacobian (6, 6)."""
         left, sigma, right = np.linalg.svd(scaled_jacobian)
-        smallest = sigma[-1]
-        if smallest >= onset:
+        if sigma[-1] >= onset:
             gains = 1.0 / sigma
         else:
-            nearness = np.maximum(1.0 - (sigma / onset) ** 2, 0.0)
-            gains = sigma / (sigma**2 + (0.5 * onset * nearness) ** 2)
+            damped = 4 * sigma * onset**2 / (onset**2 + sigma**2) ** 2
+            gains = np.where(sigma < onset, damped, 1.0 / np.maximum(sigma, onset))
         return cls(left, right, sigma, gains)
 
     @property

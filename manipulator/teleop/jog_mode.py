@@ -1,0 +1,29 @@
+"""What a jog mode is: a reference latched when motion begins, and a loop closed on it."""
+
+from typing import Protocol
+
+from manipulator.arrays import Array
+from manipulator.pose import Pose
+
+
+class Held(Protocol):
+    """A mode in motion, with its reference. A value: `step` returns its successor.
+
+    Twists are (6,), of the tool in base axes, in m/s and rad/s; poses are the measured ones, and
+    may be late by the delay for which the mode's feedback was chosen.
+    """
+
+    def step(self, command: Array, pose: Pose) -> 'tuple[Array, Held]':
+        """The twist to drive for the operator's command, and the mode for the next tick."""
+        ...
+
+
+class JogMode(Protocol):
+    """A mode at rest."""
+
+    def latched(self, pose: Pose) -> Held:
+        """The mode in motion, its reference taken from the pose at which motion begins.
+
+        Raises Refused where the mode has no meaning.
+        """
+        ...
