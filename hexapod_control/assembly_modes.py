@@ -27,7 +27,8 @@ NEARLY_REAL = 1e-4  # and that can come of two real solutions which almost meet
 DOUBLE = 1e-5  # σmin where two solutions meet
 SAME = 1e-5  # distance of two poses that are one, as part of the platform's size
 TOLERANCE = 1e-10  # of the leg lengths, relative
-MOST_ITERATIONS = 40
+ROUNDING = 4e-15  # and what no further step improves
+MOST_ITERATIONS = 30
 
 Complex = NDArray[np.complex128]
 
@@ -185,7 +186,7 @@ def _polished(base: Array, platform: Array, lengths: Array, poses: Pose) -> tupl
     for _ in range(MOST_ITERATIONS):
         error = lengths - np.linalg.norm(rods(base, platform, poses), axis=-1)
         worst = np.max(np.abs(error), axis=-1, initial=0.0)
-        if np.all(worst < 1e-15 * lengths.max()):
+        if np.all(worst < ROUNDING * lengths.max()):
             break
         inverse = np.linalg.pinv(leg_jacobian(base, platform, poses), rcond=1e-12)
         poses = poses.moved(np.einsum('mij,mj->mi', inverse, error))

@@ -70,7 +70,7 @@ class LegEquations:
         return cls(a, b, d, float(legs[0]), scale, u, sigma, v, kappa[0], kappa[1])
 
     def generators(self) -> list[Generators]:
-        """The cubics (8), quartics (7) and sextics (9)."""
+        """The cubics (8), quartics (7) and sextics (9) of docs/forward-modes.md, section 3."""
         e, fits = _samples()
         n, q5, Q, u1, u2, c = self._parts(e)
         alpha, beta = self.sigma[4] * self.v[4] @ np.stack([self.kappa1, self.kappa2]).T

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hexapod_control.assembly_modes import assembly_modes
+from hexapod_control.assembly_modes import _null_space, assembly_modes
 from hexapod_control.forward import ForwardByLengths
 from hexapod_control.geometry import HexagonConfig
 from hexapod_control.linear_geometry import joint_circle
@@ -234,3 +234,13 @@ def test_wrong_input_is_named():
         assembly_modes(base[:5], platform, np.ones(6))
     with pytest.raises(InvalidInput, match='leg lengths'):
         assembly_modes(base, platform, [1, 1, np.nan, 1, 1, 1])
+
+
+def test_the_null_space_is_exact_though_found_from_squares():
+    random = np.random.default_rng(13)
+    left, right = (np.linalg.qr(random.normal(size=(60, 60)))[0] for _ in range(2))
+    singular = np.concatenate([np.geomspace(1.0, 1e-4, 50), np.zeros(10)])
+    matrix = (left * singular) @ right.T
+    null = _null_space(matrix)
+    assert null.shape == (60, 10)
+    assert np.abs(right[:, :50].T @ null).max() < 1e-11
