@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from hexapod_control.load import hexapod
+from hexapod_control import load
+from hexapod_control.workspace import sample
 from manipulator.config import build, parse_yaml
 from manipulator.machine import MachineFile
 
@@ -18,4 +20,15 @@ def robocake_content():
 
 @pytest.fixture(scope='session')
 def robocake():
-    return hexapod(build(MachineFile, parse_yaml(ROBOCAKE.read_text())))
+    return load.hexapod(build(MachineFile, parse_yaml(ROBOCAKE.read_text())))
+
+
+@pytest.fixture(scope='session')
+def hexapod(robocake):
+    return robocake.kinematics
+
+
+@pytest.fixture(scope='session')
+def many(robocake):
+    """10,000 poses of the whole workspace."""
+    return sample(robocake, 10_000, np.random.default_rng(1))

@@ -5,11 +5,6 @@ from hexapod_control.passive_joints import CrankJointTilt, PlatformJointSwing
 from manipulator.pose import Pose
 
 
-@pytest.fixture(scope='module')
-def hexapod(robocake):
-    return robocake.kinematics
-
-
 def rods(hexapod, pose, joints):
     g = hexapod.geometry
     ends = g.platform_points @ pose.rotation.T + pose.position
