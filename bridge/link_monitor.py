@@ -16,7 +16,7 @@ from bridge.events import (
     StateReceived,
 )
 from bridge.machine_status import MachineStatus, machine_status
-from bridge.messages import NO_JOINT, Arm, Disarm, Fault, Known, Mode, State
+from bridge.messages import NO_JOINT, Arm, Fault, Known, Mode, State
 from bridge.session import Session
 from manipulator.arrays import Array
 
@@ -86,8 +86,6 @@ class LinkMonitor:
                 self.is_enabled_here = False
             case Acknowledged(Arm()):
                 self.is_enabled_here = True
-            case Acknowledged(Disarm()):
-                self.is_enabled_here = False
             case FaultReported(fault):
                 self.refuse(f'the board: {self._text(fault)}')
             case StateReceived(state):

@@ -11,7 +11,7 @@ OK, WARN, ERROR = 0, 1, 2
 @dataclass(frozen=True)
 class MachineStatus:
     """level is OK, WARN or ERROR; `word` one of disconnected, booting, disarmed, arming, enabled,
-    holding, stopped, fault; `reason` is empty where all is well.
+    holding, unclaimed, stopped, fault; `reason` is empty where all is well.
     """
 
     level: int
@@ -43,5 +43,5 @@ def machine_status(session: Session, is_enabled_here: bool, trouble: str) -> Mac
         return MachineStatus(ERROR, 'fault', _FAULTS.get(state.fault, state.fault.name.lower()))
     if state.mode in (Mode.ARMED, Mode.HOLDING) and not is_enabled_here:
         reason = 'the servos are on, but this bridge was not asked: call ~/enable'
-        return MachineStatus(WARN, 'holding', reason)
+        return MachineStatus(WARN, 'unclaimed', reason)
     return _MODES[state.mode]

@@ -202,11 +202,15 @@ class Session:
         return events
 
     def _has_restarted(self, hello: Hello, now: float) -> bool:
-        """Whether the board's clock stands before where it should be by now (it wraps)."""
+        """Whether the board's clock (it wraps) ran less than half as long as ours since its HELLO.
+
+        A board's resonator is off by a percent, and a simulated board may stall: neither counts.
+        """
         if self.hello is None:
             return False
-        expected = self.hello.uptime_ms + round(1000 * (now - self._greeted_at))
-        return UPTIME_SLACK_MS < expected - hello.uptime_ms & 0xFFFF_FFFF < 0x8000_0000
+        advance = hello.uptime_ms - self.hello.uptime_ms & 0xFFFF_FFFF
+        elapsed_ms = 1000 * (now - self._greeted_at)
+        return advance + UPTIME_SLACK_MS < elapsed_ms / 2 or advance >= 0x8000_0000
 
     def _misfit(self, hello: Hello) -> str:
         if hello.version != PROTOCOL_VERSION:

@@ -1,1 +1,7 @@
 """The `hexarm` command, one file per subcommand."""
+
+import os
+
+# Before numpy is imported: for 6×6 systems BLAS threads only cost, and on busy cores a call that
+# waits for one of them can stall for a second.
+os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')

@@ -23,6 +23,10 @@ class NotReady(ManipulatorError, TimeoutError):
     """The graph did not do in time what it was waited for."""
 
 
+class Stopped(ManipulatorError):
+    """The machine stopped on its way to a goal: somebody's wish, or a lost link."""
+
+
 class Client:
     """A node in `namespace`, spun only while it waits; a context manager.
 
@@ -108,7 +112,7 @@ class Client:
         return seconds(stamp)
 
     def go_to(self, pose: Pose, seconds: float = 10.0) -> None:
-        """Publishes a goal and waits until it is reached; Refused with the reason."""
+        """Publishes a goal and waits until it is reached; Refused or Stopped with the reason."""
         self.wait('a listener for goals', lambda: self._goals.get_subscription_count() > 0, 10.0)
         stamp = f'{self.publish_goal(pose):.9f}'
 
@@ -117,7 +121,9 @@ class Client:
             return is_ours and self.motion('result') in ('reached', 'refused', 'stopped')
 
         self.wait('reaching the goal', is_answered, seconds)
-        if self.motion('result') != 'reached':
+        if self.motion('result') == 'stopped':
+            raise Stopped(self.motion_status.message)
+        if self.motion('result') == 'refused':
             raise Refused(self.motion_status.message)
 
     def _call(self, kind: type, name: str, request: Any) -> str:

@@ -7,6 +7,7 @@ from geometry_msgs.msg import PoseStamped
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
+from manipulator.arrays import Array
 from manipulator.errors import NoSolution
 from manipulator.kinematics import ForwardSolution
 from manipulator.machine import Machine
@@ -23,7 +24,8 @@ class PoseNode(Node):
     def __init__(self, load: Callable[[str], Machine], default_machine: str) -> None:
         super().__init__('pose')
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
-        self._kinematics = load(name).kinematics
+        machine = load(name)
+        self._kinematics, self._constraints = machine.kinematics, machine.constraints
         self._solution: ForwardSolution | None = None
         self._states = Intake(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
@@ -42,8 +44,14 @@ class PoseNode(Node):
             except NoSolution:
                 self.get_logger().info('the last pose does not lead to the present one: afresh')
         if self._solution is None:
-            self._solution = self._kinematics.forward(joints)
+            self._solution = self._cold(joints)
         self._publisher.publish(pose_message(self._solution.pose, message.header.stamp))
+
+    def _cold(self, joints: Array) -> ForwardSolution:
+        """From home; what lies beyond a limit may be another assembly mode, so it is not used."""
+        solution = self._kinematics.forward(joints)
+        self._constraints.check(solution.pose, joints)
+        return solution
 
     def _report(self) -> Report:
         values: dict[str, object] = {

@@ -25,7 +25,9 @@ from manipulator.trajectory.planner import plan_to
 from manipulator.trajectory.player import Goal, MotionStatus, Player
 
 POSE_DEADLINE = 0.5
-ENABLED = 'enabled'
+HOLDING = 'holding'
+DRIVABLE = ('enabled', HOLDING)
+"""States in which the board follows setpoints; it holds when they came too late."""
 DISABLED = MotionStatus('disabled', 'idle', 0.0, 'the servos are not enabled')
 
 
@@ -69,18 +71,20 @@ class TrajectoryNode(Node):
         self.create_service(GetPlan, '~/plan', self._on_plan)
 
     def _on_machine_state(self, message: DiagnosticStatus) -> None:
-        """Leaving 'enabled' drops every goal; the next enabling begins where the joints are."""
-        if message.message != self._machine_state and self._player is not None:
-            self._release(f'the machine is {message.message}')
-        self._machine_state = message.message
+        """Leaving 'enabled' drops every goal; what follows begins where the joints are."""
+        state = message.message
+        is_lost = state not in DRIVABLE or (state == HOLDING and state != self._machine_state)
+        if is_lost and self._player is not None:
+            self._release(f'the machine is {state}')
+        self._machine_state = state
 
     def _on_pose(self, message: PoseStamped) -> None:
         pose = pose_of(message)
-        if self._player is None and self._machine_state == ENABLED:
+        if self._player is None and self._machine_state in DRIVABLE:
             joints = self._machine.kinematics.inverse(pose)
             self._player = Player(self._machine, pose, joints, self._dt)
             self._player.override(self._override)
-            self._status = self._player.status
+            self._set_status(self._player.status)
 
     def _on_goal(self, message: PoseStamped) -> None:
         self._enabled_player().pursue(Goal(pose_of(message), seconds(message.header.stamp)))
@@ -111,15 +115,15 @@ class TrajectoryNode(Node):
         before = self._player.status
         pose = self._player.step()
         self._setpoints.publish(pose_message(pose, self.get_clock().now().to_msg()))
-        if self._player.status is not before or self._published is DISABLED:
+        if self._player.status is not before:
             self._log_refusal(self._player.status)
             self._set_status(self._player.status)
 
     def _release(self, reason: str) -> None:
         """Lets go of the machine: no setpoints until it is enabled and its pose is known again."""
         self._player = None
-        self.get_logger().info(f'holding no goal any more: {reason}')
-        self._set_status(MotionStatus('disabled', 'stopped', 0.0, reason))
+        self.get_logger().info(f'goals are dropped: {reason}')
+        self._set_status(MotionStatus('disabled', 'stopped', self._status.goal_stamp, reason))
 
     def _log_refusal(self, new: MotionStatus) -> None:
         if new.result == 'refused':

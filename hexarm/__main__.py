@@ -1,0 +1,7 @@
+"""`python -m hexarm`: the command without an installation."""
+
+import sys
+
+from hexarm.main import main
+
+sys.exit(main())

@@ -1,0 +1,92 @@
+"""Real processes on a ROS domain of their own, on this computer only, stopped by pid."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
+os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+MARK = f'HEXARM_TEST_RUN={os.getpid()}'
+os.environ['HEXARM_TEST_RUN'] = str(os.getpid())
+
+from hexarm.client import Client  # noqa: E402 (the domain is chosen above)
+from hexarm.graph import Graph, machine_graph  # noqa: E402
+from hexarm.up import check_alive  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def processes_left():
+    """A function that tells which processes of this test run are alive, by pid."""
+    return _processes_left
+
+
+def _processes_left() -> dict[int, str]:
+    """Every process that this test run started and that is still alive."""
+    found = {}
+    for entry in Path('/proc').iterdir():
+        if not entry.name.isdigit() or int(entry.name) == os.getpid():
+            continue
+        try:
+            if MARK in (entry / 'environ').read_text(errors='replace').split('\0'):
+                found[int(entry.name)] = (entry / 'cmdline').read_text().replace('\0', ' ')
+        except OSError:
+            continue
+    return found
+
+
+@pytest.fixture(scope='session')
+def hexarm():
+    """Starts `hexarm …` as a process of its own; ends it when the tests are over."""
+    started = []
+
+    def start(*words, **options):
+        command = [sys.executable, '-m', 'hexarm', *words]
+        pipes = {'stdout': subprocess.PIPE, 'stderr': subprocess.STDOUT, 'text': True}
+        process = subprocess.Popen(command, cwd=ROOT, **(pipes | options))
+        started.append(process)
+        return process
+
+    yield start
+    for process in started:
+        if process.poll() is None:
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture(scope='session')
+def patient_robocake(tmp_path_factory):
+    """A RoboCake whose board waits longer for setpoints than a busy test machine may stall."""
+    text = (ROOT / 'config' / 'robocake.yaml').read_text()
+    patient = re.sub('setpoint_deadline_ms: .*', 'setpoint_deadline_ms: 1000', text)
+    path = tmp_path_factory.mktemp('machine') / 'robocake.yaml'
+    path.write_text(patient)
+    return str(path)
+
+
+@pytest.fixture(scope='module')
+def hexapod_graph(patient_robocake, tmp_path_factory):
+    """The hexapod's five processes with the fake board; not enabled."""
+    link = tmp_path_factory.mktemp('port') / 'board'
+    with Graph(machine_graph('hexapod', patient_robocake, 'fake', link), 'hexapod') as graph:
+        yield graph
+
+
+@pytest.fixture(scope='module')
+def user(hexapod_graph):
+    """A user's node in the hexapod's namespace."""
+    with Client('hexapod', lambda: check_alive(hexapod_graph)) as client:
+        yield client
+
+
+@pytest.fixture
+def enabled(user):
+    """The same, with the servos on and the platform at home."""
+    if user.machine_state.message != 'enabled':
+        user.enable()
+    return user
