@@ -18,24 +18,28 @@ MAX_GAIN = 10.0
 class Feedback:
     """velocity = gain · error, bounded: gain in 1/s, the bounds in m/s and rad/s.
 
-    The bounds let a mode that begins far from its reference approach it gently.
+    delay (seconds) is how old the measured poses are. The bounds let a mode that begins far from
+    its reference approach it gently.
     """
 
     gain: float
+    delay: float = 0.0
     linear_bound: float = 0.05
     angular_bound: float = 0.5
 
     def __post_init__(self) -> None:
-        """Raises InvalidInput for a gain or bound that is not positive."""
+        """Raises InvalidInput for gains and bounds that are not positive, and a negative delay."""
         for name in ('gain', 'linear_bound', 'angular_bound'):
             value = getattr(self, name)
             if not 0 < value < math.inf:
                 raise InvalidInput(f'{name} is {value}, needs a positive number')
+        if not 0 <= self.delay < math.inf:
+            raise InvalidInput(f'delay is {self.delay} s, needs a number from 0 up')
 
     @classmethod
     def for_delay(cls, delay: float) -> 'Feedback':
         """With the gain that a delay of so many seconds, measurement to motion, allows."""
-        return cls(min(MAX_GAIN, GAIN_TIMES_DELAY / max(delay, 1e-9)))
+        return cls(min(MAX_GAIN, GAIN_TIMES_DELAY / max(delay, 1e-9)), delay)
 
     def linear(self, error: Array) -> Array:
         """Velocity (3,) in m/s towards a point that is `error` metres away."""

@@ -31,16 +31,21 @@ class LookAt:
             raise Refused(
                 f'look-at point is {distance:.4g} m from the tool, needs at least {NEAREST} m'
             )
-        return PointHeld(self.feedback, frozen(self.point), distance)
+        return PointHeld(self.feedback, frozen(self.point), distance, frozen(np.zeros(3)))
 
 
 @dataclass(frozen=True, eq=False)
 class PointHeld:
-    """`distance` (metres) from tool to point is held while the operator does not translate."""
+    """`distance` (metres) from tool to point is held while the operator does not translate.
+
+    velocity (3,) is the last one commanded: it tells where the tool is by now, when the measured
+    pose is late. Without it the sight would trail behind by the change of its turn in the delay.
+    """
 
     feedback: Feedback
     point: Array
     distance: float
+    velocity: Array
 
     def step(self, command: Array, pose: Pose) -> 'tuple[Array, PointHeld]':
         """Translation as commanded; turns about the line of sight roll, all others orbit.
@@ -48,22 +53,28 @@ class PointHeld:
         With d the unit vector to the point, r away, the tool follows ω = −d × v / r. The whole
         velocity is scaled so that the tool comes no nearer than NEAREST.
         """
-        sight = self.point - pose.position
-        distance = max(float(np.linalg.norm(sight)), 1e-9)
-        d = sight / distance
+        seen, d_seen = _sight(self.point - pose.position)
+        ahead, d = _sight(self.point - pose.position - self.feedback.delay * self.velocity)
         roll = (command[3:] @ d) * d
-        velocity = command[:3] + np.cross(command[3:] - roll, -sight)
+        velocity = command[:3] + np.cross(command[3:] - roll, -ahead * d)
+        distance = self.distance
         if np.linalg.norm(command[:3]) > STILL:
-            following = replace(self, distance=distance)
+            distance = ahead
         else:
-            following = self
-            velocity = velocity + self.feedback.linear((distance - self.distance) * d)
-        velocity = velocity * self._approach(float(velocity @ d), distance)
-        back = self.feedback.angular(turn_between(pose.rotation @ np.array(TOOL_AXIS), d))
-        turn = roll - np.cross(d, velocity) / max(distance, NEAREST) + back
-        return np.concatenate([velocity, turn]), following
+            velocity = velocity + self.feedback.linear((seen - distance) * d)
+        velocity = velocity * self._approach(float(velocity @ d), ahead)
+        aim_error = turn_between(pose.rotation @ np.array(TOOL_AXIS), d_seen)
+        follow = -np.cross(d, velocity) / max(ahead, NEAREST)
+        twist = np.concatenate([velocity, roll + follow + self.feedback.angular(aim_error)])
+        return twist, replace(self, distance=distance, velocity=frozen(velocity))
 
     def _approach(self, speed: float, distance: float) -> float:
         """The part of the velocity that the way left allows."""
         allowed = self.feedback.gain * max(distance - NEAREST, 0.0)
         return 1.0 if speed <= allowed else allowed / speed
+
+
+def _sight(arm: Array) -> tuple[float, Array]:
+    """Distance and direction of the point."""
+    distance = max(float(np.linalg.norm(arm)), 1e-9)
+    return distance, arm / distance
