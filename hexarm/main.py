@@ -3,10 +3,10 @@
 import argparse
 import sys
 
-from hexarm import demo, fk, ik, machine_list, up
+from hexarm import demo, firmware_header, fk, ik, machine_list, up
 from manipulator.errors import ManipulatorError
 
-COMMANDS = (up, demo, ik, fk, machine_list)
+COMMANDS = (up, demo, ik, fk, machine_list, firmware_header)
 
 
 def main(words: list[str] | None = None) -> int:

@@ -1,6 +1,7 @@
 """Boards that must all pass the same tests, behind `feed(bytes)`, `step(dt)`, `take_output()`."""
 
 import dataclasses
+import os
 
 import pytest
 
@@ -9,6 +10,8 @@ from bridge.board_modes import BoardSettings
 from bridge.frames import encode
 from bridge.framing import FrameReader
 from bridge.messages import Ack, Arm, Fault, Hello, ResetCause, State
+from firmware.simulator import build
+from firmware.simulator.board import SimulatedBoard
 
 RANGE = (1100, 4900)
 JOINTS = 6
@@ -31,11 +34,13 @@ class BoardDriver:
         self.sequence = 0
 
     def run(self, seconds):
-        """Messages that the board sent meanwhile."""
+        """Messages that the board sent meanwhile, at least until all we said is on the line."""
         messages = []
-        for _ in range(round(seconds / 0.005)):
+        steps = round(seconds / 0.005)
+        while steps > 0 or getattr(self.board, 'backlog', 0):
             self.board.step(0.005)
             messages += [frame.message for frame in self.reader.feed(self.board.take_output())]
+            steps -= 1
         return messages
 
     def say(self, message, sequence=None):
@@ -74,12 +79,15 @@ class BoardDriver:
         self.board.reset(cause)
 
 
-BOARDS = {'python': Board}
+BOARDS = {'python': Board, 'chip': SimulatedBoard}
 
 
 @pytest.fixture(params=BOARDS)
 def make_driver(request):
     """A BoardDriver for settings that differ from the usual ones."""
+    missing = build.missing_tools() if request.param == 'chip' else []
+    if missing and os.environ.get('REQUIRE_ALL') != '1':
+        pytest.skip(f'not installed: {", ".join(missing)}')
     return lambda **changes: BoardDriver(BOARDS[request.param], **changes)
 
 

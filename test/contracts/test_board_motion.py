@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bridge.messages import (
+    NO_JOINT,
     Arm,
     Clear,
     Disarm,
@@ -21,6 +22,7 @@ from bridge.messages import (
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
 MOVED = tuple(count + 200 for count in PARK)
 FAR = (4800, 1200, 4000, 3000, 2900, 3100)
+STEP_MV = 10  # of the chip's converter, behind the divider
 
 
 def test_arming_energises_servo_by_servo_at_park(driver):
@@ -99,8 +101,9 @@ def test_released_on_link_loss_where_the_machine_says_so(make_driver):
 
 def test_all_servos_slew_by_one_factor(armed):
     armed.say(Setpoint(1000, FAR))
+    armed.run(0.02)
     way = np.array(FAR) - np.array(PARK)
-    for state in (m for m in armed.run(0.12) if isinstance(m, State)):
+    for state in (m for m in armed.run(0.1) if isinstance(m, State)):
         done = np.array([joint.count for joint in state.joints]) - np.array(PARK)
         factor = done[0] / way[0]
         assert 0 < factor < 1
@@ -138,7 +141,7 @@ def test_another_number_of_joints_is_refused(armed, joints):
     assert armed.ask(Arm((3000,) * joints)) is Result.WRONG_JOINTS
 
 
-@pytest.mark.parametrize('deadline_ms', [0, 1001, 65535])
+@pytest.mark.parametrize('deadline_ms', [0, 2001, 65535])
 def test_a_deadline_beyond_reason_is_refused(armed, deadline_ms):
     armed.say(Setpoint(deadline_ms, MOVED))
     assert [fault.code for fault in armed.faults()] == [FaultCode.BAD_DEADLINE]
@@ -163,14 +166,18 @@ def test_park_out_of_range_arms_nothing(driver):
 def test_stop_halts_at_once_and_latches(armed):
     armed.say(Setpoint(1000, FAR))
     armed.run(0.06)
-    before = armed.board.pulses
+    moving = np.array(armed.board.pulses)
     assert armed.ask(Stop()) is Result.OK
+    stopped = armed.board.pulses
+    # A pulse that was under way goes out, and no more.
+    assert np.all(np.abs(stopped - moving) <= 252)
     armed.run(0.5)
-    assert armed.board.pulses == before
+    assert armed.board.pulses == stopped
     armed.say(Setpoint(1000, FAR))
     assert [fault.code for fault in armed.faults()] == [FaultCode.NOT_ARMED]
     assert armed.ask(Arm(PARK)) is Result.STOPPED
-    assert armed.board.pulses == before
+    armed.run(0.1)
+    assert armed.board.pulses == stopped
 
 
 def test_clear_moves_nothing_and_lets_a_new_setpoint_through(armed):
@@ -222,10 +229,10 @@ def test_disarm_while_stopped_releases_but_stays_stopped(armed):
 
 def test_a_low_battery_refuses_to_arm(driver):
     driver.run(0.4)
-    driver.board.battery_mv = 6399
+    driver.board.battery_mv = 6380
     driver.run(0.04)
     assert driver.ask(Arm(PARK)) is Result.UNDERVOLTAGE
-    driver.board.battery_mv = 6400
+    driver.board.battery_mv = 6420
     driver.run(0.04)
     assert driver.ask(Arm(PARK)) is Result.OK
 
@@ -233,10 +240,13 @@ def test_a_low_battery_refuses_to_arm(driver):
 def test_a_dip_is_flagged_but_only_a_lasting_undervoltage_is_a_fault(armed):
     armed.board.battery_mv = 5900
     state = armed.state()
-    assert (state.mode, state.battery_mv) == (Mode.ARMED, 5900)
+    assert state.mode is Mode.ARMED
+    assert state.battery_mv == pytest.approx(5900, abs=STEP_MV)
     assert Flag.UNDERVOLTAGE in state.flags
     messages = armed.run(0.6)
-    assert Fault(FaultCode.UNDERVOLTAGE, 255, 5900) in messages
+    (fault,) = [m for m in messages if isinstance(m, Fault)]
+    assert (fault.code, fault.joint) == (FaultCode.UNDERVOLTAGE, NO_JOINT)
+    assert fault.value == pytest.approx(5900, abs=STEP_MV)
     assert armed.state().mode is Mode.FAULT
     assert armed.counts() == PARK
     assert armed.ask(Clear()) is Result.UNDERVOLTAGE

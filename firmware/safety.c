@@ -1,0 +1,206 @@
+#include "safety.h"
+
+#include "battery.h"
+#include "buttons.h"
+#include "clock.h"
+#include "machine.h"
+#include "motion.h"
+
+#define UNDERVOLTAGE_DELAY_MS 500
+
+static const uint16_t LOWEST[JOINT_COUNT] = LOWEST_COUNTS;
+static const uint16_t HIGHEST[JOINT_COUNT] = HIGHEST_COUNTS;
+static const Fault NO_FAULT = {FAULT_NONE, NO_JOINT, 0};
+
+static uint8_t mode = MODE_DISARMED;
+static uint8_t fault;
+static bool is_deadline_passed;
+static bool has_deadline;
+static uint32_t deadline_us;
+static uint16_t millivolts;
+static bool is_undervoltage;
+static uint32_t low_since_ms;
+static uint16_t park_counts[JOINT_COUNT];
+static uint32_t energise_ms;
+
+static void hold(uint8_t new_mode)
+{
+    motion_halt();
+    has_deadline = false;
+    is_deadline_passed = false;
+    mode = new_mode;
+}
+
+static bool is_latched(void)
+{
+    return mode == MODE_STOPPED || mode == MODE_FAULT;
+}
+
+static bool is_following(void)
+{
+    return mode == MODE_ARMED || mode == MODE_HOLDING;
+}
+
+static uint8_t latched_result(void)
+{
+    return mode == MODE_STOPPED ? RESULT_STOPPED : RESULT_FAULT;
+}
+
+/* The first joint whose count is out of range; NO_JOINT where none is. */
+static uint8_t out_of_range(const uint16_t *counts)
+{
+    for (uint8_t i = 0; i < JOINT_COUNT; i++)
+        if (counts[i] < LOWEST[i] || counts[i] > HIGHEST[i])
+            return i;
+    return NO_JOINT;
+}
+
+Fault safety_follow(uint16_t deadline_ms, const uint16_t *counts, uint8_t joints)
+{
+    if (!is_following())
+        return (Fault){FAULT_NOT_ARMED, NO_JOINT, mode};
+    if (joints != JOINT_COUNT)
+        return (Fault){FAULT_WRONG_JOINTS, NO_JOINT, joints};
+    if (deadline_ms < MIN_DEADLINE_MS || deadline_ms > MAX_DEADLINE_MS)
+        return (Fault){FAULT_BAD_DEADLINE, NO_JOINT, deadline_ms};
+    uint8_t joint = out_of_range(counts);
+    if (joint != NO_JOINT)
+        return (Fault){FAULT_OUT_OF_RANGE, joint, counts[joint]};
+    motion_aim(counts);
+    deadline_us = clock_us() + 1000UL * deadline_ms;
+    has_deadline = true;
+    is_deadline_passed = false;
+    mode = MODE_ARMED;
+    return NO_FAULT;
+}
+
+uint8_t safety_arm(const uint16_t *park, uint8_t joints)
+{
+    if (is_latched())
+        return latched_result();
+    if (is_undervoltage)
+        return RESULT_UNDERVOLTAGE;
+    if (joints != JOINT_COUNT)
+        return RESULT_WRONG_JOINTS;
+    if (out_of_range(park) != NO_JOINT)
+        return RESULT_OUT_OF_RANGE;
+    if (is_following()) {
+        hold(MODE_ARMED);
+    } else if (mode == MODE_DISARMED) {
+        for (uint8_t i = 0; i < JOINT_COUNT; i++)
+            park_counts[i] = park[i];
+        energise_ms = clock_period_ms();
+        hold(MODE_ARMING);
+    }
+    return RESULT_OK;
+}
+
+uint8_t safety_disarm(void)
+{
+    motion_release();
+    if (!is_latched())
+        hold(MODE_DISARMED);
+    return RESULT_OK;
+}
+
+uint8_t safety_stop(void)
+{
+    hold(MODE_STOPPED);
+    return RESULT_OK;
+}
+
+uint8_t safety_clear(void)
+{
+    if (!is_latched())
+        return RESULT_OK;
+    if (buttons_is_stop())
+        return RESULT_STOPPED;
+    if (is_undervoltage)
+        return RESULT_UNDERVOLTAGE;
+    fault = FAULT_NONE;
+    if (!motion_is_all_on())
+        motion_release();
+    hold(motion_is_all_on() ? MODE_ARMED : MODE_DISARMED);
+    return RESULT_OK;
+}
+
+static void watch_deadline(void)
+{
+    if (!has_deadline || (int32_t)(clock_us() - deadline_us) < 0)
+        return;
+    if (RELEASE_ON_LINK_LOSS)
+        motion_release();
+    hold(RELEASE_ON_LINK_LOSS ? MODE_DISARMED : MODE_HOLDING);
+    is_deadline_passed = true;
+}
+
+void safety_watch(void)
+{
+    buttons_read();
+    if (buttons_is_stop() && mode != MODE_STOPPED)
+        safety_stop();
+    watch_deadline();
+}
+
+/* Refuses to arm at once, but only a lasting undervoltage stops what moves. */
+static Fault watch_battery(void)
+{
+    uint32_t now_ms = clock_period_ms();
+    millivolts = battery_mv();
+    if (millivolts >= MINIMUM_BATTERY_MV) {
+        is_undervoltage = false;
+        return NO_FAULT;
+    }
+    if (!is_undervoltage)
+        low_since_ms = now_ms;
+    is_undervoltage = true;
+    bool is_lasting = now_ms - low_since_ms >= UNDERVOLTAGE_DELAY_MS;
+    if (!is_lasting || !(mode == MODE_ARMING || is_following()))
+        return NO_FAULT;
+    hold(MODE_FAULT);
+    fault = FAULT_UNDERVOLTAGE;
+    return (Fault){FAULT_UNDERVOLTAGE, NO_JOINT, millivolts};
+}
+
+static void energise_next(void)
+{
+    if (mode != MODE_ARMING || (int32_t)(clock_period_ms() - energise_ms) < 0)
+        return;
+    if (motion_is_all_on()) {
+        hold(MODE_ARMED);
+        return;
+    }
+    uint8_t channel = 0;
+    while (motion_on() >> channel & 1)
+        channel++;
+    motion_energise(channel, park_counts[channel]);
+    energise_ms = clock_period_ms() + ARM_INTERVAL_MS;
+}
+
+Fault safety_pass_period(void)
+{
+    Fault begun = watch_battery();
+    energise_next();
+    return begun;
+}
+
+uint8_t safety_mode(void)
+{
+    return mode;
+}
+
+uint8_t safety_flags(void)
+{
+    return (is_deadline_passed ? FLAG_DEADLINE_PASSED : 0) |
+           (is_undervoltage ? FLAG_UNDERVOLTAGE : 0) | (motion_is_slewing() ? FLAG_SLEWING : 0);
+}
+
+uint8_t safety_fault(void)
+{
+    return fault;
+}
+
+uint16_t safety_battery_mv(void)
+{
+    return millivolts;
+}

@@ -1,0 +1,36 @@
+/* The board's modes: when pulses go out, when they follow the host, when they stand still.
+ *
+ * Safe states: DISARMED (no pulses: after power-up, reset and DISARM) and, while armed, standing
+ * still (STOPPED, FAULT, HOLDING). Only ARMED and HOLDING accept setpoints.
+ */
+#pragma once
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "protocol.h"
+
+typedef struct {
+    uint8_t code; /* enum FaultCode; FAULT_NONE: no fault */
+    uint8_t joint;
+    uint16_t value;
+} Fault;
+
+/* Aims at counts that are good for `deadline_ms`; or says why not, and nothing has changed. */
+Fault safety_follow(uint16_t deadline_ms, const uint16_t *counts, uint8_t joints);
+
+/* Each does what is asked, or says why not and changes nothing: enum Result. */
+uint8_t safety_arm(const uint16_t *park, uint8_t joints);
+uint8_t safety_disarm(void);
+uint8_t safety_stop(void);
+uint8_t safety_clear(void);
+
+/* Deadline and stop button; call in every round of the loop. */
+void safety_watch(void);
+
+/* Battery and arming, once a period; the fault that begins now, if one does. */
+Fault safety_pass_period(void);
+
+uint8_t safety_mode(void);
+uint8_t safety_flags(void);
+uint8_t safety_fault(void);
+uint16_t safety_battery_mv(void);

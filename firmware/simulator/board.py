@@ -1,0 +1,93 @@
+"""The simulated chip behind the fake board's three methods: feed, step, take_output."""
+
+import numpy as np
+
+from bridge.board_modes import BoardSettings
+from bridge.messages import ResetCause
+from firmware.simulator import build
+from firmware.simulator.chip import CLOCK_HZ, CYCLES_A_COUNT, Chip
+from hexarm.firmware_header import header
+
+BAUD = 250_000
+CHANNELS = 8
+OFF_AFTER = 21 * CLOCK_HZ // 1000
+"""A channel without a pulse for so long is off: a period is 20 ms."""
+STOP_BUTTON, START_BUTTON = 0, 1
+DIVIDER = 2
+
+
+class SimulatedBoard:
+    """The firmware for these settings, on a chip, its boot loader's silence included."""
+
+    def __init__(self, settings: BoardSettings, battery_mv: int = 7600) -> None:
+        program = build.firmware_of_header(header(settings, BAUD, 'of a test'))
+        self.chip = Chip(build.simulator() / 'chip.so', program, BAUD)
+        self.settings = settings
+        self.battery_mv = battery_mv
+        self.reset(ResetCause.POWER_ON)
+
+    @property
+    def battery_mv(self) -> int:
+        """What the battery has, ahead of the divider."""
+        return self._battery_mv
+
+    @battery_mv.setter
+    def battery_mv(self, value: int) -> None:
+        self._battery_mv = value
+        self.chip.set_battery_pin(value // DIVIDER)
+
+    @property
+    def pulses(self) -> tuple[float | None, ...]:
+        """The width in counts of each channel's last pulse; None where none goes out any more."""
+        self._read_edges()
+        now = self.chip.cycle
+        pairs = zip(self._risen.tolist(), self._widths.tolist(), strict=True)
+        return tuple(
+            round(width / CYCLES_A_COUNT) if width and now - risen < OFF_AFTER else None
+            for risen, width in pairs
+        )
+
+    @property
+    def backlog(self) -> int:
+        """Bytes that are still to be sent to the chip."""
+        return self.chip.backlog
+
+    def reset(self, cause: ResetCause) -> None:
+        """Starts again, after the boot loader's silence."""
+        self._boot_left = self.settings.boot_us * CLOCK_HZ // 1_000_000
+        self._cause = cause
+        self._widths = np.zeros(len(self.settings.count_ranges), np.int64)
+        self._risen = self._widths.copy()
+        self.chip.reset(cause)
+
+    def feed(self, received: bytes) -> None:
+        """Bytes from the host; during the boot they are lost."""
+        if not self._boot_left:
+            self.chip.feed(received)
+
+    def step(self, dt: float) -> None:
+        """Lets `dt` seconds pass."""
+        cycles = round(dt * CLOCK_HZ)
+        booting = min(self._boot_left, cycles)
+        self._boot_left -= booting
+        if cycles > booting:
+            self.chip.run(cycles - booting)
+
+    def take_output(self) -> bytes:
+        """The bytes for the host since the last call."""
+        return self.chip.take()
+
+    def press(self, button: int) -> None:
+        """Stop: the contact opens. Start: it closes."""
+        self.chip.set_button(button, button == STOP_BUTTON)
+
+    def let_go(self, button: int) -> None:
+        """The button goes back."""
+        self.chip.set_button(button, button == START_BUTTON)
+
+    def _read_edges(self) -> None:
+        for cycle, channel, level in self.chip.edges().tolist():
+            if level:
+                self._risen[channel] = cycle
+            else:
+                self._widths[channel] = cycle - self._risen[channel]

@@ -1,0 +1,64 @@
+"""`hexarm firmware-header`: what the board's program takes from a machine file, as a C header."""
+
+import argparse
+from collections.abc import Iterable
+
+from bridge.board_modes import PULSE_PERIOD_US, BoardSettings
+from bridge.servo_config import BoardConfig
+from hexarm import machines
+from manipulator.errors import ConfigError
+
+WIDEST_COUNT = 36_000
+"""18 ms: a wider pulse would still be under way when the board prepares the next one."""
+BOOT_S = 0.0
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommand."""
+    parser = commands.add_parser('firmware-header', help="a machine file as the board's C header")
+    parser.add_argument('machine', help='a shipped name or a path')
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Prints the header; ConfigError where the machine does not fit the board."""
+    source = str(machines.find(arguments.machine))
+    config = BoardConfig.from_machine(machines.read(arguments.machine), source)
+    settings = BoardSettings.from_config(config, BOOT_S)
+    print(header(settings, config.link.baud, arguments.machine), end='')
+    return 0
+
+
+def header(settings: BoardSettings, baud: int, name: str) -> str:
+    """machine.h; counts are half microseconds of pulse, by channel."""
+    _refuse_wide_pulses(settings)
+    lows, highs = zip(*settings.count_ranges, strict=True)
+    steps = (f'{speed * PULSE_PERIOD_US * 1e-6:.8e}f' for speed in settings.count_speeds)
+    definitions = {
+        'JOINT_COUNT': len(lows),
+        'BAUD': f'{baud}UL',
+        'LOWEST_COUNTS': _row(lows),
+        'HIGHEST_COUNTS': _row(highs),
+        'STEP_COUNTS': _row(steps),
+        'ARM_INTERVAL_MS': settings.arm_interval_us // 1000,
+        'MINIMUM_BATTERY_MV': settings.minimum_battery_mv,
+        'RELEASE_ON_LINK_LOSS': int(settings.on_link_loss == 'release'),
+    }
+    lines = [f'#define {key} {value}' for key, value in definitions.items()]
+    top = f'/* Made by `hexarm firmware-header` from machine {name}: change that file instead. */'
+    return '\n'.join([top, '#pragma once', '', *lines, ''])
+
+
+def _refuse_wide_pulses(settings: BoardSettings) -> None:
+    for channel, (_, high) in enumerate(settings.count_ranges):
+        if high > WIDEST_COUNT:
+            raise ConfigError(
+                [
+                    f'servos: the pulses of channel {channel} reach {high / 2:g} us, '
+                    f'the board makes at most {WIDEST_COUNT / 2:g} us'
+                ]
+            )
+
+
+def _row(values: Iterable[object]) -> str:
+    return f'{{{", ".join(map(str, values))}}}'
