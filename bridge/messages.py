@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 PROTOCOL_VERSION = 1
 MAX_JOINTS = 8
-MIN_DEADLINE_MS, MAX_DEADLINE_MS = 1, 1000
+MIN_DEADLINE_MS, MAX_DEADLINE_MS = 1, 2000
 
 
 class Mode(enum.IntEnum):

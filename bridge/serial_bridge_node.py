@@ -61,6 +61,7 @@ class SerialBridge(Node):
         self._clock_start = time.time() - time.monotonic()
         self._command_at: float | None = None
         self._receipt_to_frame, self._setpoint_to_frame = Latencies(), Latencies()
+        self._is_followed = False
         self._said: tuple[MachineStatus, dict[str, object]] | None = None
         self._make_interfaces()
         self._link = LinkThread(
@@ -165,6 +166,7 @@ class SerialBridge(Node):
         self._publish_status()
 
     def _on_written(self, ticket: Ticket, now: float) -> None:
+        self._is_followed = True
         self._receipt_to_frame.add(now - ticket.received)
         if ticket.stamped is not None and not self._gate.has_notable_offset:
             self._setpoint_to_frame.add(time.time() - ticket.stamped)
@@ -185,8 +187,10 @@ class SerialBridge(Node):
     def _publish_status(self) -> None:
         """Publishes the machine's state when it has changed."""
         current = self._monitor.status
+        self._is_followed = self._is_followed and current.word == 'enabled'
         values: dict[str, object] = {
             'reason': current.reason,
+            'followed': 'yes' if self._is_followed else 'no',
             'port': self._port,
             'board': self._monitor.board,
             'joints_unknown': ' '.join(self._monitor.unknown_joints),

@@ -96,7 +96,7 @@ class LinkConfig:
 
     on_link_loss: Literal['hold', 'release']
     baud: int = quantity(9600, 4_000_000)
-    setpoint_deadline_ms: int = quantity(20, 1000)
+    setpoint_deadline_ms: int = quantity(20, 2000)
 
 
 @dataclass(frozen=True)

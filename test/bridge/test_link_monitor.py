@@ -1,0 +1,124 @@
+import math
+
+import numpy as np
+import pytest
+
+from bridge.calibration import Calibration
+from bridge.events import (
+    Acknowledged,
+    Connected,
+    Disconnected,
+    FaultReported,
+    Opened,
+    StateReceived,
+)
+from bridge.link_monitor import LinkMonitor
+from bridge.messages import (
+    Arm,
+    Fault,
+    FaultCode,
+    Flag,
+    Hello,
+    Joint,
+    Known,
+    Mode,
+    ResetCause,
+    State,
+)
+from bridge.servo_config import BoardConfig
+from bridge.session import Phase, Session
+from hexarm import machines
+
+HELLO = Hello(1, ResetCause.POWER_ON, 6, 300)
+PARK = (3000,) * 6
+
+
+def state(mode=Mode.ARMED, counts=PARK, fault=FaultCode.NONE):
+    joints = tuple(
+        Joint(Known.UNKNOWN, 0) if count is None else Joint(Known.COMMANDED, count)
+        for count in counts
+    )
+    return State(0, 0, mode, Flag(0), fault, 7600, 0, 0, 0, joints)
+
+
+@pytest.fixture
+def monitor():
+    config = BoardConfig.from_machine(machines.read('robocake'))
+    return LinkMonitor(Session(6), Calibration.from_config(config.servos))
+
+
+def receive(monitor, heard, now=0.0):
+    monitor.session.phase = Phase.READY
+    monitor.session.state = heard
+    monitor.note(StateReceived(heard), now)
+
+
+def test_words_from_the_port_to_the_board(monitor):
+    assert monitor.status.word == 'disconnected'
+    monitor.session.opened(0.0)
+    monitor.note(Opened(), 0.0)
+    assert monitor.status.word == 'booting'
+    monitor.note(Disconnected('nobody said HELLO'), 5.0)
+    assert (monitor.status.word, monitor.status.reason) == ('disconnected', 'nobody said HELLO')
+
+
+@pytest.mark.parametrize(
+    ('mode', 'word'),
+    [
+        (Mode.DISARMED, 'disarmed'),
+        (Mode.ARMING, 'arming'),
+        (Mode.ARMED, 'enabled'),
+        (Mode.HOLDING, 'holding'),
+        (Mode.STOPPED, 'stopped'),
+        (Mode.FAULT, 'fault'),
+    ],
+)
+def test_one_word_for_each_mode(monitor, mode, word):
+    monitor.note(Connected(HELLO), 0.0)
+    monitor.note(Acknowledged(Arm(PARK)), 0.0)
+    receive(monitor, state(mode))
+    assert monitor.status.word == word
+
+
+def test_a_board_that_somebody_else_armed_is_not_enabled(monitor):
+    monitor.note(Connected(HELLO), 0.0)
+    receive(monitor, state(Mode.ARMED))
+    assert monitor.status.word == 'unclaimed'
+    monitor.note(Acknowledged(Arm(PARK)), 0.0)
+    assert monitor.status.word == 'enabled'
+    monitor.note(Disconnected('gone'), 0.0)
+    monitor.note(Connected(HELLO), 0.0)
+    receive(monitor, state(Mode.ARMED))
+    assert monitor.status.word == 'unclaimed'
+
+
+def test_the_fault_is_named(monitor):
+    receive(monitor, state(Mode.FAULT, fault=FaultCode.UNDERVOLTAGE))
+    assert monitor.status.reason == 'the battery is too low'
+
+
+def test_unknown_joints_are_told_from_known_ones(monitor):
+    assert len(monitor.unknown_joints) == 6
+    receive(monitor, state(Mode.ARMING, (3000, 3000, None, None, None, None)))
+    assert monitor.joints.is_known == (True, True, False, False, False, False)
+    assert monitor.unknown_joints == ('crank_3', 'crank_4', 'crank_5', 'crank_6')
+    assert np.all(np.isfinite(monitor.joints.velocities))
+
+
+def test_velocity_is_the_change_over_the_state_periods(monitor):
+    receive(monitor, state(), 0.0)
+    # 21 counts are a degree; the second STATE came a little late, as they do.
+    receive(monitor, state(counts=(3021,) * 6), 0.023)
+    assert monitor.joints.velocities[0] == pytest.approx(math.radians(1) / 0.02)
+    assert monitor.joints.velocities[1] == pytest.approx(-math.radians(1) / 0.02)
+    receive(monitor, state(counts=(3063,) * 6), 0.061)
+    assert monitor.joints.velocities[0] == pytest.approx(math.radians(2) / 0.04)
+
+
+def test_a_refused_frame_names_the_joint_and_its_range(monitor):
+    monitor.note(FaultReported(Fault(FaultCode.OUT_OF_RANGE, 2, 4901)), 0.0)
+    expected = 'the board: crank_3: out of range, count 4901 outside [1100, 4900]'
+    assert monitor.last_refusal == expected
+    monitor.note(FaultReported(Fault(FaultCode.OUT_OF_RANGE, 77, 4901)), 0.0)
+    assert 'channel 77' in monitor.last_refusal
+    assert monitor.refusals == 2
