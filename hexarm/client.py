@@ -55,7 +55,8 @@ class Client:
 
     def __exit__(self, *exception: object) -> None:
         """Leaves the graph."""
-        self._executor.remove_node(self.node)
+        # Shutting down lets go of the node's handles: without it the node stays in the graph.
+        self._executor.shutdown()
         self.node.destroy_node()
         try_shutdown()
 
