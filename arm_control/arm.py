@@ -55,6 +55,11 @@ class SerialArm:
         """Radians."""
         return 'rad'
 
+    @property
+    def characteristic_length(self) -> float:
+        """The length of `length`, metres."""
+        return self.length
+
     def inverse_all(self, pose: Pose, near: Array | None = None) -> Array:
         """Every branch (..., k, 6), by whole turns nearest to `near` within the joint ranges.
 

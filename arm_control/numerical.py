@@ -11,8 +11,6 @@ from manipulator.pose import Pose
 STEPS = 60
 STARTS = 32
 TOLERANCE = 1e-10
-LARGEST_STEP = 0.5
-"""Radians that one joint may turn in one step: keeps a warm start on its branch."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +68,6 @@ class Numerical:
             transposed = np.swapaxes(jacobian, -1, -2)
             damping = np.minimum(size**2 / 2, 0.1)[..., None, None] + 1e-12
             normal = transposed @ jacobian + damping * np.eye(6)
-            step = np.linalg.solve(normal, transposed @ error[..., None])[..., 0]
-            largest = np.abs(step).max(axis=-1, keepdims=True)
-            joints = joints + step * np.minimum(1.0, LARGEST_STEP / np.maximum(largest, 1e-12))
+            joints = joints + np.linalg.solve(normal, transposed @ error[..., None])[..., 0]
         error = scale * self.chain.forward(joints).twist_to(goal)
         return joints, np.linalg.norm(error, axis=-1)

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from arm_control.geometry import ScrewsConfig
+from arm_control.geometry import DhConfig, ScrewsConfig
 from arm_control.load import serial_arm
 from manipulator import rotation as so3
 from manipulator.config import build
@@ -66,3 +66,13 @@ def test_screws_with_axes_of_any_length_make_the_same_arm(arm):
     same = build(ScrewsConfig, content).chain()
     q = np.random.default_rng(6).uniform(-3, 3, (20, 6))
     assert np.abs(chain.forward(q).twist_to(same.forward(q))).max() < 1e-8
+
+
+def test_a_tool_on_a_dh_table_lies_along_the_last_z_axis(machine_file):
+    geometry = machine_file('ur5').geometry
+    bare = build(DhConfig, geometry).chain()
+    tooled = build(DhConfig, {**geometry, 'tool_mm': 150.0}).chain()
+    q = np.random.default_rng(7).uniform(-3, 3, 6)
+    in_flange = bare.forward(q).inverse() @ tooled.forward(q)
+    assert np.abs(in_flange.position - [0.0, 0.0, 0.15]).max() < 1e-12
+    assert np.abs(in_flange.rotation - np.eye(3)).max() < 1e-12

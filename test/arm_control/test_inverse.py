@@ -1,3 +1,4 @@
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -64,10 +65,23 @@ def test_singular_postures_are_inverted_exactly_too(arm, seed, zeroed):
     assert np.abs(arm.chain.forward(found).twist_to(pose)).max() < 1e-7
 
 
-def test_an_aligned_wrist_keeps_the_joints_it_had(arm_6r):
-    joints = np.array([0.3, 0.4, 1.0, 0.8, 0.0, -0.5])
-    found = arm_6r.inverse(arm_6r.chain.forward(joints), joints)
+@pytest.mark.parametrize(
+    'joints',
+    [[0.3, 0.4, 1.0, 0.8, 0.0, -0.5], [0.3, -0.5, 1.0, 0.8, 0.7, -0.5]],
+    ids=['wrist aligned', 'wrist above joint 1'],
+)
+def test_joints_that_the_pose_leaves_free_stay_as_they_were(arm_6r, joints):
+    found = arm_6r.inverse(arm_6r.chain.forward(np.array(joints)), np.array(joints))
     assert np.abs(found - joints).max() < 1e-9
+
+
+def test_a_wrist_nearly_aligned_is_inverted_exactly(arm):
+    for offset in np.geomspace(1e-10, 1e-3, 40):
+        joints = arm.rest + np.radians([5.0, 3.0, -4.0, 6.0, 0.0, 7.0])
+        joints[4] = offset
+        pose = arm.chain.forward(joints)
+        found = arm.inverse(pose, joints)
+        assert np.abs(arm.chain.forward(found).twist_to(pose)).max() < 1e-9
 
 
 def test_whole_turns_are_chosen_near_but_within_the_range(arm_6r):
@@ -122,6 +136,17 @@ def test_too_near_to_an_offset_shoulder_is_named(machine_file, name):
     pose = Pose(np.array([0.01, 0.0, 0.5]) + tool, np.eye(3))
     with pytest.raises(Unreachable, match=r"0\.01 m from joint 1's axis, needs at least"):
         arm.inverse(pose)
+
+
+def test_the_refusal_is_about_the_branch_that_comes_nearest(machine_file):
+    arm = serial_arm(machine_file('ur5'))
+    stretched = arm.chain.forward(np.radians([0.0, 0.0, 0.0, -30.0, -10.0, 0.0]))
+    outward = stretched.moved([-0.05, 0, 0, 0, 0, 0])
+    with pytest.raises(Unreachable) as caught:
+        arm.inverse(outward)
+    wanted, reach = map(float, re.findall(r'(0\.\d+) m', str(caught.value)))
+    assert reach == pytest.approx(0.425 + 0.39225, abs=1e-4)
+    assert 0 < wanted - reach <= 0.05
 
 
 def test_arrays_mark_or_name_what_is_out_of_reach(arm):

@@ -74,6 +74,17 @@ def test_look_at_orbits_with_the_turn_as_commanded():
     assert np.linalg.norm(twist[:3]) == pytest.approx(0.5 * 0.3)
 
 
+def test_look_at_holds_the_distance_at_which_translation_ended():
+    held, pose = jog_mode('look_at', FEEDBACK, POINT).latched(POSE), POSE
+    back_off = np.concatenate([-0.1 * POSE.rotation[:, 2], np.zeros(3)])
+    for _ in range(100):
+        twist, held = held.step(back_off, pose)
+        pose = pose.moved(0.01 * twist)
+    assert held.distance == pytest.approx(0.4, abs=2e-3)
+    twist, held = held.step(np.zeros(6), pose)
+    assert np.linalg.norm(twist) < 0.01
+
+
 def test_look_at_rolls_about_the_sight():
     held = jog_mode('look_at', FEEDBACK, POINT).latched(POSE)
     along = POSE.rotation[:, 2]
