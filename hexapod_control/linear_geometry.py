@@ -8,7 +8,7 @@ from hexapod_control.architecture import check_architecture
 from hexapod_control.geometry import LEGS, SixPoints
 from manipulator.arrays import Array, frozen
 from manipulator.config import quantity
-from manipulator.errors import ConfigError, InvalidInput
+from manipulator.errors import InvalidInput
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,26 +69,6 @@ class PointsConfig:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""
         base, platform = np.array(self.base_joints_mm), np.array(self.platform_joints_mm)
         return _checked(base, platform, self.home_height_mm)
-
-
-@dataclass(frozen=True)
-class LinearLimits:
-    """The `limits` section of a linear platform's machine file.
-
-    A stroke is a leg's length between its joint centres. The passive cone is how far a leg may
-    swing, at either end, from its direction at home.
-    """
-
-    stroke_range_mm: tuple[float, float] = quantity(1, 10_000)
-    passive_cone_deg: float = quantity(1, 180)
-    singularity_margin: float = quantity(0.001, 2)
-    characteristic_length_mm: float = quantity(1, 3000)
-
-    def __post_init__(self) -> None:
-        """Raises ConfigError for a stroke that is empty."""
-        low, high = self.stroke_range_mm
-        if not low < high:
-            raise ConfigError([f'stroke_range_mm: [{low:g}, {high:g}] is no range'])
 
 
 def joint_circle(radius: float, first_angle: float) -> Array:

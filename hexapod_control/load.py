@@ -3,7 +3,13 @@
 from collections.abc import Callable
 from typing import Any
 
-from hexapod_control.geometry import HexagonConfig, JointsConfig
+import numpy as np
+
+from hexapod_control.architecture import check_architecture
+from hexapod_control.geometry import LEGS, HexagonConfig, JointsConfig
+from hexapod_control.linear import LinearPlatform
+from hexapod_control.linear_geometry import PlatesConfig, PointsConfig
+from hexapod_control.linear_limits import LinearLimits
 from hexapod_control.rotary import RotaryHexapod
 from hexapod_control.rotary_limits import RotaryLimits
 from manipulator.config import build
@@ -14,6 +20,8 @@ from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
 
 Parts = tuple[Kinematics, Constraints]
+CRANK_SETTINGS = 8
+"""How many settings of the cranks must all be singular for the architecture to be so."""
 
 
 def hexapod(machine_file: MachineFile) -> Machine:
@@ -41,9 +49,24 @@ def rotary_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
         checked.singularity_margin,
         checked.crank_centre,
     )
+    cranks = np.random.default_rng(1).uniform(*checked.crank_range, (CRANK_SETTINGS, LEGS))
+    check_architecture(kinematics.crank_tips(cranks), joints.platform_points)
+    return kinematics, checked.constraints(kinematics)
+
+
+def linear_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
+    """A platform on linear legs; its geometry by the paper's parameters, or by coordinates."""
+    schema: type[PointsConfig | PlatesConfig]
+    schema = PointsConfig if 'base_joints_mm' in geometry else PlatesConfig
+    joints = build(schema, geometry, 'geometry').geometry()
+    checked = build(LinearLimits, limits, 'limits')
+    kinematics = LinearPlatform(
+        joints, checked.characteristic_length_mm * 1e-3, checked.singularity_margin
+    )
     return kinematics, checked.constraints(kinematics)
 
 
 KINDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], Parts]] = {
     'rotary_hexapod': rotary_hexapod,
+    'linear_hexapod': linear_hexapod,
 }

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hexapod_control.geometry import LEGS
+from hexapod_control.parallel_platform import ParallelPlatform
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.arrays import Array, frozen
 from manipulator.pose import Pose
@@ -19,7 +20,7 @@ LEG_NAMES = tuple(f'leg {leg}' for leg in range(1, LEGS + 1))
 class PlatformJointSwing:
     """The rod's angle (rad) to its direction at home, as the platform sees it: a cone."""
 
-    kinematics: RotaryHexapod
+    kinematics: ParallelPlatform
     largest: float
     quantity: str = 'platform joint swing'
     unit: str = 'rad'
@@ -29,18 +30,33 @@ class PlatformJointSwing:
     at_home: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        """Remembers the six directions at home, in the platform frame."""
+        """Remembers the six directions at home."""
         home = self.kinematics.home
-        rods = self.kinematics.unit_rods(home, self.kinematics.inverse(home))
-        object.__setattr__(self, 'at_home', frozen(rods @ home.rotation))
+        at_home = self._directions(home, self.kinematics.inverse(home))
+        object.__setattr__(self, 'at_home', frozen(at_home))
         object.__setattr__(self, 'low', frozen(np.full(LEGS, -np.inf)))
         object.__setattr__(self, 'high', frozen(np.full(LEGS, self.largest)))
 
     def values(self, pose: Pose, joints: Array) -> Array:
         """The angles (..., 6)."""
-        rods = self.kinematics.unit_rods(pose, joints) @ pose.rotation
-        angle: Array = np.arccos(np.clip((rods * self.at_home).sum(axis=-1), -1.0, 1.0))
+        cosine = (self._directions(pose, joints) * self.at_home).sum(axis=-1)
+        angle: Array = np.arccos(np.clip(cosine, -1.0, 1.0))
         return angle
+
+    def _directions(self, pose: Pose, joints: Array) -> Array:
+        """The rods' unit vectors as the platform sees them."""
+        directions: Array = self.kinematics.unit_rods(pose, joints) @ pose.rotation
+        return directions
+
+
+@dataclass(frozen=True, eq=False)
+class BaseJointSwing(PlatformJointSwing):
+    """A linear leg's angle (rad) to its direction at home, as the base sees it: a cone."""
+
+    quantity: str = 'base joint swing'
+
+    def _directions(self, pose: Pose, joints: Array) -> Array:
+        return self.kinematics.unit_rods(pose, joints)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from manipulator.errors import ConfigError
 from manipulator.limits.body_height import BodyHeight
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.joint_range import JointRange
+from manipulator.limits.rod_closure import RodClosure
 from manipulator.limits.singularity_margin import SingularityMargin
 
 
@@ -32,15 +33,23 @@ class RotaryLimits:
             raise ConfigError([f'crank_range_deg: [{low:g}, {high:g}] is no range within a turn'])
 
     @property
+    def crank_range(self) -> tuple[float, float]:
+        """The crank range in radians."""
+        low, high = np.radians(self.crank_range_deg)
+        return float(low), float(high)
+
+    @property
     def crank_centre(self) -> float:
         """The middle of the crank range, in radians."""
         return float(np.radians(sum(self.crank_range_deg) / 2))
 
     def constraints(self, kinematics: RotaryHexapod) -> Constraints:
         """The limits, cheapest first."""
-        low, high = np.radians(self.crank_range_deg)
+        low, high = self.crank_range
         return Constraints(
             (
+                RodClosure(kinematics.closure, LEG_NAMES),
+                RodClosure(kinematics.closure, LEG_NAMES, is_surplus=True),
                 JointRange(
                     np.full(len(LEG_NAMES), low),
                     np.full(len(LEG_NAMES), high),

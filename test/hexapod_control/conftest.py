@@ -32,3 +32,9 @@ def hexapod(robocake):
 def many(robocake):
     """10,000 poses of the whole workspace."""
     return sample(robocake, 10_000, np.random.default_rng(1))
+
+
+@pytest.fixture(scope='session')
+def stewart_content():
+    """A function from a linear machine's name to the content of its file."""
+    return lambda name: parse_yaml((ROBOCAKE.parent / f'{name}.yaml').read_text())

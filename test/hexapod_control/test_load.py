@@ -1,7 +1,10 @@
+import re
+
 import numpy as np
 import pytest
 
 from hexapod_control.load import hexapod
+from hexarm import machines
 from manipulator.config import build
 from manipulator.errors import ConfigError, LimitViolated
 from manipulator.machine import MachineFile
@@ -80,3 +83,65 @@ def test_machines_by_coordinates_load_as_well(robocake_content):
     np.testing.assert_allclose(
         np.degrees(kinematics.inverse(kinematics.home)), 120.0045, atol=5e-5
     )
+
+
+@pytest.mark.parametrize('name', ['stewart_6_3', 'stewart_6_6'])
+def test_linear_limits_are_those_of_the_file(stewart_content, name):
+    machine = load(stewart_content(name))
+    quantities = {limit.quantity: limit for limit in machine.constraints.limits}
+    np.testing.assert_allclose(quantities['leg length'].high, 0.238)
+    np.testing.assert_allclose(np.degrees(quantities['base joint swing'].high), 45.0)
+    np.testing.assert_allclose(np.degrees(quantities['platform joint swing'].high), 45.0)
+    assert quantities['singularity margin'].low[0] == 0.25
+    assert len(quantities) == 4
+    assert machine.kinematics.joint_names[5] == 'leg_6'
+    assert machine.kinematics.joint_unit == 'm'
+    assert machine.motion.joint.speed == pytest.approx(0.02)
+
+
+def test_linear_machines_by_coordinates_load_as_well(stewart_content):
+    content = stewart_content('stewart_6_6')
+    kinematics = load(content).kinematics
+    g = kinematics.geometry
+    coordinates = {
+        'base_joints_mm': (g.base_points * 1e3).tolist(),
+        'platform_joints_mm': (g.platform_points * 1e3).tolist(),
+        'home_height_mm': g.home_height * 1e3,
+    }
+    again = load(content | {'geometry': coordinates}).kinematics
+    np.testing.assert_allclose(again.inverse(again.home), kinematics.inverse(kinematics.home))
+
+
+def test_a_linear_home_beyond_the_stroke_is_refused(stewart_content):
+    content = stewart_content('stewart_6_6')
+    content['geometry']['home_height_mm'] = 260.0
+    with pytest.raises(ConfigError, match=r'home has leg 1: leg length 0\.2595 m outside'):
+        load(content)
+
+
+def test_the_papers_equal_joint_angles_are_refused_when_the_file_is_loaded(tmp_path):
+    """Lapikov et al. 2014, section 4: φb = φmp, for the 6-6."""
+    text = machines.find('stewart_6_6').read_text()
+    path = tmp_path / 'paper.yaml'
+    path.write_text(re.sub('base_angle_deg: 50.0', 'base_angle_deg: 10.0', text))
+    with pytest.raises(ConfigError, match='no leg lengths fix a pose') as caught:
+        machines.load(str(path))
+    assert str(path) in str(caught.value)
+    assert 'give them different joint angles' in str(caught.value)
+
+
+def test_a_crank_platform_that_no_rods_can_hold_is_refused(robocake_content):
+    """All its joints lie on one straight line, about which it turns freely."""
+    g = load(robocake_content).kinematics.geometry
+    joints = 1e3 * g.platform_points * [1.0, 0.0, 0.0]
+    gaps = joints + [0.0, 0.0, 41.19] - 1e3 * g.crank_centres
+    coordinates = {
+        'crank_centres_mm': (g.crank_centres * 1e3).tolist(),
+        'crank_tangents': g.tangents.tolist(),
+        'platform_joints_mm': joints.tolist(),
+        'crank_length_mm': 10.0,
+        'rod_length_mm': np.linalg.norm(gaps, axis=1).tolist(),
+        'home_height_mm': 41.19,
+    }
+    with pytest.raises(ConfigError, match='no leg lengths fix a pose'):
+        load(robocake_content | {'geometry': coordinates})

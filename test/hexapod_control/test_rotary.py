@@ -41,7 +41,7 @@ def test_rods_keep_their_length_over_the_whole_workspace(hexapod, many):
 def test_rods_keep_their_length_on_the_other_elbow(hexapod, many):
     joints = hexapod.inverse(many[:500], near=np.zeros(6))
     assert np.abs(rod_lengths(hexapod, many[:500], joints) - 0.058).max() < 1e-12
-    assert (hexapod.tip_rates(many[:500], joints) >= -1e-9).any()
+    assert (hexapod.joint_gains(many[:500], joints) >= -1e-9).any()
 
 
 def test_each_crank_may_be_near_another_elbow_and_another_turn(hexapod):
@@ -123,10 +123,10 @@ def test_a_model_that_does_not_close_names_leg_and_lengths(hexapod):
         RotaryHexapod(short, 0.07, 0.3, 2.0)
 
 
-def test_crank_rates_are_how_angles_follow_the_pose(hexapod, many):
+def test_joint_rates_are_how_angles_follow_the_pose(hexapod, many):
     poses, step = many[:200], 1e-7
     joints = hexapod.inverse(poses)
-    rates = hexapod.crank_rates(poses, joints)
+    rates = hexapod.joint_rates(poses, joints)
     for axis, twist in enumerate(np.eye(6) * step):
         ahead, behind = (hexapod.inverse(poses.moved(t)) for t in (twist, -twist))
         slope = (ahead - behind) / (2 * step)
@@ -137,7 +137,7 @@ def test_leverage_vanishes_where_crank_and_rod_come_into_line(hexapod):
     leverage = []
     for dx in (0.0, 0.014, 0.0156, 0.015627):
         pose = moved_by(dx)
-        leverage.append(hexapod.crank_leverage(pose, hexapod.inverse(pose)).min())
+        leverage.append(hexapod.leverage(pose, hexapod.inverse(pose)).min())
     assert leverage == sorted(leverage, reverse=True)
     assert leverage[0] > 0.5
     assert leverage[-1] < 0.01
@@ -150,7 +150,7 @@ def test_crank_and_rod_in_line_have_no_rates(hexapod):
     joints = hexapod.inverse(pose).copy()
     joints[0] = np.arctan2(rod @ g.ups[0], rod @ g.tangents[0])
     with pytest.raises(NoSolution, match='in line'):
-        hexapod.crank_rates(pose, joints)
+        hexapod.joint_rates(pose, joints)
 
 
 def singular_pose(hexapod):

@@ -1,0 +1,76 @@
+"""The linear Gough–Stewart platform as a `Kinematics`: six leg lengths, one pose."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from hexapod_control.forward import XYZXY
+from hexapod_control.geometry import LEGS
+from hexapod_control.leg_jacobian import rods
+from hexapod_control.linear_geometry import LinearGeometry
+from hexapod_control.parallel_platform import ParallelPlatform
+from manipulator.arrays import Array, frozen
+from manipulator.errors import NoSolution
+from manipulator.pose import Pose
+
+
+@dataclass(frozen=True, eq=False)
+class LinearPlatform(ParallelPlatform):
+    """Kinematics of a platform on six legs that change their length.
+
+    A joint's position is the leg's length between its joint centres, in metres: L of Lapikov et
+    al. 2014, and no machine's zero. Every pose has one inverse; whether a leg can be as long as
+    that is the business of `Constraints`. Construction as of `ParallelPlatform`.
+    """
+
+    geometry: LinearGeometry
+    columns: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Lays out the base points for the forward solver."""
+        columns = frozen(self.geometry.base_points.T.take(XYZXY, axis=0))
+        object.__setattr__(self, 'columns', columns)
+        super().__post_init__()
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """leg_1 to leg_6."""
+        return tuple(f'leg_{leg}' for leg in range(1, LEGS + 1))
+
+    @property
+    def joint_unit(self) -> str:
+        """Metres."""
+        return 'm'
+
+    def inverse(self, pose: Pose, near: Array | None = None) -> Array:
+        """Leg lengths (..., 6), Lapikov et al. 2014, section 2.1; `near` changes nothing."""
+        return self.inverse_or_nan(pose, near)
+
+    def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
+        """As `inverse`: no leg fails to close."""
+        rod = rods(self.geometry.base_points, self.geometry.platform_points, pose)
+        lengths: Array = np.sqrt((rod * rod).sum(axis=-1))
+        return lengths
+
+    def base_points(self, joints: Array) -> Array:
+        """The base's joint centres (..., 6, 3), whatever the lengths."""
+        missing = np.isnan(joints)[..., None]
+        return np.where(missing, np.nan, self.geometry.base_points)
+
+    def rod_lengths(self, joints: Array) -> Array:
+        """The joints themselves; NoSolution where one is not above 0."""
+        if not (joints > 0.0).all():
+            leg = int(np.argmin(joints))
+            raise NoSolution(f'leg {leg + 1}: length {joints[leg]:.4g} m is not above 0')
+        return joints
+
+    def joint_gains(self, pose: Pose, joints: Array) -> Array:
+        """1 for every leg."""
+        return np.ones(np.shape(joints))
+
+    def leverage(self, pose: Pose, joints: Array) -> Array:
+        """1 for every leg: linear legs have no inverse singularity."""
+        return np.ones(np.shape(joints))
+
+    def _base_columns(self, joints: Array) -> Array:
+        return self.columns

@@ -1,0 +1,180 @@
+"""What crank and linear platforms share: six legs that end on one platform."""
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from hexapod_control.assembly_modes import AssemblyModes, assembly_modes
+from hexapod_control.forward import XYZXY, ForwardByLengths
+from hexapod_control.geometry import LEGS
+from hexapod_control.leg_jacobian import leg_jacobian, rods, smallest_singular_value
+from manipulator.arrays import Array, Mask
+from manipulator.errors import ConfigError, NoSolution, Unreachable
+from manipulator.kinematics import ForwardSolution
+from manipulator.pose import Pose
+
+SINGULAR = 1e-6
+
+
+class LegGeometry(Protocol):
+    """Where the legs end on the platform (6, 3), platform frame, and how high it stands at home.
+
+    Metres; at home the platform is level, above the base frame's origin.
+    """
+
+    @property
+    def platform_points(self) -> Array:
+        """Joint centres (6, 3) in the platform frame."""
+        ...
+
+    @property
+    def home_height(self) -> float:
+        """The platform's z at home."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class ParallelPlatform(ABC):
+    """Six legs, each a straight rod from a base point to the platform: docs/kinematics.md.
+
+    A kind of legs says where base points are and how long rods are for given joints. In
+    J·twist = W·q̇, J is the leg Jacobian and W the diagonal of the joints' gains.
+    characteristic_length (metres) scales rotations in σmin; a cold forward start is trusted
+    where σmin is at least trusted_margin. Construction raises ConfigError when the legs do not
+    close at home.
+    """
+
+    geometry: LegGeometry
+    characteristic_length: float
+    trusted_margin: float
+    home: Pose = field(init=False)
+    newton: ForwardByLengths = field(init=False)
+    home_side: float = field(init=False)
+    home_bends: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Finds home, the sign of det J there, and to which side each joint's gain is."""
+        home = Pose(np.array([0.0, 0.0, self.geometry.home_height]), np.eye(3))
+        newton = ForwardByLengths(self.geometry.platform_points, self.characteristic_length)
+        object.__setattr__(self, 'home', home)
+        object.__setattr__(self, 'newton', newton)
+        try:
+            joints = self.inverse(home)
+        except Unreachable as error:
+            raise ConfigError([f'the model does not close at home: {error}']) from error
+        side = float(np.sign(np.linalg.det(self.leg_jacobian(home, joints))))
+        object.__setattr__(self, 'home_side', side)
+        object.__setattr__(self, 'home_bends', np.sign(self.joint_gains(home, joints)))
+
+    @property
+    @abstractmethod
+    def joint_names(self) -> tuple[str, ...]:
+        """One name a leg."""
+
+    @property
+    @abstractmethod
+    def joint_unit(self) -> str:
+        """'rad' or 'm'."""
+
+    @abstractmethod
+    def inverse(self, pose: Pose, near: Array | None = None) -> Array:
+        """Joints (..., 6); see `Kinematics`."""
+
+    @abstractmethod
+    def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
+        """As `inverse`, with NaN for each leg that does not close."""
+
+    @abstractmethod
+    def base_points(self, joints: Array) -> Array:
+        """Where the rods begin, (..., 6, 3), base frame, metres; NaN for NaN joints."""
+
+    @abstractmethod
+    def rod_lengths(self, joints: Array) -> Array:
+        """How long the rods are, (..., 6), metres."""
+
+    @abstractmethod
+    def joint_gains(self, pose: Pose, joints: Array) -> Array:
+        """Gains w (..., 6): how fast each rod's length follows its joint, m/rad or m/m."""
+
+    @abstractmethod
+    def leverage(self, pose: Pose, joints: Array) -> Array:
+        """The inverse singularity's margin (..., 6), 0 to 1: |gain| by the most it can be."""
+
+    def forward(self, joints: Array, near: Pose | None = None) -> ForwardSolution:
+        """The pose for joints (6,); see `Kinematics` and docs/kinematics.md, section 3.
+
+        A start from home must end on home's side of every forward singularity, with σmin of at
+        least trusted_margin and no leg bent the other way; a start from `near` must end on near's
+        side.
+        """
+        checked = checked_joints(joints)
+        base, lengths = self._base_columns(checked), self.rod_lengths(checked)
+        if near is not None:
+            return self.newton.solve_columns(base, lengths, near, None, 0.0)
+        solution = self.newton.solve_columns(
+            base, lengths, self.home, self.home_side, self.trusted_margin
+        )
+        if (self.joint_gains(solution.pose, checked) * self.home_bends <= 0.0).any():
+            raise NoSolution('the pose found bends a leg the other way than at home')
+        return solution
+
+    def forward_all(self, joints: Array) -> AssemblyModes:
+        """Every pose that joints (6,) allow: docs/forward-modes.md. NoSolution as `forward`."""
+        checked = checked_joints(joints)
+        points = self.geometry.platform_points
+        return assembly_modes(self.base_points(checked), points, self.rod_lengths(checked))
+
+    def is_as_at_home(self, pose: Pose, joints: Array) -> Mask:
+        """Which configurations (...) are on home's side of every singularity, of both types."""
+        side = np.linalg.det(self.leg_jacobian(pose, joints)) * self.home_side > 0.0
+        bends = self.joint_gains(pose, joints) * self.home_bends > 0.0
+        result: Mask = side & bends.all(axis=-1)
+        return result
+
+    def unit_rods(self, pose: Pose, joints: Array) -> Array:
+        """Unit vectors (..., 6, 3) along the rods, from base to platform, base axes."""
+        rod = rods(self.base_points(joints), self.geometry.platform_points, pose)
+        unit: Array = rod / np.sqrt((rod * rod).sum(axis=-1))[..., None]
+        return unit
+
+    def leg_jacobian(self, pose: Pose, joints: Array) -> Array:
+        """J (..., 6, 6): J·twist is how fast each rod would grow if its base point stood, m/s."""
+        return leg_jacobian(self.base_points(joints), self.geometry.platform_points, pose)
+
+    def joint_rates(self, pose: Pose, joints: Array) -> Array:
+        """W⁻¹J (..., 6, 6): joint rates of a unit twist; NoSolution at an inverse singularity."""
+        if not (self.leverage(pose, joints) > SINGULAR).all():
+            raise NoSolution('inverse singularity: a crank and its rod are in line')
+        result: Array = self.leg_jacobian(pose, joints) / self.joint_gains(pose, joints)[..., None]
+        return result
+
+    def jacobian(self, pose: Pose, joints: Array) -> Array:
+        """J⁻¹W (..., 6, 6): the twist of unit joint rates; NoSolution at a forward singularity."""
+        rows = self.leg_jacobian(pose, joints)
+        sigma = smallest_singular_value(rows, self.characteristic_length)
+        if not (sigma > SINGULAR).all():
+            raise NoSolution('forward singularity: the joints do not fix the platform here')
+        gains = self.joint_gains(pose, joints)
+        return np.asarray(np.linalg.solve(rows, gains[..., None] * np.eye(LEGS)))
+
+    def sigma_min(self, pose: Pose, joints: Array) -> Array:
+        """The forward singularity margin (...), dimensionless; NaN for NaN joints."""
+        return smallest_singular_value(self.leg_jacobian(pose, joints), self.characteristic_length)
+
+    def _base_columns(self, joints: Array) -> Array:
+        """The base points as the (5, 6) array that `ForwardByLengths.solve_columns` takes."""
+        columns: Array = self.base_points(joints).T.take(XYZXY, axis=0)
+        return columns
+
+
+def checked_joints(joints: Array) -> Array:
+    """Six finite numbers; NoSolution for anything else."""
+    checked = np.asarray(joints, dtype=np.float64)
+    if checked.shape != (LEGS,):
+        raise NoSolution(f'joints have shape {checked.shape}, a pose needs ({LEGS},)')
+    if not all(map(math.isfinite, checked.tolist())):
+        raise NoSolution(f'joints are not finite: {checked.tolist()}')
+    return checked
