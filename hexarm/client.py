@@ -116,16 +116,22 @@ class Client:
         """Publishes a goal and waits until it is reached; Refused or Stopped with the reason."""
         self.wait('a listener for goals', lambda: self._goals.get_subscription_count() > 0, 10.0)
         stamp = f'{self.publish_goal(pose):.9f}'
+        self._await_result(lambda: self.motion('goal_stamp') == stamp, seconds)
 
-        def is_answered() -> bool:
-            is_ours = self.motion('goal_stamp') == stamp
-            return is_ours and self.motion('result') in ('reached', 'refused', 'stopped')
+    def home(self, seconds: float = 10.0) -> None:
+        """Goes home and waits until it is there; Refused or Stopped with the reason."""
+        before = self.motion('goal_stamp')
+        self.trigger('trajectory/home')
+        self._await_result(lambda: self.motion('goal_stamp') != before, seconds)
 
-        self.wait('reaching the goal', is_answered, seconds)
-        if self.motion('result') == 'stopped':
-            raise Stopped(self.motion_status.message)
-        if self.motion('result') == 'refused':
-            raise Refused(self.motion_status.message)
+    def _await_result(self, is_ours: Callable[[], bool], seconds: float) -> None:
+        ends = {'reached': None, 'refused': Refused, 'stopped': Stopped}
+        self.wait(
+            'reaching the goal', lambda: is_ours() and self.motion('result') in ends, seconds
+        )
+        error = ends[self.motion('result')]
+        if error is not None:
+            raise error(self.motion_status.message)
 
     def _call(self, kind: type, name: str, request: Any) -> str:
         client = self.node.create_client(kind, name)

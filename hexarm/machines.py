@@ -3,10 +3,12 @@
 import difflib
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError
+from manipulator.frames import Frames
 from manipulator.machine import Machine, MachineFile
 
 
@@ -24,7 +26,7 @@ def _arm(machine_file: MachineFile) -> Machine:
 
 KINDS: dict[str, Callable[[MachineFile], Machine]] = {
     'rotary_hexapod': _hexapod,
-    'linear_platform': _hexapod,
+    'linear_hexapod': _hexapod,
     'serial_arm': _arm,
 }
 
@@ -61,22 +63,31 @@ def find(name_or_path: str) -> Path:
 def read(name_or_path: str) -> MachineFile:
     """The sections of a machine file; ConfigError lists everything wrong at the top level."""
     path = find(name_or_path)
+    return build(MachineFile, parse_yaml(text_of(path), str(path)), source=str(path))
+
+
+def text_of(path: Path) -> str:
+    """What a file holds; ConfigError where it cannot be read as text."""
     try:
-        text = path.read_text(encoding='utf-8')
+        return path.read_text(encoding='utf-8')
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigError([f'cannot be read: {error}'], str(path)) from error
-    return build(MachineFile, parse_yaml(text, str(path)), source=str(path))
+
+
+def loader(kind: str) -> Callable[[MachineFile], Machine]:
+    """What makes machines of this kind; ConfigError names the kinds that there are."""
+    if kind in KINDS:
+        return KINDS[kind]
+    near = difflib.get_close_matches(kind, list(KINDS), n=1)
+    hint = f', did you mean {near[0]!r}?' if near else ''
+    raise ConfigError([f'kind: {kind!r} is not one of {list(KINDS)}{hint}'])
 
 
 def load(name_or_path: str) -> Machine:
     """Kinematics, constraints and motion limits of a machine; ConfigError says what is wrong."""
     machine_file = read(name_or_path)
-    if machine_file.kind not in KINDS:
-        near = difflib.get_close_matches(machine_file.kind, list(KINDS), n=1)
-        hint = f', did you mean {near[0]!r}?' if near else ''
-        problem = f'kind: {machine_file.kind!r} is not one of {list(KINDS)}{hint}'
-        raise ConfigError([problem], str(find(name_or_path)))
     try:
-        return KINDS[machine_file.kind](machine_file)
+        machine = loader(machine_file.kind)(machine_file)
     except ConfigError as error:
         raise ConfigError(error.problems, str(find(name_or_path))) from error
+    return replace(machine, frames=Frames.from_config(machine_file.frames))

@@ -88,16 +88,7 @@ def park(client: 'Client') -> None:
         return
     print('parking', flush=True)
     try:
-        before = client.motion('goal_stamp')
-        client.trigger('trajectory/home')
-        client.wait(
-            'parking',
-            lambda: (
-                client.motion('goal_stamp') != before
-                and client.motion('result') in ('reached', 'refused', 'stopped')
-            ),
-            seconds=10.0,
-        )
+        client.home()
         client.disable()
     except Interrupted:
         print('interrupted again: not parked')

@@ -1,8 +1,9 @@
 """A machine as the nodes use it: its kinematics, its limits, its way of moving."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
+from manipulator.frames import Frames, FramesConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.motion_limits import MotionConfig, MotionLimits
@@ -23,12 +24,18 @@ class MachineFile:
     link: dict[str, Any]
     description: str = ''
     simulation: dict[str, Any] | None = None
+    frames: FramesConfig = field(default_factory=FramesConfig)
 
 
 @dataclass(frozen=True)
 class Machine:
-    """What trajectory, ik and pose need to know of a machine."""
+    """What trajectory, ik and pose need to know of a machine.
+
+    frames are those that its user works in; kinematics and constraints are in the base frame,
+    unless the machine was made by `in_frames`.
+    """
 
     kinematics: Kinematics
     constraints: Constraints
     motion: MotionLimits
+    frames: Frames = field(default_factory=Frames)

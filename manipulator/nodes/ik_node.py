@@ -45,11 +45,13 @@ class IkNode(Node):
 
     def _on_setpoint(self, message: PoseStamped) -> None:
         pose = pose_of(message)
-        present, age = self._present()
-        joints = self._machine.kinematics.inverse(pose, present)
+        age = self._setpoint.age
+        is_fresh = self._commanded is not None and age < FORGET_AFTER
+        near = self._commanded if is_fresh else self._measured
+        joints = self._machine.kinematics.inverse(pose, near)
         self._machine.constraints.check(pose, joints)
-        if present is not None:
-            self._check_step(joints, present, age)
+        if near is not None:
+            self._check_step(joints, near, age if is_fresh else LONGEST_STEP)
         self._commanded = joints
         self._publisher.publish(joint_message(joints, self._names, message.header.stamp))
 
@@ -59,27 +61,28 @@ class IkNode(Node):
         else:
             self._measured = self._commanded = None
 
-    def _present(self) -> tuple[Array | None, float]:
-        """Where the joints are: the last command while it is fresh, else what was measured."""
-        if self._commanded is not None and self._setpoint.age < FORGET_AFTER:
-            return self._commanded, self._setpoint.age
-        return self._measured, LONGEST_STEP
-
-    def _check_step(self, joints: Array, present: Array, age: float) -> None:
+    def _check_step(self, joints: Array, near: Array, age: float) -> None:
+        """Refuses a jump away from the last command, unless it leads to where the joints are."""
         time = min(max(age, SHORTEST_STEP), LONGEST_STEP)
         allowed = self._machine.motion.joint.speed * time
-        steps = np.abs(joints - present)
+        steps = np.abs(joints - near)
         worst = int(np.argmax(steps))
-        if steps[worst] > allowed:
-            unit = self._machine.kinematics.joint_unit
-            raise LimitViolated(
-                f'{self._names[worst]} would jump by {steps[worst]:.4g} {unit}, at most '
-                f'{allowed:.4g} {unit} in {time:.3g} s: begin at the present pose',
-                'joint step',
-                float(steps[worst]),
-                (0.0, allowed),
-                worst + 1,
-            )
+        if steps[worst] <= allowed or self._is_present(joints, allowed):
+            return
+        unit = self._machine.kinematics.joint_unit
+        raise LimitViolated(
+            f'{self._names[worst]} would jump by {steps[worst]:.4g} {unit}, at most '
+            f'{allowed:.4g} {unit} in {time:.3g} s: begin at the present pose',
+            'joint step',
+            float(steps[worst]),
+            (0.0, allowed),
+            worst + 1,
+        )
+
+    def _is_present(self, joints: Array, tolerance: float) -> bool:
+        return self._measured is not None and bool(
+            np.abs(joints - self._measured).max() <= tolerance
+        )
 
     def _report(self) -> Report:
         values = {

@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import PointStamped, PoseStamped
 from sensor_msgs.msg import JointState
 
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
 
-BASE_FRAME = 'base'
+BASE_FRAME, WORK_FRAME, PLATFORM_FRAME = 'base', 'work', 'platform'
 
 
 def seconds(stamp: Time) -> float:
@@ -19,9 +19,9 @@ def seconds(stamp: Time) -> float:
     return float(stamp.sec + stamp.nanosec * 1e-9)
 
 
-def pose_of(message: PoseStamped) -> Pose:
-    """The pose in the base frame; an empty frame_id means base."""
-    check_frame(message.header.frame_id)
+def pose_of(message: PoseStamped, frames: tuple[str, ...] = (BASE_FRAME,)) -> Pose:
+    """The pose in its frame, which must be one of `frames`; an empty frame_id means the first."""
+    check_frame(message.header.frame_id, frames)
     p, q = message.pose.position, message.pose.orientation
     numbers = {'x': p.x, 'y': p.y, 'z': p.z, 'qx': q.x, 'qy': q.y, 'qz': q.z, 'qw': q.w}
     for name, value in numbers.items():
@@ -30,21 +30,31 @@ def pose_of(message: PoseStamped) -> Pose:
     return Pose.from_xyz_quaternion((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
 
 
-def pose_message(pose: Pose, stamp: Time) -> PoseStamped:
-    """A pose in the base frame as a message."""
+def pose_message(pose: Pose, stamp: Time, frame: str = BASE_FRAME) -> PoseStamped:
+    """A pose as a message."""
     message = PoseStamped()
     message.header.stamp = stamp
-    message.header.frame_id = BASE_FRAME
+    message.header.frame_id = frame
     p, q = message.pose.position, message.pose.orientation
     p.x, p.y, p.z = pose.position.tolist()
     q.x, q.y, q.z, q.w = pose.quaternion.tolist()
     return message
 
 
-def check_frame(frame_id: str) -> None:
-    """Raises InvalidInput unless the frame is the base."""
-    if frame_id not in ('', BASE_FRAME):
-        raise InvalidInput(f'frame_id {frame_id!r} is unknown, needs {BASE_FRAME!r} or nothing')
+def check_frame(frame_id: str, frames: tuple[str, ...]) -> None:
+    """Raises InvalidInput unless the frame is one of `frames`, or empty."""
+    if frame_id and frame_id not in frames:
+        known = ' or '.join(repr(frame) for frame in frames)
+        raise InvalidInput(f'frame_id {frame_id!r} is unknown, needs {known}, or nothing')
+
+
+def point_of(message: PointStamped, frame: str) -> list[float]:
+    """The coordinates of a point in `frame`."""
+    check_frame(message.header.frame_id, (frame,))
+    point = [message.point.x, message.point.y, message.point.z]
+    if not all(math.isfinite(c) for c in point):
+        raise InvalidInput(f'point {point} is not finite')
+    return point
 
 
 def joints_of(message: JointState, names: tuple[str, ...]) -> Array:

@@ -3,19 +3,25 @@
 from collections.abc import Callable
 
 from diagnostic_msgs.msg import DiagnosticStatus
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import PointStamped, PoseStamped
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
 from manipulator.arrays import Array
-from manipulator.errors import NoSolution
+from manipulator.errors import InvalidInput, NoSolution
 from manipulator.kinematics import ForwardSolution
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.intake import Intake
-from manipulator.nodes.messages import joints_of, pose_message
+from manipulator.nodes.messages import (
+    PLATFORM_FRAME,
+    WORK_FRAME,
+    joints_of,
+    point_of,
+    pose_message,
+)
 from manipulator.nodes.parameters import declare
-from manipulator.nodes.qos import MEASUREMENT
+from manipulator.nodes.qos import LATCHED, MEASUREMENT
 
 
 class PoseNode(Node):
@@ -26,9 +32,12 @@ class PoseNode(Node):
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         machine = load(name)
         self._kinematics, self._constraints = machine.kinematics, machine.constraints
+        self._frames = machine.frames
         self._solution: ForwardSolution | None = None
         self._states = Intake(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
+        self._pivot_publisher = self.create_publisher(PoseStamped, 'pivot_pose', MEASUREMENT)
+        self.create_subscription(PointStamped, 'pivot', self._on_pivot, LATCHED)
         self.create_subscription(JointState, 'joint_states', self._states, MEASUREMENT)
         self._diagnostics = Diagnostics(self, self._report, ('joint_states', 'pose'))
 
@@ -45,7 +54,17 @@ class PoseNode(Node):
                 self.get_logger().info('the last pose does not lead to the present one: afresh')
         if self._solution is None:
             self._solution = self._cold(joints)
-        self._publisher.publish(pose_message(self._solution.pose, message.header.stamp))
+        pose, stamp = self._solution.pose, message.header.stamp
+        self._publisher.publish(pose_message(pose, stamp))
+        if self._pivot_publisher.get_subscription_count() > 0:
+            in_work = pose_message(self._frames.pivot(pose), stamp, WORK_FRAME)
+            self._pivot_publisher.publish(in_work)
+
+    def _on_pivot(self, message: PointStamped) -> None:
+        try:
+            self._frames = self._frames.with_pivot(point_of(message, PLATFORM_FRAME))
+        except InvalidInput as error:
+            self.get_logger().warning(f'pivot: {error}', throttle_duration_sec=1.0)
 
     def _cold(self, joints: Array) -> ForwardSolution:
         """From home; what lies beyond a limit may be another assembly mode, so it is not used."""

@@ -71,6 +71,11 @@ class Player:
         return self._plan.at(self._time)
 
     @property
+    def is_at_rest(self) -> bool:
+        """Whether nothing moves and nothing is about to."""
+        return isinstance(self._plan, Hold) and self._newest is None
+
+    @property
     def rate(self) -> float:
         """How fast the plan's time runs, 0 to 1."""
         return self._rate

@@ -6,7 +6,7 @@ import textwrap
 
 import numpy as np
 import pytest
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import PointStamped, PoseStamped
 from nav_msgs.srv import GetPlan
 from std_msgs.msg import Float64
 
@@ -89,8 +89,8 @@ def test_broken_goal_is_refused_in_words_and_the_next_one_works(enabled):
 
 def test_services_home_pause_stop_and_cycle(enabled):
     enabled.go_to(Pose.from_xyz_rpy((0.004, 0.0, 0.045)))
-    enabled.trigger('trajectory/home')
-    enabled.wait('home', lambda: abs(heard_pose(enabled).position[0]) < 0.0005, 10.0)
+    enabled.home()
+    assert abs(heard_pose(enabled).position[0]) < 0.0005
     enabled.trigger('trajectory/start_cycle')
     enabled.wait('cycling', lambda: enabled.motion('mode') == 'cycle', 5.0)
     enabled.wait('swinging', lambda: heard_pose(enabled).position[0] > 0.001, 10.0)
@@ -135,3 +135,25 @@ def test_goal_for_a_machine_that_is_not_enabled_is_refused(enabled):
         enabled.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.043)))
     enabled.enable()
     enabled.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.043)))
+
+
+def test_pivot_is_where_goals_in_the_work_frame_turn_about(enabled):
+    enabled.home()
+    pivots = enabled.node.create_publisher(PointStamped, 'pivot', LATCHED)
+    readings = []
+    enabled.node.create_subscription(PoseStamped, 'pivot_pose', readings.append, MEASUREMENT)
+    message = PointStamped()
+    message.point.z = 0.03
+    pivots.publish(message)
+    enabled.wait('the pivot', lambda: bool(readings) and readings[-1].pose.position.z > 0.07, 10.0)
+    assert readings[-1].header.frame_id == 'work'
+    goals = enabled.node.create_publisher(PoseStamped, 'goal_pose', COMMAND)
+    enabled.wait('a listener', lambda: goals.get_subscription_count() > 0, 10.0)
+    goal = Pose.from_xyz_rpy((0.0, 0.0, 0.0412 + 0.03), (0.1, 0.0, 0.0))
+    goals.publish(pose_message(goal, enabled.node.get_clock().now().to_msg(), 'work'))
+    enabled.wait('leaning', lambda: heard_pose(enabled).rpy[0] > 0.098, 10.0)
+    pose = heard_pose(enabled)
+    assert pose.position[1] == pytest.approx(0.03 * np.sin(0.1), abs=3e-4)
+    message.point.z = 0.0
+    pivots.publish(message)
+    enabled.spin(0.3)

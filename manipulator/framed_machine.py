@@ -1,0 +1,119 @@
+"""A machine as driven by the pose of its pivot in the user's work frame.
+
+It stays a machine like any other, so that plans, limits and maps need not know; turns are then
+about the pivot, and moves are straight for it.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from manipulator import rotation as so3
+from manipulator.arrays import Array
+from manipulator.frames import Frames
+from manipulator.kinematics import ForwardSolution, Kinematics
+from manipulator.limits.constraints import Constraints
+from manipulator.limits.limit import Limit
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+
+
+def in_frames(machine: Machine, frames: Frames) -> Machine:
+    """The machine as driven by T_work_pivot; the same machine when the frames are plain."""
+    if frames.are_plain:
+        return machine
+    kinematics = FramedKinematics(machine.kinematics, frames)
+    limits = tuple(FramedLimit(limit, frames) for limit in machine.constraints.limits)
+    return replace(machine, kinematics=kinematics, constraints=Constraints(limits), frames=frames)
+
+
+@dataclass(frozen=True)
+class FramedKinematics:
+    """A Kinematics whose poses are those of the pivot in the work frame."""
+
+    inner: Kinematics
+    frames: Frames
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Those of the machine."""
+        return self.inner.joint_names
+
+    @property
+    def joint_unit(self) -> str:
+        """That of the machine."""
+        return self.inner.joint_unit
+
+    @property
+    def characteristic_length(self) -> float:
+        """That of the machine."""
+        return self.inner.characteristic_length
+
+    @property
+    def home(self) -> Pose:
+        """The pivot's pose when the machine is at home."""
+        return self.frames.pivot(self.inner.home)
+
+    def inverse(self, pose: Pose, near: Array | None = None) -> Array:
+        """See `Kinematics`."""
+        return self.inner.inverse(self.frames.platform(pose), near)
+
+    def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
+        """See `Kinematics`."""
+        return self.inner.inverse_or_nan(self.frames.platform(pose), near)
+
+    def forward(self, joints: Array, near: Pose | None = None) -> ForwardSolution:
+        """See `Kinematics`."""
+        start = None if near is None else self.frames.platform(near)
+        solution = self.inner.forward(joints, start)
+        return replace(solution, pose=self.frames.pivot(solution.pose))
+
+    def jacobian(self, pose: Pose, joints: Array) -> Array:
+        """The twist of the pivot in work axes: v + ω × r, then both turned."""
+        platform = self.frames.platform(pose)
+        arm = platform.rotation @ self.frames.T_platform_pivot.position
+        rows = self.inner.jacobian(platform, joints)
+        linear = rows[..., :3, :] - so3.skew(arm) @ rows[..., 3:, :]
+        to_work = self.frames.T_base_work.rotation.T
+        return np.concatenate([to_work @ linear, to_work @ rows[..., 3:, :]], axis=-2)
+
+    def sigma_min(self, pose: Pose, joints: Array) -> Array:
+        """The machine's own margin: it does not depend on the user's frames."""
+        return self.inner.sigma_min(self.frames.platform(pose), joints)
+
+
+@dataclass(frozen=True)
+class FramedLimit:
+    """A limit of the machine, asked with poses of the pivot in the work frame."""
+
+    inner: Limit
+    frames: Frames
+
+    @property
+    def quantity(self) -> str:
+        """That of the limit."""
+        return self.inner.quantity
+
+    @property
+    def unit(self) -> str:
+        """That of the limit."""
+        return self.inner.unit
+
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """Those of the limit."""
+        return self.inner.owners
+
+    @property
+    def low(self) -> Array:
+        """Those of the limit."""
+        return self.inner.low
+
+    @property
+    def high(self) -> Array:
+        """Those of the limit."""
+        return self.inner.high
+
+    def values(self, pose: Pose, joints: Array) -> Array:
+        """The limited values (..., k), by the platform's pose."""
+        return self.inner.values(self.frames.platform(pose), joints)

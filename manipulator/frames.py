@@ -1,0 +1,60 @@
+"""The user's frames: a work frame on the base, a pivot (tool point) on the platform."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from manipulator.config import quantity
+from manipulator.errors import InvalidInput
+from manipulator.pose import Pose
+
+FARTHEST_PIVOT = 2.0
+
+
+@dataclass(frozen=True)
+class FramesConfig:
+    """The `frames` section of a machine file: where the work frame and the pivot are."""
+
+    work_xyz_mm: tuple[float, float, float] = quantity(-5000, 5000, default=(0.0, 0.0, 0.0))
+    work_rpy_deg: tuple[float, float, float] = quantity(-360, 360, default=(0.0, 0.0, 0.0))
+    pivot_xyz_mm: tuple[float, float, float] = quantity(-2000, 2000, default=(0.0, 0.0, 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Frames:
+    """T_base_work, and T_platform_pivot, which has the platform's axes."""
+
+    T_base_work: Pose = field(default_factory=Pose.identity)
+    T_platform_pivot: Pose = field(default_factory=Pose.identity)
+
+    @classmethod
+    def from_config(cls, config: FramesConfig) -> 'Frames':
+        """In metres and radians."""
+        work = Pose.from_xyz_rpy(
+            np.array(config.work_xyz_mm) * 1e-3, np.radians(config.work_rpy_deg)
+        )
+        return cls(work).with_pivot([1e-3 * c for c in config.pivot_xyz_mm])
+
+    def with_pivot(self, point: Sequence[float]) -> 'Frames':
+        """Another pivot, platform frame, metres; InvalidInput beyond 2 m or for NaN."""
+        position = np.array(point, dtype=np.float64)
+        if not np.linalg.norm(position) <= FARTHEST_PIVOT:
+            raise InvalidInput(
+                f'pivot {position.tolist()} is not within {FARTHEST_PIVOT:g} m of the platform'
+            )
+        return replace(self, T_platform_pivot=Pose(position, np.eye(3)))
+
+    @property
+    def are_plain(self) -> bool:
+        """Whether work is base and the pivot is the platform's origin."""
+        both = (self.T_base_work, self.T_platform_pivot)
+        return all(np.array_equal(Pose.identity().twist_to(pose), np.zeros(6)) for pose in both)
+
+    def platform(self, T_work_pivot: Pose) -> Pose:
+        """T_base_platform when the pivot is there."""
+        return self.T_base_work @ T_work_pivot @ self.T_platform_pivot.inverse()
+
+    def pivot(self, T_base_platform: Pose) -> Pose:
+        """T_work_pivot when the platform is there."""
+        return self.T_base_work.inverse() @ T_base_platform @ self.T_platform_pivot

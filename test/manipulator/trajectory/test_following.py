@@ -1,0 +1,43 @@
+import numpy as np
+
+from manipulator.trajectory.following import Following
+
+DT = 0.01
+NAMES = ('a', 'b')
+
+
+def drive(following, commands, measured):
+    """The first tick at which there is trouble, and the trouble."""
+    for k, (command, joints) in enumerate(zip(commands, measured, strict=True)):
+        following.command(np.array(command))
+        following.measure(np.array(joints))
+        if following.trouble:
+            return k, following.trouble
+    return None, ''
+
+
+def test_joints_that_lag_by_less_than_half_a_second_follow():
+    commands = [(0.01 * k, 0.0) for k in range(200)]
+    measured = [(0.01 * max(k - 40, 0), 0.0) for k in range(200)]
+    assert drive(Following(NAMES, 0.1, DT), commands, measured) == (None, '')
+
+
+def test_stuck_joint_is_named_within_a_second():
+    commands = [(0.0, 0.01 * k) for k in range(200)]
+    tick, trouble = drive(Following(NAMES, 0.1, DT), commands, [(0.0, 0.0)] * 200)
+    assert tick < 100
+    assert trouble.startswith('b is')
+
+
+def test_short_excursion_is_no_trouble():
+    measured = [(0.3 * (50 < k < 70), 0.0) for k in range(200)]
+    assert drive(Following(NAMES, 0.1, DT), [(0.0, 0.0)] * 200, measured) == (None, '')
+
+
+def test_measurements_that_stop_coming_keep_the_last_word():
+    following = Following(NAMES, 0.1, DT)
+    following.command(np.zeros(2))
+    following.measure(np.array([0.3, 0.0]))
+    for _ in range(100):
+        following.command(np.zeros(2))
+    assert following.trouble
