@@ -18,12 +18,13 @@ from manipulator.pose import Pose
 class SerialArm:
     """Kinematics of six revolute joints in radians; the moving frame is the tool's.
 
-    length (metres) divides linear velocities in σmin; rest (6,) are the joints at home.
+    characteristic_length (metres) divides linear velocities in σmin; rest (6,) are the joints at
+    home.
     """
 
     chain: Chain
     limits: JointLimits
-    length: float
+    characteristic_length: float
     rest: Array
     home: Pose = field(init=False)
     method: InverseMethod = field(init=False)
@@ -42,7 +43,7 @@ class SerialArm:
             )
         object.__setattr__(self, 'rest', rest)
         object.__setattr__(self, 'home', self.chain.forward(rest))
-        method = fitting_method(self.chain, self.limits, self.length)
+        method = fitting_method(self.chain, self.limits, self.characteristic_length)
         object.__setattr__(self, 'method', method)
 
     @property
@@ -54,11 +55,6 @@ class SerialArm:
     def joint_unit(self) -> str:
         """Radians."""
         return 'rad'
-
-    @property
-    def characteristic_length(self) -> float:
-        """The length of `length`, metres."""
-        return self.length
 
     def inverse_all(self, pose: Pose, near: Array | None = None) -> Array:
         """Every branch (..., k, 6), by whole turns nearest to `near` within the joint ranges.
@@ -109,9 +105,9 @@ class SerialArm:
         return self.chain.jacobian(self._checked(joints))
 
     def sigma_min(self, pose: Pose, joints: Array) -> Array:
-        """The smallest singular value (...) of the Jacobian with metres divided by `length`."""
+        """The smallest singular value (...) of the Jacobian in characteristic lengths."""
         scaled = self.chain.jacobian(self._checked(joints, finite=False))
-        scaled[..., :3, :] /= self.length
+        scaled[..., :3, :] /= self.characteristic_length
         lost = np.isnan(scaled.sum(axis=(-2, -1)))
         values = np.linalg.svd(np.where(lost[..., None, None], 0.0, scaled), compute_uv=False)
         result: Array = np.where(lost, np.nan, values[..., -1])

@@ -73,7 +73,7 @@ class ResolvedRate:
     def __post_init__(self) -> None:
         """Combines the joints' own limits with the machine's."""
         limits, joint = self.arm.limits, self.motion.joint
-        unit = np.array([1 / self.arm.length] * 3 + [1.0] * 3)
+        unit = np.array([1 / self.arm.characteristic_length] * 3 + [1.0] * 3)
         acceleration = np.minimum(limits.acceleration, joint.acceleration)
         for name, value in (
             ('_unit', unit),

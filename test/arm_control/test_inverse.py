@@ -177,7 +177,7 @@ def bent_arm(machine_file):
         straight.chain.points + rng.uniform(-0.02, 0.02, (6, 3)),
         straight.chain.home,
     )
-    return SerialArm(chain, straight.limits, straight.length, straight.rest)
+    return SerialArm(chain, straight.limits, straight.characteristic_length, straight.rest)
 
 
 def test_an_arm_without_closed_form_is_solved_numerically(bent_arm):

@@ -90,10 +90,10 @@ def test_damping_begins_smoothly_at_its_onset(machine_file):
         joints = jog.arm.rest.copy()
         joints[4] = bend
         jacobian = jog.arm.chain.jacobian(joints) * np.array(
-            [[1 / jog.arm.length]] * 3 + [[1]] * 3
+            [[1 / jog.arm.characteristic_length]] * 3 + [[1]] * 3
         )
         left, sigma, _ = np.linalg.svd(jacobian)
-        weakest = left[:, -1] * ([jog.arm.length] * 3 + [1] * 3)
+        weakest = left[:, -1] * ([jog.arm.characteristic_length] * 3 + [1] * 3)
         step = jog.step(JogState.at_rest(joints), 1e-3 * weakest, 1.0)
         gains.append(np.linalg.norm(step.state.rates) / 1e-3)
         margins.append(sigma[-1])
@@ -184,7 +184,7 @@ def test_some_deflection_leads_out_of_every_singular_posture(machine_file, shoul
 
 def test_sliding_out_of_a_corner_is_said_and_goes_with_the_stick(machine_file):
     jog = jogging(machine_file('arm_6r'))
-    metric = np.array([jog.arm.length**-2] * 3 + [1.0] * 3)
+    metric = np.array([jog.arm.characteristic_length**-2] * 3 + [1.0] * 3)
     slides = 0
     for joints in states(jog, 11, 40):
         for twist in TWELVE:
