@@ -6,7 +6,7 @@ from arm_control.arm import SerialArm
 from arm_control.geometry import FORMS
 from arm_control.joint_limits import ArmLimits
 from arm_control.resolved_rate import ResolvedRate
-from manipulator.config import build
+from manipulator.config import build, build_both
 from manipulator.errors import ConfigError
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
@@ -28,8 +28,9 @@ def serial_arm(machine_file: MachineFile) -> SerialArm:
     told = [form for key, form in FORMS.items() if key in machine_file.geometry]
     if len(told) != 1:
         raise ConfigError([f'geometry: needs one of the keys {list(FORMS)}, has {len(told)}'])
-    geometry = build(told[0], machine_file.geometry, 'geometry')
-    limits = build(ArmLimits, machine_file.limits, 'limits')
+    geometry, limits = build_both(
+        (told[0], machine_file.geometry, 'geometry'), (ArmLimits, machine_file.limits, 'limits')
+    )
     length = limits.characteristic_length_mm * 1e-3
     rest = np.radians(geometry.home_deg)
     return SerialArm(geometry.chain(), limits.joint_limits(), length, rest)

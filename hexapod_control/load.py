@@ -12,7 +12,7 @@ from hexapod_control.linear_geometry import PlatesConfig, PointsConfig
 from hexapod_control.linear_limits import LinearLimits
 from hexapod_control.rotary import RotaryHexapod
 from hexapod_control.rotary_limits import RotaryLimits
-from manipulator.config import build
+from manipulator.config import build_both
 from manipulator.errors import ConfigError
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
@@ -41,8 +41,8 @@ def rotary_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
     """A crank platform; its geometry by the paper's parameters, or by joint coordinates."""
     schema: type[JointsConfig | HexagonConfig]
     schema = JointsConfig if 'crank_centres_mm' in geometry else HexagonConfig
-    joints = build(schema, geometry, 'geometry').geometry()
-    checked = build(RotaryLimits, limits, 'limits')
+    told, checked = build_both((schema, geometry, 'geometry'), (RotaryLimits, limits, 'limits'))
+    joints = told.geometry()
     kinematics = RotaryHexapod(
         joints,
         checked.characteristic_length_mm * 1e-3,
@@ -58,8 +58,8 @@ def linear_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
     """A platform on linear legs; its geometry by the paper's parameters, or by coordinates."""
     schema: type[PointsConfig | PlatesConfig]
     schema = PointsConfig if 'base_joints_mm' in geometry else PlatesConfig
-    joints = build(schema, geometry, 'geometry').geometry()
-    checked = build(LinearLimits, limits, 'limits')
+    told, checked = build_both((schema, geometry, 'geometry'), (LinearLimits, limits, 'limits'))
+    joints = told.geometry()
     kinematics = LinearPlatform(
         joints, checked.characteristic_length_mm * 1e-3, checked.singularity_margin
     )

@@ -1,28 +1,84 @@
 """The `hexarm` command: picks the subcommand and turns errors into one line and a status."""
 
 import argparse
+import difflib
+import re
 import sys
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import NoReturn
 
-from hexarm import demo, firmware_header, fk, ik, machine_list, up
+from hexarm import check, demo, firmware_header, fk, ik, machine_list, up
+from hexarm.answers import REFUSED
 from manipulator.errors import ManipulatorError
+from manipulator.requirements import missing
 
-COMMANDS = (up, demo, ik, fk, machine_list, firmware_header)
+COMMANDS = (up, demo, ik, fk, machine_list, check, firmware_header)
+EXAMPLES = """\
+examples:
+  hexarm demo                                          the whole graph on a fake board
+  hexarm up hexapod                                    the graph, until Ctrl-C
+  hexarm up hexapod --port /dev/ttyACM0                the same with a real board
+  hexarm ik robocake --xyz 0 0 0.045 --rpy 0 0 0.1     metres and radians
+  hexarm check my_machine.yaml                         what is wrong with a machine file
+
+MACHINE is a shipped name (hexarm machines) or the path of a YAML file. Exit status: 0 good,
+1 failed, 2 refused or not understood. `hexarm COMMAND --help` tells more of a command.
+"""
+
+
+class Parser(argparse.ArgumentParser):
+    """Names the nearest command for one that does not exist."""
+
+    def error(self, message: str) -> NoReturn:
+        """Usage, the message, status 2."""
+        found = re.search(r"invalid choice: '(.*?)' \(choose from (.*)\)", message)
+        if found is not None:
+            choices = re.findall(r'[\w-]+', found[2])
+            near = difflib.get_close_matches(found[1], choices, n=1)
+            message = f'{found[1]!r} is not one of {", ".join(choices)}'
+            message += f', did you mean {near[0]!r}?' if near else ''
+        super().error(message)
 
 
 def main(words: list[str] | None = None) -> int:
     """Runs one subcommand; status 1 when something failed, 2 for a refusal or bad arguments."""
-    parser = argparse.ArgumentParser(
-        prog='hexarm', description='Six-axis manipulators, from a pose target to servo pulses.'
-    )
-    commands = parser.add_subparsers(required=True, metavar='COMMAND')
-    for command in COMMANDS:
-        command.add_parser(commands)
+    parser = _parser()
     arguments = parser.parse_args(words)
+    if arguments.run is None:
+        parser.print_help(sys.stderr)
+        return REFUSED
     try:
         return int(arguments.run(arguments))
     except ManipulatorError as error:
         print(f'hexarm: {error}', file=sys.stderr)
-        return 1
+    except ModuleNotFoundError as error:
+        print(f'hexarm: {missing(error)}', file=sys.stderr)
+    return 1
+
+
+def _parser() -> Parser:
+    parser = Parser(
+        prog='hexarm',
+        description='Six-axis manipulators, from a pose target to servo pulses.',
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument('--version', action='version', version=f'hexarm {_version()}')
+    parser.set_defaults(run=None)
+    commands = parser.add_subparsers(metavar='COMMAND', title='commands')
+    for command in COMMANDS:
+        command.add_parser(commands)
+    return parser
+
+
+def _version() -> str:
+    """Of the installation, or of setup.py in a source tree that is not installed."""
+    try:
+        return str(version('hexarm'))
+    except PackageNotFoundError:
+        setup = Path(__file__).resolve().parent.parent / 'setup.py'
+        return str(re.findall(r"version='(.*?)'", setup.read_text())[0])
 
 
 if __name__ == '__main__':

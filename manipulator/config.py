@@ -17,6 +17,7 @@ import yaml
 from manipulator.errors import ConfigError
 
 T = TypeVar('T')
+U = TypeVar('U')
 MAX_CHARACTERS = 1_000_000
 
 
@@ -49,6 +50,19 @@ def build(schema: type[T], content: object, where: str = '', source: str = '') -
     if problems:
         raise ConfigError(problems, source)
     return typing.cast(T, result)
+
+
+def build_both(
+    first: tuple[type[T], object, str], second: tuple[type[U], object, str]
+) -> tuple[T, U]:
+    """Two sections as (schema, content, where); ConfigError lists what is wrong in both."""
+    problems: list[str] = []
+    results = tuple(
+        _convert(schema, content, where, problems) for schema, content, where in (first, second)
+    )
+    if problems:
+        raise ConfigError(problems)
+    return typing.cast(tuple[T, U], results)
 
 
 class _StrictLoader(yaml.SafeLoader):
@@ -90,7 +104,11 @@ def _convert(wanted: Any, value: object, where: str, problems: list[str]) -> Any
         return value
     if origin is tuple:
         return _convert_list(arguments, value, where, problems)
-    if origin is dict or wanted is Any:
+    if wanted is Any:
+        return value
+    if origin is dict:
+        if not isinstance(value, Mapping):
+            problems.append(f'{where}: holds {_kind(value)}, needs a mapping of keys')
         return value
     return _convert_scalar(wanted, value, where, problems)
 

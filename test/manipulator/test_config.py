@@ -3,7 +3,7 @@ from typing import Literal
 
 import pytest
 
-from manipulator.config import build, parse_yaml, quantity
+from manipulator.config import build, build_both, parse_yaml, quantity
 from manipulator.errors import ConfigError
 
 
@@ -93,3 +93,14 @@ def test_hostile_or_broken_yaml_is_refused_in_words(text, word):
 def test_booleans_are_no_numbers():
     (found,) = problems(GOOD.replace('58', 'true'))
     assert 'needs a number' in found
+
+
+def test_faults_of_two_sections_are_said_together():
+    good, bad = parse_yaml(GOOD), parse_yaml(GOOD.replace('58', 'long'))
+    assert build_both((Machine, good, 'a'), (Machine, good, 'b'))[1] == build(Machine, good)
+    with pytest.raises(ConfigError) as error:
+        build_both((Machine, bad, 'a'), (Machine, bad, 'b'))
+    assert [p.split(':')[0] for p in error.value.problems] == [
+        'a.rod_length_mm',
+        'b.rod_length_mm',
+    ]

@@ -1,0 +1,134 @@
+"""Everything that is wrong with a machine file: in each section, and between them."""
+
+import difflib
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, TypeVar
+
+import numpy as np
+
+from bridge.calibration import Calibration
+from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
+from hexarm.machines import loader
+from manipulator.config import build, parse_yaml
+from manipulator.errors import ConfigError, ManipulatorError, NoSolution
+from manipulator.limits.joint_range import JointRange
+from manipulator.machine import Machine, MachineFile
+from manipulator.motion_limits import MotionConfig
+
+T = TypeVar('T')
+ROOM = ('geometry', 'limits')
+BRIDGE = {'servos': ServosConfig, 'link': LinkConfig, 'simulation': SimulationConfig}
+
+STAND_IN = MotionConfig(1.0, 1.0, 10.0, 1.0, 1.0, 10.0)
+"""For a motion section with faults of its own, so that the others are looked at all the same."""
+
+
+class Findings:
+    """What was wrong with everything that was tried."""
+
+    def __init__(self) -> None:
+        self.problems: list[str] = []
+
+    def of(self, make: Callable[[], T]) -> T | None:
+        """What `make` returns; None, and its problems noted, where it cannot."""
+        try:
+            return make()
+        except ConfigError as error:
+            self.problems.extend(error.problems)
+        except ManipulatorError as error:
+            self.problems.append(str(error))
+        return None
+
+
+def problems_of(text: str) -> list[str]:
+    """All problems of a machine file's text, none for a good one.
+
+    The sections first, each as far as it is there; then, between those that are good, what one
+    says of another: names, units, ranges, speeds and the park position.
+    """
+    found = Findings()
+    content = found.of(lambda: parse_yaml(text))
+    if content is None:
+        return found.problems
+    whole = found.of(lambda: build(MachineFile, content))
+    there = {name: part for name, part in content.items() if isinstance(part, Mapping)}
+    machine = found.of(lambda: _machine(content.get('kind'), there, whole))
+    sections = {
+        name: found.of(lambda schema=schema, name=name: build(schema, there[name], name))  # type: ignore[misc]
+        for name, schema in BRIDGE.items()
+        if name in there
+    }
+    servos = sections.get('servos')
+    if isinstance(servos, ServosConfig):
+        calibration = found.of(lambda: Calibration.from_config(servos))
+        if machine is not None and calibration is not None:
+            found.problems.extend(_between(machine, calibration))
+    absent = tuple(f'{name}.' for name in ROOM if name not in there)
+    return [problem for problem in found.problems if not problem.startswith(absent)]
+
+
+def _machine(kind: object, there: Mapping[str, Any], whole: MachineFile | None) -> Machine | None:
+    """What the sections geometry and limits make; None where the kind is no text."""
+    if not isinstance(kind, str):
+        return None
+    geometry, limits = (there.get(name, {}) for name in ROOM)
+    motion = STAND_IN if whole is None else whole.motion
+    return loader(kind)(MachineFile(kind, geometry, limits, motion, servos={}, link={}))
+
+
+def _between(machine: Machine, calibration: Calibration) -> Iterator[str]:
+    """What servos and machine say of each other and do not agree on."""
+    wanted, names = machine.kinematics.joint_names, calibration.names
+    missing = [name for name in wanted if name not in names]
+    for name in missing:
+        near = difflib.get_close_matches(name, set(names) - set(wanted), n=1)
+        yield f'servos.joints: none is called {name!r}{f", but {near[0]!r}" if near else ""}'
+    if calibration.unit != machine.kinematics.joint_unit:
+        unit = 'millimetres' if calibration.unit == 'm' else 'degrees'
+        yield f'servos.joints: in {unit}, which are not what the joints of this kind are in'
+    elif not missing:
+        order = [names.index(name) for name in wanted]
+        yield from _narrow_servos(machine, calibration, order)
+        yield from _park_problems(machine, calibration, order)
+        yield from _slow_servos(machine, calibration)
+
+
+def _narrow_servos(machine: Machine, calibration: Calibration, order: list[int]) -> Iterator[str]:
+    factor, unit = _file_unit(calibration)
+    for limit in machine.constraints.limits:
+        if not isinstance(limit, JointRange):
+            continue
+        for i, low, high in zip(order, limit.low, limit.high, strict=True):
+            lowest, highest = calibration.range_of(i)
+            if lowest > low + 1e-6 or highest < high - 1e-6:
+                reach = f'[{lowest * factor:.4g}, {highest * factor:.4g}] {unit}'
+                span = f'[{low * factor:.4g}, {high * factor:.4g}] {unit}'
+                name = calibration.names[i]
+                yield f'servos.joints[{i}]: {name} reaches {reach}, its range in limits is {span}'
+
+
+def _park_problems(machine: Machine, calibration: Calibration, order: list[int]) -> Iterator[str]:
+    _, unit = _file_unit(calibration)
+    park = calibration.park[order]
+    try:
+        pose = machine.kinematics.forward(park).pose
+    except NoSolution as error:
+        yield f'servos.park_{unit}: no pose that can be trusted: {error}'
+        return
+    for violation in machine.constraints.violations(pose, park):
+        yield f'servos.park_{unit}: {violation}'
+
+
+def _slow_servos(machine: Machine, calibration: Calibration) -> Iterator[str]:
+    factor, unit = _file_unit(calibration)
+    wanted, rated = machine.motion.joint.speed * factor, calibration.speed * factor
+    if np.isfinite(wanted) and wanted > rated * (1 + 1e-9):
+        yield (
+            f'motion.joint_speed_{unit}_s: {wanted:g} is more than the servos do '
+            f'(servos.speed_{unit}_s: {rated:g})'
+        )
+
+
+def _file_unit(calibration: Calibration) -> tuple[float, str]:
+    """The unit of the file, and how many of it make one of ours."""
+    return (1e3, 'mm') if calibration.unit == 'm' else (float(np.degrees(1.0)), 'deg')
