@@ -81,3 +81,10 @@ class LegClosure:
             np.sqrt(squares[:LEGS] + (in_plane - self.crank) ** 2),
             np.sqrt(squares[:LEGS] + (in_plane + self.crank) ** 2),
         )
+
+    def rod_misfit(self, pose: Pose) -> tuple[Array, Array]:
+        """(..., 6) each, metres: shortest rod that would do − rod, and rod − longest."""
+        shape = (*pose.position.shape[:-1], LEGS)
+        shortest, longest = (span.T.reshape(shape) for span in self.rod_span(pose))
+        lengths = self.geometry.rod_lengths
+        return shortest - lengths, lengths - longest

@@ -44,6 +44,11 @@ class Kinematics(Protocol):
         """The pose from which a cold forward solution starts."""
         ...
 
+    @property
+    def characteristic_length(self) -> float:
+        """Metres; makes rotations lengths in σmin and in distances between poses."""
+        ...
+
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """Joints (..., n) for the pose, on the branch nearest to `near` (default: home's branch).
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from manipulator.arrays import Array, Mask
 from manipulator.errors import LimitViolated
-from manipulator.limits.limit import Limit, Violation
+from manipulator.limits.limit import Limit, Violation, admitted
 from manipulator.pose import Pose
 
 
@@ -20,8 +20,7 @@ class Constraints:
         """Which of the configurations (...) keep every limit."""
         inside: Mask = np.ones(np.shape(joints)[:-1], dtype=np.bool_)
         for limit in self.limits:
-            values = limit.values(pose, joints)
-            inside &= ((values >= limit.low) & (values <= limit.high)).all(axis=-1)
+            inside &= admitted(limit, pose, joints)
         return inside
 
     def violations(self, pose: Pose, joints: Array) -> list[Violation]:

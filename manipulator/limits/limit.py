@@ -1,11 +1,12 @@
 """What a limit is: named values of a configuration and the range that each must keep."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
-from manipulator.arrays import Array
+from manipulator.arrays import Array, Mask
 from manipulator.pose import Pose
 
 
@@ -13,7 +14,8 @@ class Limit(Protocol):
     """k values computed from a pose and its joints, each with its own range.
 
     quantity and unit go into messages; owners are who each value belongs to ('leg 3', or '' when
-    it is the whole platform's).
+    it is the whole platform's). A limit that can tell faster than by its values what it admits
+    may offer `admits(pose, joints) -> Mask` as well.
     """
 
     @property
@@ -44,6 +46,16 @@ class Limit(Protocol):
     def values(self, pose: Pose, joints: Array) -> Array:
         """The limited values (..., k); NaN counts as outside."""
         ...
+
+
+def admitted(limit: Limit, pose: Pose, joints: Array) -> Mask:
+    """Which configurations (...) keep one limit."""
+    quick: Callable[[Pose, Array], Mask] | None = getattr(limit, 'admits', None)
+    if quick is not None:
+        return quick(pose, joints)
+    values = limit.values(pose, joints)
+    inside = (values >= limit.low) & (values <= limit.high)
+    return np.asarray(inside.all(axis=-1), dtype=np.bool_)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from math import sqrt
 import numpy as np
 
 from manipulator.arrays import Array
+from manipulator.continuity import joints_along
 from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
@@ -13,8 +14,6 @@ from manipulator.pose import Pose
 from manipulator.trajectory.plan import MotionState, Plan
 
 TOLERANCE = 1.005
-BRANCH_JUMP = 0.5
-"""A step of a joint (rad) within one tick that only another branch of the inverse makes."""
 
 
 @dataclass(frozen=True)
@@ -45,17 +44,6 @@ def check_plan(plan: Plan, machine: Machine, near: Array, dt: float) -> Demand:
         reason = why_not(machine, state.pose[first], near if first == 0 else joints[first - 1])
         raise Refused(f'after {times[first]:.2f} s of the way: {reason}')
     return demand(state, joints, machine.motion, dt)
-
-
-def joints_along(machine: Machine, poses: Pose, near: Array) -> Array:
-    """Joints for a row of poses, each on the branch nearest to the one before it."""
-    kinematics = machine.kinematics
-    joints = kinematics.inverse_or_nan(poses, near)
-    jumps = np.abs(np.diff(joints, axis=0)).max(axis=-1) > BRANCH_JUMP
-    if jumps.any():
-        for i in range(int(np.argmax(jumps)) + 1, len(joints)):
-            joints[i] = kinematics.inverse_or_nan(poses[i], joints[i - 1])
-    return joints
 
 
 def why_not(machine: Machine, pose: Pose, near: Array) -> str:

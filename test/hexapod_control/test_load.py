@@ -21,7 +21,7 @@ def test_limits_are_those_of_the_file(robocake_content):
     np.testing.assert_allclose(np.degrees(quantities['crank angle'].high), 210.0)
     assert quantities['platform height'].low[0] == pytest.approx(0.02339)
     assert quantities['singularity margin'].low[0] == 0.3
-    assert len(quantities) == 5
+    assert len(quantities) == 7
     assert machine.kinematics.joint_names[5] == 'crank_6'
     assert machine.motion.joint.speed == pytest.approx(np.radians(480))
 

@@ -1,0 +1,113 @@
+"""Ways between poses: whether they are free, and whether one leads from home."""
+
+import numpy as np
+
+from manipulator.arrays import Array, Mask
+from manipulator.continuity import joints_along
+from manipulator.limits.joint_range import JointRange
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+from manipulator.reach.metric import CHECKS_PER_LENGTH, displaced, distance, offset
+
+DETOURS = 200
+
+
+def is_joint_box(machine: Machine) -> bool:
+    """Whether joint ranges are all that limits the machine.
+
+    So it is with serial arms: every set of joints in range is one pose, connected with home.
+    """
+    limits = (_without_frames(limit) for limit in machine.constraints.limits)
+    return all(isinstance(limit, JointRange) for limit in limits)
+
+
+def _without_frames(part: object) -> object:
+    """The machine's own limit, where it is asked in other frames."""
+    return getattr(part, 'inner', part)
+
+
+def admits(machine: Machine, poses: Pose, near: Array | None = None) -> Mask:
+    """Which of the poses (N,) close and keep every limit.
+
+    On home's branch, or with `near` each on the branch of the pose before, the first near it.
+    """
+    kinematics = machine.kinematics
+    if near is None:
+        joints = kinematics.inverse_or_nan(poses)
+    else:
+        joints = joints_along(machine, poses, near)
+    inside = np.asarray(np.isfinite(joints).all(axis=-1), dtype=np.bool_)
+    if inside.all():
+        return machine.constraints.admits(poses, joints)
+    inside[inside] = machine.constraints.admits(poses[inside], joints[inside])
+    return inside
+
+
+def straight_way(machine: Machine, start: Pose, end: Pose) -> Pose:
+    """Poses from start to end, both with it, at most 1/70 of the characteristic length apart."""
+    spacing = machine.kinematics.characteristic_length / CHECKS_PER_LENGTH
+    count = int(np.ceil(float(distance(machine, start, end)) / spacing)) + 1
+    return start.moved(np.linspace(0.0, 1.0, max(count, 2))[:, None] * start.twist_to(end))
+
+
+def is_free(machine: Machine, start: Pose, end: Pose) -> bool:
+    """Whether the straight way from start to end keeps all limits."""
+    return bool(admits(machine, straight_way(machine, start, end)).all())
+
+
+def is_connected(machine: Machine, pose: Pose) -> bool:
+    """Whether a free way leads from home to an admitted pose: straight, or with one corner.
+
+    True is certain (to 1/70 of the characteristic length); False means that none was found.
+    """
+    if is_joint_box(machine):
+        return True
+    home = machine.kinematics.home
+    if is_free(machine, home, pose):
+        return True
+    corners = _corners(machine, home, pose)
+    return any(
+        is_free(machine, home, corners[k]) and is_free(machine, corners[k], pose)
+        for k in range(corners.position.shape[0])
+    )
+
+
+def _corners(machine: Machine, home: Pose, pose: Pose) -> Pose:
+    """Admitted poses about the middle of the way, the same ones each time."""
+    generator = np.random.default_rng(4)
+    length = float(distance(machine, home, pose))
+    middle = home.moved(0.5 * home.twist_to(pose))
+    spread = generator.standard_normal((DETOURS, 6)) * (length / 4)
+    around = displaced(machine, middle, spread)
+    return around[admits(machine, around)]
+
+
+def way_home_share(machine: Machine, pose: Pose) -> float:
+    """The part of the straight way from home to `pose` before the first limit, 1 for all of it."""
+    home = machine.kinematics.home
+    way = straight_way(machine, home, pose)
+    inside = admits(machine, way)
+    if inside.all():
+        return 1.0
+    count = len(inside) - 1
+    first = int(np.argmin(inside))
+    return last_free(
+        machine, home, offset(machine, home, pose), (first - 1) / count, first / count
+    )
+
+
+def last_free(
+    machine: Machine,
+    start: Pose,
+    way: Array,
+    free: float,
+    beyond: float,
+    near: Array | None = None,
+) -> float:
+    """Between a part of `way` (6,) that is admitted and one that is not: the last admitted one."""
+    while beyond - free > 1e-12 * max(1.0, abs(beyond)):
+        shares = np.linspace(free, beyond, 34)
+        inside = admits(machine, displaced(machine, start, shares[1:-1, None] * way), near)
+        first = len(inside) if inside.all() else int(np.argmin(inside))
+        free, beyond = float(shares[first]), float(shares[first + 1])
+    return max(free, 0.0)
