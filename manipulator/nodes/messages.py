@@ -9,6 +9,7 @@ from sensor_msgs.msg import JointState
 
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
+from manipulator.frames import Frames
 from manipulator.pose import Pose
 
 BASE_FRAME, WORK_FRAME, PLATFORM_FRAME = 'base', 'work', 'platform'
@@ -28,6 +29,12 @@ def pose_of(message: PoseStamped, frames: tuple[str, ...] = (BASE_FRAME,)) -> Po
         if not math.isfinite(value):
             raise InvalidInput(f'{name} is {value}, needs a finite number')
     return Pose.from_xyz_quaternion((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+
+
+def goal_of(message: PoseStamped, frames: Frames) -> Pose:
+    """The pivot's pose in the work frame; a message in the base frame tells the platform's."""
+    pose = pose_of(message, (BASE_FRAME, WORK_FRAME))
+    return pose if message.header.frame_id == WORK_FRAME else frames.pivot(pose)
 
 
 def pose_message(pose: Pose, stamp: Time, frame: str = BASE_FRAME) -> PoseStamped:

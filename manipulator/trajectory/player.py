@@ -80,6 +80,10 @@ class Player:
         """How fast the plan's time runs, 0 to 1."""
         return self._rate
 
+    @property
+    def _wanted_rate(self) -> float:
+        return 0.0 if self._is_paused or self._is_stopping else self._override
+
     def pursue(self, goal: Goal) -> None:
         """Takes a goal up at the next tick; of several the newest wins."""
         self._newest = goal
@@ -102,7 +106,10 @@ class Player:
     def stop(self) -> None:
         """Brakes along the way, then holds; what was to come is dropped."""
         self._newest = self._next = None
-        self._is_stopping = True
+        if isinstance(self._plan, Hold):
+            self._report('stopped', self._stamp)
+        else:
+            self._is_stopping = True
 
     def pause(self, is_paused: bool) -> None:
         """Brakes along the way and stays, or goes on."""
@@ -116,6 +123,8 @@ class Player:
 
     def step(self) -> Pose:
         """Advances by one tick and returns the pose to command."""
+        if isinstance(self._plan, Hold):
+            self._rate = self._wanted_rate
         if self._newest is not None:
             goal, self._newest = self._newest, None
             self._take(goal)
@@ -158,9 +167,10 @@ class Player:
         self.status = MotionStatus(MODES[type(self._plan)], result, stamp, reason)
 
     def _advance(self) -> None:
-        target = 0.0 if self._is_paused or self._is_stopping else self._override
         rise = min(SPEEDING_UP_RATE * self._dt, self._braking_step)
-        self._rate = min(self._rate + rise, max(self._rate - self._braking_step, target))
+        self._rate = min(
+            self._rate + rise, max(self._rate - self._braking_step, self._wanted_rate)
+        )
         self._time += self._rate * self._dt
         if self._is_stopping and self._rate <= 0.0:
             self._settle('stopped')
@@ -173,7 +183,7 @@ class Player:
         stamp = self._stamp
         self._begin(Hold(self.state.pose), stamp)
         self._is_stopping = False
-        self._rate = 0.0 if self._is_paused else self._override
+        self._rate = self._wanted_rate
         if isinstance(following, Cycle):
             self._rate = 0.0
             self._begin(following, stamp)

@@ -1,0 +1,91 @@
+"""The services of the trajectory node: stop, home, pause, start_cycle, plan."""
+
+from collections.abc import Callable
+
+import numpy as np
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.srv import GetPlan
+from rclpy.node import Node
+from std_srvs.srv import SetBool, Trigger
+
+from manipulator.errors import ManipulatorError
+from manipulator.nodes.cycle_parameters import CycleParameters
+from manipulator.nodes.messages import goal_of, pose_message, seconds
+from manipulator.pose import Pose
+from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.plan import MotionState
+from manipulator.trajectory.planner import plan_to
+from manipulator.trajectory.player import Goal, Player
+
+
+class TrajectoryServices:
+    """Answers with what will happen, or with why it will not."""
+
+    def __init__(self, node: Node, pilot: Pilot, dt: float) -> None:
+        self._node = node
+        self._pilot = pilot
+        self._dt = dt
+        self._cycle = CycleParameters(node)
+        for name, act in (
+            ('stop', self._stop),
+            ('home', self._home),
+            ('start_cycle', self._start_cycle),
+        ):
+            node.create_service(Trigger, f'~/{name}', self._trigger(act))
+        node.create_service(SetBool, '~/pause', self._on_pause)
+        node.create_service(GetPlan, '~/plan', self._on_plan)
+
+    def _stop(self, player: Player) -> str:
+        player.stop()
+        return 'braking along the way, then holding'
+
+    def _home(self, player: Player) -> str:
+        now = seconds(self._node.get_clock().now().to_msg())
+        player.pursue(Goal(self._pilot.machine.kinematics.home, now))
+        return 'going home'
+
+    def _start_cycle(self, player: Player) -> str:
+        player.start_cycle(self._cycle.read(player.state.pose))
+        return 'cycling until stopped'
+
+    def _trigger(self, act: Callable[[Player], str]) -> Callable[..., Trigger.Response]:
+        def answer(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+            try:
+                response.message = act(self._pilot.player)
+                response.success = True
+            except ManipulatorError as error:
+                response.message = str(error)
+            return response
+
+        return answer
+
+    def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        try:
+            self._pilot.player.pause(request.data)
+            response.success, response.message = True, 'paused' if request.data else 'going on'
+        except ManipulatorError as error:
+            response.message = str(error)
+        return response
+
+    def _on_plan(self, request: GetPlan.Request, response: GetPlan.Response) -> GetPlan.Response:
+        """The platform's poses on a move from start (from here, when it is all zero) to goal."""
+        machine = self._pilot.machine
+        try:
+            start = self._start_of(request)
+            near = machine.kinematics.inverse(start)
+            goal = goal_of(request.goal, machine.frames)
+            move = plan_to(machine, MotionState.at_rest(start), goal, near, self._dt)
+        except ManipulatorError as error:
+            self._node.get_logger().warning(f'plan: {error}')
+            return response
+        stamp = self._node.get_clock().now().to_msg()
+        times = np.append(np.arange(0.0, move.duration, self._dt), move.duration)
+        poses = machine.frames.platform(move.at(times).pose)
+        response.plan.header.stamp = stamp
+        response.plan.poses = [pose_message(poses[i], stamp) for i in range(len(times))]
+        return response
+
+    def _start_of(self, request: GetPlan.Request) -> Pose:
+        if request.start == PoseStamped():
+            return self._pilot.player.state.pose
+        return goal_of(request.start, self._pilot.machine.frames)

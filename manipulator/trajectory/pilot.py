@@ -1,0 +1,122 @@
+"""Who may drive the machine and from where: takes it over where its joints are, lets it go.
+
+The pilot drives while the machine is enabled, its pose is heard and its joints follow. Whatever
+ends that drops every goal; what comes after begins where the joints then are.
+"""
+
+from collections.abc import Sequence
+
+from manipulator.errors import Refused
+from manipulator.framed_machine import in_frames
+from manipulator.frames import Frames
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+from manipulator.trajectory.following import Following
+from manipulator.trajectory.player import MotionStatus, Player
+
+HOLDING = 'holding'
+DRIVABLE = ('enabled', HOLDING)
+"""States in which the board follows setpoints; it holds when they came too late."""
+
+DISABLED = MotionStatus('disabled', 'idle', 0.0, 'the servos are not enabled')
+CONNECTING = MotionStatus('disabled', 'idle', 0.0, 'the board does not follow setpoints yet')
+
+
+class Pilot:
+    """One machine's driver; poses that come and go are the platform's, in the base frame."""
+
+    def __init__(self, machine: Machine, dt: float, tolerance: float) -> None:
+        """tolerance: how far a joint may be from its commands (rad or m), see `Following`."""
+        self.status = DISABLED
+        self.machine = in_frames(machine, machine.frames)
+        self._bare = machine
+        self._dt = dt
+        self._tolerance = tolerance
+        self._player: Player | None = None
+        self._following: Following | None = None
+        self._state = ''
+        self._is_followed = False
+        self._override = 1.0
+        self._next_frames: Frames | None = None
+
+    @property
+    def player(self) -> Player:
+        """What takes commands; Refused while nobody may drive."""
+        if self._player is None:
+            raise Refused(f'the machine is {self._state or "not heard of"}: enable it first')
+        if not self._is_followed:
+            raise Refused(CONNECTING.reason)
+        return self._player
+
+    @property
+    def is_driving(self) -> bool:
+        """Whether setpoints go out."""
+        return self._player is not None
+
+    def note_machine_state(self, state: str, is_followed: bool) -> None:
+        """What the bridge says: its word, and whether the board follows setpoints."""
+        is_lost = state not in DRIVABLE or (state == HOLDING and state != self._state)
+        self._state = state
+        if is_lost:
+            self.release(f'the machine is {state}')
+        elif self._player is not None and is_followed and not self._is_followed:
+            self._is_followed = True
+            self.status = self._player.status
+
+    def note_pose(self, T_base_platform: Pose) -> None:
+        """Where the platform is: there a machine that may be driven is taken over."""
+        if self._player is None:
+            if self._state in DRIVABLE:
+                self._is_followed = False
+                self._take_over(T_base_platform)
+        elif self._following is not None:
+            pivot = self.machine.frames.pivot(T_base_platform)
+            joints = self.machine.kinematics.inverse(pivot, self._player.joints)
+            self._following.measure(joints)
+
+    def release(self, reason: str) -> None:
+        """Lets go of the machine: no setpoints until its pose is known again."""
+        if self._player is not None:
+            self._player = self._following = None
+            self.status = MotionStatus('disabled', 'stopped', self.status.goal_stamp, reason)
+
+    def override(self, rate: float) -> None:
+        """Scales all motion, now and later; Refused outside [0, 1]."""
+        if not 0.0 <= rate <= 1.0:
+            raise Refused(f'speed override {rate:g} outside [0, 1]')
+        self._override = rate
+        if self._player is not None:
+            self._player.override(rate)
+
+    def set_pivot(self, point: Sequence[float]) -> None:
+        """Another pivot (platform frame, m), taken once the machine stands still."""
+        self._next_frames = self.machine.frames.with_pivot(point)
+
+    def step(self) -> Pose | None:
+        """Advances by one tick: the pose to command, None while nobody drives."""
+        if self._next_frames is not None and (self._player is None or self._player.is_at_rest):
+            self._take_frames(self._next_frames)
+        if self._following is not None and self._following.trouble:
+            self.release(self._following.trouble)
+        if self._player is None or self._following is None:
+            return None
+        pose = self._player.step()
+        self._following.command(self._player.joints)
+        if self._is_followed:
+            self.status = self._player.status
+        return self.machine.frames.platform(pose)
+
+    def _take_over(self, T_base_platform: Pose) -> None:
+        pose = self.machine.frames.pivot(T_base_platform)
+        joints = self.machine.kinematics.inverse(pose)
+        self._player = Player(self.machine, pose, joints, self._dt)
+        self._player.override(self._override)
+        names = self.machine.kinematics.joint_names
+        self._following = Following(names, self._tolerance, self._dt)
+        self.status = self._player.status if self._is_followed else CONNECTING
+
+    def _take_frames(self, frames: Frames) -> None:
+        old, self.machine = self.machine, in_frames(self._bare, frames)
+        self._next_frames = None
+        if self._player is not None:
+            self._take_over(old.frames.platform(self._player.state.pose))

@@ -1,0 +1,124 @@
+import numpy as np
+import pytest
+
+from hexarm.machines import load
+from manipulator.errors import InvalidInput, Refused
+from manipulator.pose import Pose
+from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.player import Goal
+
+MACHINE = load('robocake')
+HOME = MACHINE.kinematics.home
+ELSEWHERE = Pose.from_xyz_rpy((0.004, 0.002, 0.044), (0.0, 0.05, 0.0))
+
+
+def pilot():
+    return Pilot(MACHINE, 0.01, 0.2)
+
+
+def driving(pose=HOME):
+    made = pilot()
+    made.note_machine_state('enabled', is_followed=False)
+    made.note_pose(pose)
+    made.step()
+    made.note_machine_state('enabled', is_followed=True)
+    return made
+
+
+def run(made, ticks, is_following=True):
+    for _ in range(ticks):
+        pose = made.step()
+        if pose is not None and is_following:
+            made.note_pose(pose)
+    return pose
+
+
+def test_nothing_goes_out_before_the_machine_is_enabled_and_its_pose_known():
+    made = pilot()
+    assert made.step() is None
+    made.note_pose(HOME)
+    assert made.step() is None
+    made.note_machine_state('enabled', is_followed=False)
+    assert made.step() is None
+    with pytest.raises(Refused, match='enable it first'):
+        _ = made.player
+
+
+def test_motion_begins_where_the_joints_are():
+    made = driving(ELSEWHERE)
+    assert np.abs(made.step().twist_to(ELSEWHERE)).max() < 1e-12
+
+
+def test_no_goal_is_taken_until_the_board_follows():
+    made = pilot()
+    made.note_machine_state('enabled', is_followed=False)
+    made.note_pose(HOME)
+    assert made.step() is not None
+    with pytest.raises(Refused, match='does not follow'):
+        _ = made.player
+    made.note_machine_state('enabled', is_followed=True)
+    made.player.pursue(Goal(ELSEWHERE, 1.0))
+    run(made, 100)
+    assert made.status.result == 'reached'
+
+
+@pytest.mark.parametrize('state', ['disarmed', 'stopped', 'fault', 'disconnected', 'holding'])
+def test_leaving_enabled_drops_the_goal_and_the_next_motion_begins_where_the_joints_are(state):
+    made = driving()
+    made.player.pursue(Goal(ELSEWHERE, 7.0))
+    run(made, 5)
+    made.note_machine_state(state, is_followed=False)
+    assert (made.status.result, made.status.goal_stamp) == ('stopped', 7.0)
+    assert state in made.status.reason
+    assert made.step() is None
+    made.note_machine_state('enabled', is_followed=False)
+    made.note_pose(ELSEWHERE)
+    assert np.abs(run(made, 20).twist_to(ELSEWHERE)).max() < 1e-12
+
+
+def test_holding_board_is_taken_up_again_without_asking():
+    made = driving()
+    made.note_machine_state('holding', is_followed=False)
+    made.note_pose(ELSEWHERE)
+    assert np.abs(made.step().twist_to(ELSEWHERE)).max() < 1e-12
+
+
+def test_joints_that_do_not_follow_end_the_motion_and_name_one():
+    made = driving()
+    made.player.pursue(Goal(Pose.from_xyz_rpy((0.0, 0.0, 0.055)), 3.0))
+    for _ in range(150):
+        made.note_pose(HOME)
+        if made.step() is None:
+            break
+    assert made.status.result == 'stopped'
+    assert 'away from its command' in made.status.reason
+    made.note_pose(HOME)
+    assert np.abs(made.step().twist_to(HOME)).max() < 1e-12
+
+
+def test_override_is_kept_over_a_new_enabling():
+    made = driving()
+    made.override(0.0)
+    made.note_machine_state('disarmed', is_followed=False)
+    made.note_machine_state('enabled', is_followed=False)
+    made.note_pose(HOME)
+    made.note_machine_state('enabled', is_followed=True)
+    made.player.pursue(Goal(ELSEWHERE, 1.0))
+    assert np.abs(run(made, 50).twist_to(HOME)).max() < 1e-6
+
+
+def test_pivot_waits_until_the_machine_stands_still():
+    made = driving()
+    made.player.pursue(Goal(ELSEWHERE, 1.0))
+    run(made, 3)
+    made.set_pivot([0.0, 0.0, 0.05])
+    run(made, 1)
+    assert made.machine.frames.are_plain
+    run(made, 100)
+    assert not made.machine.frames.are_plain
+    assert np.abs(run(made, 3).twist_to(ELSEWHERE)).max() < 1e-8
+
+
+def test_pivot_that_is_no_place_is_refused():
+    with pytest.raises(InvalidInput, match='pivot'):
+        driving().set_pivot([float('nan'), 0.0, 0.0])
