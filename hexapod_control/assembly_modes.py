@@ -24,6 +24,7 @@ NULL_VALUE = 1e-6  # a singular value is zero below this part of the largest
 INFINITE = 1e-5  # |e·e| of a solution without a finite rotation, |e| being 1
 REAL = 1e-9  # imaginary part of e, |e| being 1, that is rounding alone
 NEARLY_REAL = 1e-4  # and that can come of two real solutions which almost meet
+NO_PLACE = 1e-6  # of leg 1's squared length: how far below 0 is not rounding
 DOUBLE = 1e-5  # σmin where two solutions meet
 SAME = 1e-5  # distance of two poses that are one, as part of the platform's size
 TOLERANCE = 1e-10  # of the leg lengths, relative
@@ -69,7 +70,7 @@ def assembly_modes(
     null_space = _null_space(_multiples(equations.generators()))
     e, is_whole = _solutions(null_space)
     quaternions, is_real = _nearly_real(e)
-    starts = _placed(equations, quaternions)
+    starts, has_place = _placed(equations, quaternions)
     position = starts.position + base[0] - starts.rotation @ platform[0]
     poses, closed = _polished(base, platform, legs, Pose(position, starts.rotation))
     found = np.any(closed.reshape(2, -1), axis=0)
@@ -79,7 +80,7 @@ def assembly_modes(
         sigma,
         null_space.shape[1],
         int(np.sum(np.abs(np.sum(e * e, axis=1)) < INFINITE)),
-        is_whole and bool(np.all(found, where=is_real)),
+        is_whole and bool(np.all(found, where=is_real & has_place)),
     )
 
 
@@ -162,8 +163,10 @@ def _nearly_real(e: Complex) -> tuple[Array, Mask]:
     return real / np.linalg.norm(real, axis=1)[:, None], imaginary[near] < REAL
 
 
-def _placed(equations: LegEquations, e: Array) -> Pose:
+def _placed(equations: LegEquations, e: Array) -> tuple[Pose, Mask]:
     """Leg 1's platform joint from leg 1's base joint, metres, for rotations e (m, 4): 2m poses.
+
+    And which of the m rotations may have a real place: with others, leg 1 would be too short.
 
     The leg equations (3) fix the place up to their weakest direction, along which leg 1's length
     leaves two points; both are kept, since they are both solutions where base and platform are
@@ -175,10 +178,12 @@ def _placed(equations: LegEquations, e: Array) -> Pose:
     u, s, v = np.linalg.svd(b - equations.a, full_matrices=False)
     along = np.einsum('mij,mi->mj', u, right_side)[:, :2] / np.maximum(s[:, :2], 1e-12)
     middle = np.einsum('mj,mji->mi', along, v[:, :2])
-    height = np.sqrt(np.maximum(equations.length**2 - np.sum(middle**2, axis=-1), 0.0))
+    square = equations.length**2 - np.sum(middle**2, axis=-1)
+    has_place = (square > -NO_PLACE * equations.length**2) | (s[:, 1] < NO_PLACE * s[:, 0])
+    height = np.sqrt(np.maximum(square, 0.0))
     offset = height[:, None] * v[:, 2]
     position = equations.scale * np.concatenate([middle + offset, middle - offset])
-    return Pose(position, np.concatenate([rotation, rotation]))
+    return Pose(position, np.concatenate([rotation, rotation])), has_place
 
 
 def _polished(base: Array, platform: Array, lengths: Array, poses: Pose) -> tuple[Pose, Mask]:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 
@@ -66,6 +67,17 @@ class RotaryHexapod(ParallelPlatform):
                 wanted = np.broadcast_to(wanted, shape).reshape(-1, LEGS)
             angles = _nearest(middle, half, wanted.reshape(-1, LEGS).T)
         return np.ascontiguousarray(angles.T).reshape(*pose.position.shape[:-1], LEGS)
+
+    def inverse_all(self, pose: Pose) -> Array:
+        """Every way to bend the legs (64, 6) for one pose, each elbow out or in; elbows out first.
+
+        Within half a turn of crank_centre. Raises Unreachable where a leg does not close.
+        """
+        self.inverse(pose)
+        middle, half = self.closure.angles(pose)
+        signs = np.array(list(product((1.0, -1.0), repeat=LEGS)))
+        angles: Array = middle[:, 0] + signs * half[:, 0]
+        return angles - TURN * np.rint((angles - self.crank_centre) / TURN)
 
     def crank_tips(self, joints: Array) -> Array:
         """Where crank meets rod, (..., 6, 3), base frame, metres."""

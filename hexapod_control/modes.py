@@ -1,0 +1,69 @@
+"""Which poses one set of joints can mean: every assembly mode, judged by the machine's limits."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hexapod_control.parallel_platform import ParallelPlatform
+from manipulator.arrays import Array
+from manipulator.limits.limit import Violation
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+
+SAME = 1e-6
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A pose that has the joints asked for, its singularity margin and every limit it breaks.
+
+    `is_reachable` when it breaks none and is on home's side of every singularity, of both types:
+    the machine could have come there from home. Whether limits leave a way is not asked.
+    """
+
+    pose: Pose
+    sigma_min: float
+    violations: tuple[Violation, ...]
+    is_reachable: bool
+
+
+@dataclass(frozen=True)
+class Modes:
+    """All modes, the highest first; `is_complete` when none can be missing."""
+
+    modes: tuple[Mode, ...]
+    is_complete: bool
+
+    @property
+    def that_fit(self) -> tuple[Mode, ...]:
+        """The modes that the machine can be in: more than one, and joints alone do not tell."""
+        return tuple(mode for mode in self.modes if mode.is_reachable)
+
+    def other_than(self, pose: Pose) -> tuple[Mode, ...]:
+        """The modes that are not `pose`, to a micrometre and a microradian."""
+        return tuple(m for m in self.modes if np.abs(pose.twist_to(m.pose)).max() > SAME)
+
+
+def all_modes(machine: Machine, joints: Array) -> Modes:
+    """Every pose with joints (6,); a serial machine's joints have but one.
+
+    Raises NoSolution for joints that are not six finite numbers, or fix no pose.
+    """
+    kinematics = machine.kinematics
+    if not isinstance(kinematics, ParallelPlatform):
+        found = kinematics.forward(joints)
+        return Modes((_judged(machine, found.pose, joints, True),), True)
+    modes = kinematics.forward_all(joints)
+    return Modes(
+        tuple(
+            _judged(machine, pose, joints, bool(kinematics.is_as_at_home(pose, joints)))
+            for pose in modes.poses
+        ),
+        modes.is_complete,
+    )
+
+
+def _judged(machine: Machine, pose: Pose, joints: Array, is_on_home_side: bool) -> Mode:
+    violations = tuple(machine.constraints.violations(pose, joints))
+    margin = float(machine.kinematics.sigma_min(pose, joints))
+    return Mode(pose, margin, violations, is_on_home_side and not violations)
