@@ -10,6 +10,7 @@
 
 static const uint16_t LOWEST[JOINT_COUNT] = LOWEST_COUNTS;
 static const uint16_t HIGHEST[JOINT_COUNT] = HIGHEST_COUNTS;
+static const uint16_t MINIMUM_MV = MINIMUM_BATTERY_MV; /* 0 where no battery is watched */
 static const Fault NO_FAULT = {FAULT_NONE, NO_JOINT, 0};
 
 static uint8_t mode = MODE_DISARMED;
@@ -147,7 +148,7 @@ static Fault watch_battery(void)
 {
     uint32_t now_ms = clock_period_ms();
     millivolts = battery_mv();
-    if (millivolts >= MINIMUM_BATTERY_MV) {
+    if (millivolts >= MINIMUM_MV) {
         is_undervoltage = false;
         return NO_FAULT;
     }

@@ -21,12 +21,17 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Prints the header; ConfigError where the machine does not fit the board."""
-    source = str(machines.find(arguments.machine))
-    config = BoardConfig.from_machine(machines.read(arguments.machine), source)
-    settings = BoardSettings.from_config(config, BOOT_S)
-    print(header(settings, config.link.baud, arguments.machine), end='')
+    """Prints the header."""
+    print(header_of(arguments.machine), end='')
     return 0
+
+
+def header_of(machine: str) -> str:
+    """machine.h of a machine file; ConfigError where the machine does not fit the board."""
+    source = machines.find(machine)
+    config = BoardConfig.from_machine(machines.read(machine), str(source))
+    settings = BoardSettings.from_config(config, BOOT_S)
+    return header(settings, config.link.baud, source.name)
 
 
 def header(settings: BoardSettings, baud: int, name: str) -> str:
@@ -45,7 +50,7 @@ def header(settings: BoardSettings, baud: int, name: str) -> str:
         'RELEASE_ON_LINK_LOSS': int(settings.on_link_loss == 'release'),
     }
     lines = [f'#define {key} {value}' for key, value in definitions.items()]
-    top = f'/* Made by `hexarm firmware-header` from machine {name}: change that file instead. */'
+    top = f'/* Made by `hexarm firmware-header` from {name}: change that file instead. */'
     return '\n'.join([top, '#pragma once', '', *lines, ''])
 
 

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from hexarm.firmware_build import chip_process
+
 PATIENCE = 5.0
 """Seconds a process has for its own clean end before it is killed."""
 
@@ -19,24 +21,34 @@ PR_SET_PDEATHSIG = 1
 
 @dataclass(frozen=True)
 class Executable:
-    """One node as a process: its module and entry, its own parameters, the file it waits for."""
+    """One node as a process: its module and entry, its own parameters, the file it waits for.
+
+    `command` is what runs it when it is no node of ours.
+    """
 
     module: str
     entry: str
     parameters: dict[str, str] = field(default_factory=dict)
     needs: Path | None = None
+    command: tuple[str, ...] = ()
 
 
 def machine_graph(kind: str, machine: str, port: str, link: Path) -> list[Executable]:
-    """The nodes of a hexapod's or an arm's graph; port 'fake' adds the fake board."""
+    """The nodes of a hexapod's or an arm's graph.
+
+    Port 'fake' adds the fake board, 'simavr' the firmware on a simulated chip.
+    """
     room = {'hexapod': 'hexapod_control', 'arm': 'arm_control'}[kind]
     common = {'machine': machine}
     nodes = [Executable(room, entry, common) for entry in ('ik', 'pose', 'trajectory')]
-    if port != 'fake':
+    if port == 'fake':
+        board = Executable('bridge', 'fake_hardware', common | {'link': str(link)})
+    elif port == 'simavr':
+        board = Executable('firmware', 'chip', command=chip_process(machine, link))
+    else:
         return [Executable('bridge', 'serial_bridge', common | {'port': port}), *nodes]
-    fake = Executable('bridge', 'fake_hardware', common | {'link': str(link)})
     bridge = Executable('bridge', 'serial_bridge', common | {'port': str(link)}, needs=link)
-    return [fake, *nodes, bridge]
+    return [board, *nodes, bridge]
 
 
 class Graph:
@@ -96,6 +108,8 @@ def _wait_for(path: Path | None) -> None:
 
 
 def _command(node: Executable, namespace: str) -> list[str]:
+    if node.command:
+        return list(node.command)
     command = [sys.executable, '-m', node.module, node.entry, '--ros-args']
     command += ['-r', f'__ns:=/{namespace.strip("/")}']
     for name, value in node.parameters.items():

@@ -27,7 +27,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser = commands.add_parser('up', help='start a whole graph and enable the servos')
     parser.add_argument('kind', choices=list(MACHINES))
     parser.add_argument('--machine', help='a shipped name or a path (default: the usual one)')
-    parser.add_argument('--port', default='fake', help="a serial device, or 'fake' (default)")
+    parser.add_argument('--port', default='fake', help="a device, 'fake' (default) or 'simavr'")
     parser.add_argument('--namespace', help='default: hexapod or arm')
     parser.set_defaults(run=run)
 

@@ -4,8 +4,8 @@ import numpy as np
 
 from bridge.board_modes import BoardSettings
 from bridge.messages import ResetCause
-from firmware.simulator import build
 from firmware.simulator.chip import CLOCK_HZ, CYCLES_A_COUNT, Chip
+from hexarm import firmware_build
 from hexarm.firmware_header import header
 
 BAUD = 250_000
@@ -20,8 +20,8 @@ class SimulatedBoard:
     """The firmware for these settings, on a chip, its boot loader's silence included."""
 
     def __init__(self, settings: BoardSettings, battery_mv: int = 7600) -> None:
-        program = build.firmware_of_header(header(settings, BAUD, 'of a test'))
-        self.chip = Chip(build.simulator() / 'chip.so', program, BAUD)
+        program = firmware_build.firmware(header(settings, BAUD, 'of a test'))
+        self.chip = Chip(firmware_build.simulator() / 'chip.so', program, BAUD)
         self.settings = settings
         self.battery_mv = battery_mv
         self.reset(ResetCause.POWER_ON)

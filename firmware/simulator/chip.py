@@ -44,6 +44,11 @@ class Chip:
         return int(self._call.chip_cycle(self._chip))
 
     @property
+    def seconds(self) -> float:
+        """The same in seconds."""
+        return self.cycle / CLOCK_HZ
+
+    @property
     def backlog(self) -> int:
         """Bytes for the chip that are not yet on the line."""
         return int(self._call.chip_backlog(self._chip))

@@ -10,8 +10,8 @@ from bridge.board_modes import BoardSettings
 from bridge.frames import encode
 from bridge.framing import FrameReader
 from bridge.messages import Ack, Arm, Fault, Hello, ResetCause, State
-from firmware.simulator import build
 from firmware.simulator.board import SimulatedBoard
+from hexarm import firmware_build
 
 RANGE = (1100, 4900)
 JOINTS = 6
@@ -85,7 +85,7 @@ BOARDS = {'python': Board, 'chip': SimulatedBoard}
 @pytest.fixture(params=BOARDS)
 def make_driver(request):
     """A BoardDriver for settings that differ from the usual ones."""
-    missing = build.missing_tools() if request.param == 'chip' else []
+    missing = firmware_build.missing_tools() if request.param == 'chip' else []
     if missing and os.environ.get('REQUIRE_ALL') != '1':
         pytest.skip(f'not installed: {", ".join(missing)}')
     return lambda **changes: BoardDriver(BOARDS[request.param], **changes)

@@ -1,0 +1,29 @@
+"""`hexarm up hexapod --port simavr`: the whole graph against the firmware on a simulated chip."""
+
+import os
+import signal
+
+import pytest
+
+from hexarm import firmware_build
+
+pytestmark = pytest.mark.graph
+
+
+def test_the_graph_enables_moves_parks_and_leaves_no_chip_behind(hexarm, processes_left):
+    missing = firmware_build.missing_tools()
+    if missing and os.environ.get('REQUIRE_ALL') != '1':
+        pytest.skip(f'not installed: {", ".join(missing)}')
+    process = hexarm('up', 'hexapod', '--port', 'simavr')
+    said = ''
+    while 'is up on simavr and enabled' not in said:
+        line = process.stdout.readline()
+        assert line, said
+        said += line
+    (chip,) = [pid for pid, words in processes_left().items() if 'pty_chip' in words]
+    process.send_signal(signal.SIGINT)
+    rest = process.stdout.read()
+    assert process.wait(20) == 0
+    assert 'parking' in rest
+    assert 'not parked' not in rest
+    assert chip not in processes_left()
