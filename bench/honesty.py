@@ -9,29 +9,31 @@ from manipulator.errors import NoSolution
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
-LOWEST, HIGHEST, SIDEWAYS = 0.02339, 0.07, 0.025
 TRIES = 3000
+ANSWERS = ('right', 'refused', 'wrong, but beyond a limit', 'the twin within all limits')
+TWIN_AT_HOME = "a twin of a pose on home's side of every singularity"
 
 
-def honesty_rows(machine: Machine) -> list[Row]:
-    """For reachable poses above the lid, but beyond a limit, by their largest tilt."""
+def honesty_rows(name: str, machine: Machine, low: Array, high: Array) -> list[Row]:
+    """For poses that close but break a limit, in a box of positions, by their largest tilt."""
     found = []
     for tilt in (0.25, 0.6):
-        poses, joints = outside(machine, tilt, np.random.default_rng(3))
+        poses, joints = outside(machine, low, high, tilt, np.random.default_rng(3))
+        head = f'{name}: cold start outside, tilt ≤ {tilt}'
         shares = judged(machine, poses, joints)
-        found += [
-            Row(f'cold start outside, tilt ≤ {tilt}: {name}', f'{100 * share:.2f} %')
-            for name, share in shares.items()
-        ]
+        found += [Row(f'{head}: {answer}', f'{100 * shares[answer]:.2f} %') for answer in ANSWERS]
+        passed = shares[TWIN_AT_HOME]
+        found.append(Row(f'{head}: {TWIN_AT_HOME}', f'{100 * passed:.2f} %', '0 %', passed == 0))
     return found
 
 
-def outside(machine: Machine, tilt: float, generator: np.random.Generator) -> tuple[Pose, Array]:
+def outside(
+    machine: Machine, low: Array, high: Array, tilt: float, generator: np.random.Generator
+) -> tuple[Pose, Array]:
     positions, rotations, angles, count = [], [], [], 0
     while count < TRIES:
         n = 200_000
-        box = [SIDEWAYS, SIDEWAYS]
-        xyz = generator.uniform([*(-b for b in box), LOWEST], [*box, HIGHEST], (n, 3))
+        xyz = generator.uniform(low, high, (n, 3))
         axis = generator.standard_normal((n, 3))
         axis /= np.sqrt((axis * axis).sum(axis=1, keepdims=True))
         turn = so3.exp(axis * tilt * generator.uniform(0, 1, (n, 1)) ** (1 / 3))
@@ -48,10 +50,9 @@ def outside(machine: Machine, tilt: float, generator: np.random.Generator) -> tu
 
 
 def judged(machine: Machine, poses: Pose, joints: Array) -> dict[str, float]:
-    """Shares of the answers; a twin is a pose within all limits that has the same six angles."""
+    """Shares of the answers; a twin is a pose within all limits that has the same joints."""
     kinematics = machine.kinematics
-    names = ('right', 'refused', 'wrong, but beyond a limit', 'the twin within all limits')
-    counts = dict.fromkeys(names, 0)
+    counts = dict.fromkeys((*ANSWERS, TWIN_AT_HOME), 0)
     for k in range(TRIES):
         try:
             found = kinematics.forward(joints[k]).pose
@@ -62,6 +63,7 @@ def judged(machine: Machine, poses: Pose, joints: Array) -> dict[str, float]:
             counts['right'] += 1
         elif machine.constraints.admits(found, joints[k]):
             counts['the twin within all limits'] += 1
+            counts[TWIN_AT_HOME] += int(kinematics.is_as_at_home(poses[k], joints[k]))
         else:
             counts['wrong, but beyond a limit'] += 1
     return {name: count / TRIES for name, count in counts.items()}

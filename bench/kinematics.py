@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.honesty import honesty_rows
 from bench.row import Row, interleaved_medians
 from hexapod_control.load import hexapod
 from hexapod_control.workspace import axis_range, sample
@@ -27,7 +26,6 @@ def rows() -> list[Row]:
         *closure_rows(machine, poses),
         *speed_rows(machine, poses, generator),
         array_row(machine, poses),
-        *honesty_rows(machine),
     ]
 
 

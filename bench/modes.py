@@ -1,0 +1,49 @@
+"""How often a cold start takes one assembly mode for another: in the workspace and outside it."""
+
+from pathlib import Path
+
+import numpy as np
+
+from bench.honesty import honesty_rows, judged
+from bench.row import Row, interleaved_medians
+from hexapod_control.load import hexapod
+from hexapod_control.modes import all_modes
+from hexapod_control.workspace import sample
+from manipulator.config import build, parse_yaml
+from manipulator.machine import Machine, MachineFile
+from manipulator.pose import Pose
+
+CONFIG = Path(__file__).parents[1] / 'config'
+INSIDE, TIMED = 4000, 30
+BOXES = {
+    'robocake': ([-0.025, -0.025, 0.02339], [0.025, 0.025, 0.07]),
+    'stewart_6_6': ([-0.15, -0.15, 0.1], [0.15, 0.15, 0.25]),
+    'stewart_6_3': ([-0.15, -0.15, 0.1], [0.15, 0.15, 0.25]),
+}
+
+
+def rows() -> list[Row]:
+    found = []
+    for name, (low, high) in BOXES.items():
+        file = build(MachineFile, parse_yaml((CONFIG / f'{name}.yaml').read_text()))
+        machine = hexapod(file)
+        poses = sample(machine, INSIDE, np.random.default_rng(4))
+        found += inside_rows(name, machine, poses)
+        found += honesty_rows(name, machine, np.array(low), np.array(high))
+    return found
+
+
+def inside_rows(name: str, machine: Machine, poses: Pose) -> list[Row]:
+    joints = machine.kinematics.inverse(poses)
+    shares = judged(machine, poses, joints)
+    wrong = 1.0 - shares['right']
+    some = [all_modes(machine, joints[k]) for k in range(0, INSIDE, INSIDE // TIMED)]
+    (seconds,) = interleaved_medians([lambda k: all_modes(machine, joints[k])], TIMED)
+    lone = all(len(modes.that_fit) == 1 for modes in some)
+    return [
+        Row(f'{name}: wrong or refused, cold, inside', f'{100 * wrong:.2f} %', '0 %', wrong == 0),
+        Row(
+            f'{name}: one mode fits, {len(some)} inside', 'all' if lone else 'not all', 'all', lone
+        ),
+        Row(f'{name}: all modes, judged', f'{1e3 * seconds:.1f} ms', '100 ms', seconds <= 0.1),
+    ]
