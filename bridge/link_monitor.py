@@ -83,7 +83,6 @@ class LinkMonitor:
             case Disconnected(reason) | Incompatible(reason):
                 self.trouble = reason
                 self.joints = None
-                self.is_enabled_here = False
             case Acknowledged(Arm()):
                 self.is_enabled_here = True
             case FaultReported(fault):

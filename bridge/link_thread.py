@@ -21,6 +21,9 @@ from manipulator.errors import LinkError, Refused
 
 LOOK_AGAIN_AFTER = 0.25
 TICK = 0.05
+SPACING = 0.0025
+"""Setpoints go out 400 times a second at most, half of what the line carries: a flood of them
+must not queue up in the operating system, ahead of a STOP."""
 
 
 class Port(Protocol):
@@ -65,6 +68,7 @@ class LinkThread(threading.Thread):
         self._on_written = on_written
         self._port: Port | None = None
         self._look_at = 0.0
+        self._setpoint_at = 0.0
         self._unsent = b''
         self._mailbox: deque[Ticket] = deque(maxlen=1)
         self._requests: deque[tuple[Command, Future[None]]] = deque()
@@ -126,6 +130,8 @@ class LinkThread(threading.Thread):
         if self._port is None:
             timeout = max(self._look_at - time.monotonic(), 0.0)
         else:
+            if self._mailbox and not self._unsent:
+                timeout = min(max(self._setpoint_at - time.monotonic(), 0.0), TICK)
             reading.append(self._port)
             writing += [self._port] if self._unsent else []
         readable, _, _ = select.select(reading, writing, [], timeout)
@@ -147,13 +153,14 @@ class LinkThread(threading.Thread):
 
     def _take_setpoint(self) -> None:
         """Hands over the newest setpoint, unless it waited longer than it is good for."""
-        if self._unsent or not self._mailbox:
+        now = time.monotonic()
+        if self._unsent or not self._mailbox or now < self._setpoint_at:
             return
         ticket = self._mailbox.popleft()
-        now = time.monotonic()
         is_late = now - ticket.received > 1e-3 * ticket.setpoint.deadline_ms
         if is_late or not self.session.accepts_setpoints:
             return
+        self._setpoint_at = now + SPACING
         self.session.send_setpoint(ticket.setpoint, now)
         self._write()
         self._on_written(ticket, time.monotonic())
@@ -168,7 +175,6 @@ class LinkThread(threading.Thread):
             self._port.close()
         self._port = None
         self._unsent = b''
-        self._mailbox.clear()
         self._look_at = max(self._look_at, time.monotonic() + LOOK_AGAIN_AFTER)
         self._tell(self.session.closed(reason, time.monotonic()))
 

@@ -42,6 +42,7 @@ MAX_TRIES = 4
 BOARD_SILENCE = 0.5
 MAX_BOOT = 5.0
 UPTIME_SLACK_MS = 250
+SHORTEST_ADVANCE_MS = 125
 
 
 class Phase(enum.Enum):
@@ -99,9 +100,9 @@ class Session:
 
     def closed(self, reason: str, now: float) -> list[Event]:
         """The port is gone."""
-        failed = self._fail_pending(reason)
+        events = [*self._fail_pending(reason), Disconnected(reason)]
         self._forget(Phase.CLOSED, now)
-        return [*failed, Disconnected(reason)]
+        return events
 
     def receive(self, received: bytes, now: float) -> list[Event]:
         """Bytes from the board."""
@@ -122,10 +123,9 @@ class Session:
     def tick(self, now: float) -> list[Event]:
         """Retries what was not acknowledged; notices a board that fell silent."""
         if self.phase in (Phase.GREETED, Phase.READY) and now - self._heard_at > BOARD_SILENCE:
-            reason = f'the board has been silent for {BOARD_SILENCE:g} s'
-            failed = self._fail_pending(reason)
-            self._forget(Phase.WAITING, now)
-            return [*failed, Disconnected(reason)]
+            events = self.closed(f'the board has been silent for {BOARD_SILENCE:g} s', now)
+            self.phase = Phase.WAITING
+            return events
         if self.phase is Phase.WAITING and now - self._opened_at > MAX_BOOT:
             self._opened_at = now
             return [Disconnected(f'the port is open, but no board said HELLO for {MAX_BOOT:g} s')]
@@ -205,12 +205,14 @@ class Session:
         """Whether the board's clock (it wraps) ran less than half as long as ours since its HELLO.
 
         A board's resonator is off by a percent, and a simulated board may stall: neither counts.
+        Two HELLOs of one run are 250 ms apart on that clock, so less is a restart as well.
         """
         if self.hello is None:
             return False
         advance = hello.uptime_ms - self.hello.uptime_ms & 0xFFFF_FFFF
         elapsed_ms = 1000 * (now - self._greeted_at)
-        return advance + UPTIME_SLACK_MS < elapsed_ms / 2 or advance >= 0x8000_0000
+        is_too_slow = advance + UPTIME_SLACK_MS < elapsed_ms / 2
+        return is_too_slow or advance < SHORTEST_ADVANCE_MS or advance >= 0x8000_0000
 
     def _misfit(self, hello: Hello) -> str:
         if hello.version != PROTOCOL_VERSION:

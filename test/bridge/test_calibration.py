@@ -95,6 +95,16 @@ def test_ends_of_the_range_can_be_reached(robocake):
             assert robocake.counts(wanted)[i] in (1100, 4900)
 
 
+def test_one_count_beyond_the_range_is_refused(robocake):
+    count = 1 / 21 * math.radians(1)
+    for i in range(6):
+        for end, step in zip(robocake.range_of(i), (-count, count), strict=True):
+            wanted = robocake.park.copy()
+            wanted[i] = end + step
+            with pytest.raises(OutOfRange, match=robocake.names[i]):
+                robocake.counts(wanted)
+
+
 def test_wrong_number_of_positions_is_refused(robocake):
     with pytest.raises(InvalidInput, match='5 positions, needs 6'):
         robocake.counts([2.0] * 5)

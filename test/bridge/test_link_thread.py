@@ -1,5 +1,6 @@
 """The I/O thread on a real pty, with the fake board at the other end."""
 
+import dataclasses
 import os
 import threading
 import time
@@ -17,7 +18,9 @@ from bridge.session import Session
 from hexarm import machines
 from manipulator.errors import Refused
 
-CONFIG = BoardConfig.from_machine(machines.read('robocake'))
+ROBOCAKE = BoardConfig.from_machine(machines.read('robocake'))
+HASTY = dataclasses.replace(ROBOCAKE.servos, arm_interval_ms=20)
+CONFIG = dataclasses.replace(ROBOCAKE, servos=HASTY)
 PARK = (3000,) * 6
 
 
@@ -103,6 +106,18 @@ def test_the_newest_setpoint_wins(rig):
     assert rig.written[-1].setpoint.counts == (3250,) * 6
 
 
+def test_a_flood_of_setpoints_is_thinned_out_before_the_line(rig):
+    rig.arm()
+    start = time.monotonic()
+    for k in range(3000):
+        rig.put((3000 + k % 100,) * 6)
+        time.sleep(0.0001)
+    seconds = time.monotonic() - start
+    rig.put((3250,) * 6)
+    rig.wait_for(lambda: rig.link.session.state.joints[0].count == 3250)
+    assert 1 < len(rig.written) <= 400 * seconds + 2
+
+
 def test_setpoints_while_disarmed_are_dropped_and_not_kept_for_later(rig):
     rig.wait_for_event(Connected)
     rig.put((3300,) * 6)
@@ -175,7 +190,7 @@ def test_a_missing_port_is_said_and_looked_for(no_board):
 def test_a_device_that_sends_noise_without_end_stalls_nothing(tmp_path):
     line = FakeLine(tmp_path / 'noise')
     is_over = threading.Event()
-    noise = os.urandom(4000)
+    noise = b'\0'.join(os.urandom(7) for _ in range(500))
 
     def shout():
         while not is_over.is_set():
