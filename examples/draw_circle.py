@@ -1,0 +1,64 @@
+"""Draws a level circle by streaming goals, and says how far off the platform was.
+
+    hexarm up hexapod                                    # in another terminal
+    python3 examples/draw_circle.py --radius 0.008 --period 4 --turns 2
+
+A stream of goals needs no answers: each replaces the one before, at any time, and the machine
+follows within its limits of speed, acceleration and jerk. The deviation is that of the measured
+`pose` from the circle's radius; how far it lags behind along the circle is not asked.
+"""
+
+import argparse
+import math
+import time
+
+import rclpy
+from geometry_msgs.msg import PoseStamped
+from publish_pose import Mover
+
+PERIOD_OF_GOALS = 0.02
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n', maxsplit=1)[0])
+    parser.add_argument('--radius', type=float, default=0.008, help='metres')
+    parser.add_argument('--height', type=float, default=0.045, help='metres above the base')
+    parser.add_argument('--period', type=float, default=4.0, help='seconds a turn')
+    parser.add_argument('--turns', type=float, default=2.0)
+    parser.add_argument('--namespace', default='/hexapod')
+    arguments = parser.parse_args()
+
+    def point(angle):
+        radius = arguments.radius
+        return radius * math.cos(angle), radius * math.sin(angle), arguments.height
+
+    rclpy.init()
+    node = rclpy.create_node('draw_circle')
+    mover = Mover(node, arguments.namespace)
+    print('to where the circle begins')
+    mover.go_to(point(0.0))
+
+    radii = []
+
+    def on_pose(message):
+        position = message.pose.position
+        radii.append(math.hypot(position.x, position.y))
+
+    node.create_subscription(PoseStamped, f'{arguments.namespace}/pose', on_pose, 5)
+    print(f'{arguments.turns:g} turns of {arguments.period:g} s')
+    begin = time.monotonic()
+    goals = 0
+    while (elapsed := time.monotonic() - begin) < arguments.turns * arguments.period:
+        if elapsed >= goals * PERIOD_OF_GOALS:
+            mover.publish(point(2 * math.pi * elapsed / arguments.period))
+            goals += 1
+        rclpy.spin_once(node, timeout_sec=0.005)
+
+    if radii:
+        deviation = max(abs(radius - arguments.radius) for radius in radii)
+        print(f'{len(radii)} poses heard, at most {1e3 * deviation:.2f} mm off the circle')
+    rclpy.shutdown()
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,92 @@
+"""Sends a machine to one pose, and waits until it is there or says why not.
+
+    hexarm up hexapod                                    # in another terminal
+    python3 examples/publish_pose.py 0.004 0 0.045
+    python3 examples/publish_pose.py 0 0 0.045 --rpy 0 0 0.1
+
+`goal_pose` is a geometry_msgs/PoseStamped: metres, a unit quaternion, an empty frame_id means the
+machine's base. `motion_status` says what became of a goal, which it names by its stamp; it is
+latched, so that it is heard whenever one begins to listen. The exit status is 0 for reached, 1 for
+refused, stopped or no answer.
+"""
+
+import argparse
+import sys
+import time
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import PoseStamped
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from manipulator.pose import Pose
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+LEVEL = (0.0, 0.0, 0.0, 1.0)
+
+
+class Mover:
+    """Sends goals to one machine and hears what became of them."""
+
+    def __init__(self, node, namespace):
+        self.node = node
+        self.goals = node.create_publisher(PoseStamped, f'{namespace}/goal_pose', 1)
+        self.status = DiagnosticStatus()
+        node.create_subscription(
+            DiagnosticStatus, f'{namespace}/motion_status', self.on_status, LATCHED
+        )
+
+    def on_status(self, message):
+        self.status = message
+
+    def publish(self, xyz, quaternion=LEVEL):
+        """Publishes a goal, in metres and as x, y, z, w; returns its stamp in seconds."""
+        goal = PoseStamped()
+        goal.header.stamp = self.node.get_clock().now().to_msg()
+        position, orientation = goal.pose.position, goal.pose.orientation
+        position.x, position.y, position.z = map(float, xyz)
+        orientation.x, orientation.y, orientation.z, orientation.w = map(float, quaternion)
+        self.goals.publish(goal)
+        return goal.header.stamp.sec + goal.header.stamp.nanosec * 1e-9
+
+    def go_to(self, xyz, quaternion=LEVEL):
+        """Publishes a goal and waits for its end; exits with the reason when it is not reached."""
+        self.wait(self.goals.get_subscription_count, f'nobody hears {self.goals.topic_name}')
+        stamp = self.publish(xyz, quaternion)
+        self.wait(lambda: self.result(stamp), 'no answer on motion_status')
+        if self.result(stamp) != 'reached':
+            sys.exit(self.status.message)
+
+    def result(self, stamp):
+        """'reached', 'refused' or 'stopped' once the goal of that stamp has ended."""
+        values = {pair.key: pair.value for pair in self.status.values}
+        if not values or float(values['goal_stamp']) != stamp:
+            return None
+        return values['result'] if values['result'] != 'moving' else None
+
+    def wait(self, is_so, otherwise, seconds=10.0):
+        """Hears messages until `is_so` says yes."""
+        end = time.monotonic() + seconds
+        while not is_so():
+            if time.monotonic() > end:
+                sys.exit(f'{otherwise} within {seconds:g} s')
+            rclpy.spin_once(self.node, timeout_sec=0.05)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n', maxsplit=1)[0])
+    parser.add_argument('xyz', nargs=3, type=float, help='metres, in the base frame')
+    parser.add_argument('--rpy', nargs=3, type=float, default=[0, 0, 0], help='radians')
+    parser.add_argument('--namespace', default='/hexapod')
+    arguments = parser.parse_args()
+
+    rclpy.init()
+    mover = Mover(rclpy.create_node('publish_pose'), arguments.namespace)
+    quaternion = Pose.from_xyz_rpy(arguments.xyz, arguments.rpy).quaternion
+    mover.go_to(arguments.xyz, quaternion)
+    print(mover.status.message)
+    rclpy.shutdown()
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,171 @@
+"""Every script in examples/ against `hexarm up hexapod`."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from geometry_msgs.msg import PoseStamped
+from std_msgs.msg import Float64
+
+from hexarm.client import Client
+from manipulator.nodes.messages import pose_of
+from manipulator.nodes.qos import LATCHED
+
+pytestmark = pytest.mark.graph
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = sorted((ROOT / 'examples').glob('*.py'))
+
+
+@pytest.fixture(scope='module')
+def up(hexarm, tmp_path_factory):
+    """A graph that forgives a busy computer: its setpoints are good for a second."""
+    text = (ROOT / 'config' / 'robocake.yaml').read_text()
+    patient = tmp_path_factory.mktemp('machine') / 'robocake.yaml'
+    patient.write_text(re.sub(r'setpoint_deadline_ms: \d+', 'setpoint_deadline_ms: 1000', text))
+    process = hexarm('up', 'hexapod', '--machine', str(patient))
+    lines = []
+    for line in process.stdout:
+        lines.append(line)
+        if 'is up on fake and enabled' in line:
+            break
+    assert process.poll() is None, ''.join(lines)
+    yield process
+    process.terminate()
+    process.communicate(timeout=20)
+    assert process.returncode == 0
+
+
+@pytest.fixture
+def client(up):
+    with Client('hexapod') as client:
+        yield client
+
+
+@pytest.fixture
+def poses(client):
+    """The measured poses since the test began, as far as the client was spun."""
+    heard = []
+
+    def hear(message):
+        heard.append(pose_of(message))
+
+    client.node.create_subscription(PoseStamped, 'pose', hear, 1000)
+    client.wait('a pose', lambda: heard, 10.0)
+    return heard
+
+
+@pytest.fixture
+def start():
+    """Starts an example as a process; ends it if the test did not."""
+    started = []
+
+    def start(name, *words):
+        command = [sys.executable, str(ROOT / 'examples' / f'{name}.py'), *map(str, words)]
+        pipes = {'stdout': subprocess.PIPE, 'stderr': subprocess.STDOUT, 'text': True}
+        started.append(subprocess.Popen(command, cwd=ROOT, **pipes))
+        return started[-1]
+
+    yield start
+    for process in started:
+        if process.poll() is None:
+            process.kill()
+            process.wait()
+
+
+def end(process):
+    """Exit status and what was printed."""
+    said, _ = process.communicate(timeout=60)
+    return process.returncode, said
+
+
+@pytest.mark.parametrize('example', EXAMPLES, ids=lambda path: path.stem)
+def test_example_explains_itself(example):
+    words = [sys.executable, str(example), '--help']
+    said = subprocess.run(words, check=True, capture_output=True, text=True, timeout=30).stdout
+    first_line = example.read_text().splitlines()[0].strip('"')
+    assert first_line in ' '.join(said.split())
+    assert '--namespace' in said
+
+
+def test_publish_pose_ends_when_the_platform_is_there(start, poses, client):
+    process = start('publish_pose', '-0.003', 0.002, 0.044, '--rpy', 0.03, 0, 0.05)
+    assert end(process) == (0, 'reached\n')
+    client.spin(0.3)
+    assert poses[-1].position == pytest.approx([-0.003, 0.002, 0.044], abs=5e-4)
+    assert poses[-1].rpy == pytest.approx([0.03, 0.0, 0.05], abs=0.01)
+
+
+def test_publish_pose_says_which_leg_cannot(start, up):
+    status, said = end(start('publish_pose', 0.04, 0, 0.045))
+    assert status == 1
+    assert re.fullmatch(r'refused: leg \d: rod too short by [\d.]+ mm .*\n', said)
+
+
+def test_watch_joints_prints_names_and_radians(start, client):
+    assert end(start('publish_pose', 0, 0, 0.04119))[0] == 0
+    status, said = end(start('watch_joints', '--count', 3, '--every', 0.02))
+    names, *lines = (line.split() for line in said.splitlines())
+    assert status == 0
+    assert names == [f'crank_{leg}' for leg in range(1, 7)]
+    assert len(lines) == 3
+    assert [float(word) for word in lines[-1]] == pytest.approx([2.0945] * 6, abs=0.01)
+
+
+def test_draw_circle_stays_on_it(start, poses, client):
+    process = start('draw_circle', '--turns', 1, '--period', 3)
+    client.wait('the end of the circle', lambda: process.poll() is not None, 30.0)
+    status, said = end(process)
+    assert status == 0
+    assert float(re.search(r'at most ([\d.]+) mm off', said)[1]) < 0.5
+    assert min(pose.position[0] for pose in poses) < -0.0075
+    assert max(pose.position[1] for pose in poses) > 0.0075
+
+
+def test_axis_tour_visits_both_sides_of_every_axis(start, poses, client):
+    process = start('axis_tour', '--way', 0.003, '--angle', 0.06, '--pause', 0.1)
+    client.wait('the end of the tour', lambda: process.poll() is not None, 60.0)
+    status, said = end(process)
+    assert status == 0
+    tour = ['x', 'y', 'z', 'roll', 'pitch', 'yaw']
+    assert [line.split()[0] for line in said.splitlines()] == tour
+    for axis, centre in enumerate((0.0, 0.0, 0.04119)):
+        visited = [pose.position[axis] - centre for pose in poses]
+        assert min(visited) < -0.0027
+        assert max(visited) > 0.0027
+        angles = [pose.rpy[axis] for pose in poses]
+        assert min(angles) < -0.055
+        assert max(angles) > 0.055
+
+
+@pytest.fixture
+def slowly(client):
+    """The machine at a twentieth of its speed."""
+    override = client.node.create_publisher(Float64, 'speed_override', LATCHED)
+    client.wait('a listener', override.get_subscription_count, 10.0)
+    override.publish(Float64(data=0.05))
+    yield
+    override.publish(Float64(data=1.0))
+    override.wait_for_all_acked()
+
+
+def test_stop_ends_a_move_and_the_tour_says_so(start, slowly):
+    tour = start('axis_tour', '--pause', 0)
+    assert tour.stdout.readline().startswith('x ±')
+    assert end(start('stop')) == (0, 'braking along the way, then holding\n')
+    status, said = end(tour)
+    assert status == 1
+    assert 'stopped' in said
+
+
+def test_emergency_stop_holds_until_it_is_cleared(start, client):
+    assert end(start('stop', '--emergency')) == (0, 'emergency stop sent\n')
+    client.wait('the stop', lambda: client.machine_state.message == 'stopped', 10.0)
+    status, said = end(start('publish_pose', 0, 0, 0.045))
+    assert status == 1
+    assert 'the machine is stopped' in said
+    client.trigger('serial_bridge/clear_fault')
+    client.wait('the machine', lambda: client.machine_state.message == 'enabled', 10.0)
+    client.wait('the pose', lambda: client.motion('mode') != 'disabled', 10.0)
+    assert end(start('publish_pose', 0, 0, 0.045)) == (0, 'reached\n')
