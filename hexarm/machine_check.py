@@ -2,6 +2,7 @@
 
 import difflib
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
@@ -11,6 +12,7 @@ from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
 from hexarm.machines import loader
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
+from manipulator.frames import Frames
 from manipulator.limits.joint_range import JointRange
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionConfig
@@ -51,10 +53,12 @@ def problems_of(text: str) -> list[str]:
     if content is None:
         return found.problems
     whole = found.of(lambda: build(MachineFile, content))
+    if whole is not None:
+        found.of(partial(Frames.from_config, whole.frames))
     there = {name: part for name, part in content.items() if isinstance(part, Mapping)}
     machine = found.of(lambda: _machine(content.get('kind'), there, whole))
     sections = {
-        name: found.of(lambda schema=schema, name=name: build(schema, there[name], name))  # type: ignore[misc]
+        name: found.of(partial(build, schema, there[name], name))
         for name, schema in BRIDGE.items()
         if name in there
     }

@@ -169,6 +169,11 @@ def test_park_beyond_a_limit_or_a_pulse_range_is_named():
     assert far.startswith('servos.park: crank_1: 4.363 rad outside')
 
 
+def test_pivot_out_of_proportion_is_named():
+    (found,) = problems_of(ROBOCAKE + 'frames: {pivot_xyz_mm: [2000.0, 2000.0, 0.0]}\n')
+    assert found.startswith('pivot [2.0, 2.0, 0.0] is not within 2 m')
+
+
 def test_speed_beyond_the_servos_is_named():
     (found,) = problems_of(changed(ROBOCAKE, ('joint_speed_deg_s: 480', 'joint_speed_deg_s: 700')))
     assert found.startswith('motion.joint_speed_deg_s: 700 is more than the servos do')

@@ -16,13 +16,13 @@ TOOLS = {'hexarm', 'hexapod_ik', 'hexapod_pose', 'hexapod_trajectory', 'serial_b
 def scratch(source, run, tmp_path_factory):
     """A virtual environment with hexarm from a wheel; dependencies come from ours."""
     folder = tmp_path_factory.mktemp('pip')
-    pip = (sys.executable, '-m', 'pip', '--disable-pip-version-check')
-    offline = ('--no-deps', '--no-index')
+    pip = (sys.executable, '-m', 'pip')
+    offline = ('--disable-pip-version-check', '--no-deps', '--no-index')
     run(*pip, 'wheel', *offline, '--no-build-isolation', '-w', folder, source)
     (wheel,) = folder.glob('hexarm-*.whl')
     environment = folder / 'environment'
-    venv.create(environment, symlinks=True)
-    run(*pip, '--python', environment / 'bin' / 'python', 'install', *offline, wheel)
+    venv.create(environment, symlinks=True, with_pip=True)
+    run(environment / 'bin' / 'pip', 'install', *offline, wheel)
     (packages,) = environment.glob('lib/python3*/site-packages')
     (packages / 'dependencies.pth').write_text(sysconfig.get_path('purelib') + '\n')
     return environment
