@@ -1,11 +1,13 @@
 """`hexarm firmware-header`: what the board's program takes from a machine file, as a C header."""
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from bridge.board_modes import PULSE_PERIOD_US, BoardSettings
+from bridge.calibration import Calibration
 from bridge.servo_config import BoardConfig
 from hexarm import machines
+from hexarm.firmware_kinematics import WITHOUT, kinematics_of
 from manipulator.errors import ConfigError
 
 WIDEST_COUNT = 36_000
@@ -30,11 +32,15 @@ def header_of(machine: str) -> str:
     """machine.h of a machine file; ConfigError where the machine does not fit the board."""
     source = machines.find(machine)
     config = BoardConfig.from_machine(machines.read(machine), str(source))
+    calibration = Calibration.from_config(config.servos)
+    kinematics = kinematics_of(machines.load(machine), calibration)
     settings = BoardSettings.from_config(config, BOOT_S)
-    return header(settings, config.link.baud, source.name)
+    return header(settings, config.link.baud, source.name, kinematics)
 
 
-def header(settings: BoardSettings, baud: int, name: str) -> str:
+def header(
+    settings: BoardSettings, baud: int, name: str, kinematics: Mapping[str, object] = WITHOUT
+) -> str:
     """machine.h; counts are half microseconds of pulse, by channel."""
     _refuse_wide_pulses(settings)
     lows, highs = zip(*settings.count_ranges, strict=True)
@@ -48,6 +54,7 @@ def header(settings: BoardSettings, baud: int, name: str) -> str:
         'ARM_INTERVAL_MS': settings.arm_interval_us // 1000,
         'MINIMUM_BATTERY_MV': settings.minimum_battery_mv,
         'RELEASE_ON_LINK_LOSS': int(settings.on_link_loss == 'release'),
+        **kinematics,
     }
     lines = [f'#define {key} {value}' for key, value in definitions.items()]
     top = f'/* Made by `hexarm firmware-header` from {name}: change that file instead. */'
