@@ -20,9 +20,9 @@ class StaleMessage(InvalidInput):
 class StampGate:
     """One source's clock, learnt from its messages; all times in seconds.
 
-    The smallest (receipt − stamp) seen is the offset of a message without delay. A stamp that
-    goes back by more than `maximum_age`, or two late ones that agree, mean that the source's
-    clock was set (or that another source took over): its offset is learnt anew.
+    The smallest (receipt − stamp) seen is the offset of a message without delay. Two refused
+    messages that agree mean that the source's clock was set, or that another source took over:
+    its offset is learnt anew, and the second is admitted.
     """
 
     maximum_age: float = 0.5
@@ -33,16 +33,18 @@ class StampGate:
     def admit(self, stamp: float, receipt: float) -> None:
         """Raises StaleMessage when the message must not be acted on."""
         observed = receipt - stamp
-        back = self._last_stamp - stamp
-        if self.offset is None or back > self.maximum_age or self._is_confirmed(observed):
-            self.offset = observed
-        elif back > 0:
-            raise StaleMessage(f'stamped {back:.3f} s before the last one: reordered, ignored')
+        if self.offset is None or self._is_confirmed(observed):
+            self.offset, self._last_stamp = observed, stamp
         self.offset = min(self.offset, observed)
-        age = observed - self.offset
+        age, back = observed - self.offset, self._last_stamp - stamp
         if age > self.maximum_age:
             self._refused_offset = observed
-            raise StaleMessage(f'{age:.3f} s old, at most {self.maximum_age:g} s: ignored')
+            raise StaleMessage(
+                f'{age:.3f} s old, at most {self.maximum_age:g} s: ignored, unless the next one '
+                'agrees that the clock of the source was set'
+            )
+        if back > 0:
+            raise StaleMessage(f'stamped {back:.3f} s before the last one: reordered, ignored')
         self._refused_offset = None
         self._last_stamp = stamp
 

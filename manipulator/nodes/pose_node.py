@@ -21,7 +21,7 @@ from manipulator.nodes.messages import (
     pose_message,
 )
 from manipulator.nodes.parameters import declare
-from manipulator.nodes.qos import LATCHED, MEASUREMENT
+from manipulator.nodes.qos import COMMAND, MEASUREMENT
 
 
 class PoseNode(Node):
@@ -37,7 +37,7 @@ class PoseNode(Node):
         self._states = Intake(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
         self._pivot_publisher = self.create_publisher(PoseStamped, 'pivot_pose', MEASUREMENT)
-        self.create_subscription(PointStamped, 'pivot', self._on_pivot, LATCHED)
+        self.create_subscription(PointStamped, 'pivot', self._on_pivot, COMMAND)
         self.create_subscription(JointState, 'joint_states', self._states, MEASUREMENT)
         self._diagnostics = Diagnostics(self, self._report, ('joint_states', 'pose'))
 

@@ -59,8 +59,8 @@ class TrajectoryNode(Node):
         subscribe(PoseStamped, 'goal_pose', self._goals, COMMAND)
         subscribe(PoseStamped, 'pose', self._poses, MEASUREMENT)
         subscribe(DiagnosticStatus, 'machine_state', self._on_machine_state, LATCHED)
-        subscribe(Float64, 'speed_override', self._on_speed_override, LATCHED)
-        subscribe(PointStamped, 'pivot', self._on_pivot, LATCHED)
+        subscribe(Float64, 'speed_override', self._on_speed_override, COMMAND)
+        subscribe(PointStamped, 'pivot', self._on_pivot, COMMAND)
 
     def _on_machine_state(self, message: DiagnosticStatus) -> None:
         values = {pair.key: pair.value for pair in message.values}

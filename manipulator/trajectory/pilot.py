@@ -77,8 +77,9 @@ class Pilot:
     def release(self, reason: str) -> None:
         """Lets go of the machine: no setpoints until its pose is known again."""
         if self._player is not None:
+            stamp = self._player.newest_stamp
             self._player = self._following = None
-            self.status = MotionStatus('disabled', 'stopped', self.status.goal_stamp, reason)
+            self.status = MotionStatus('disabled', 'stopped', stamp, reason)
 
     def override(self, rate: float) -> None:
         """Scales all motion, now and later; Refused outside [0, 1]."""

@@ -71,6 +71,11 @@ class Player:
         return self._plan.at(self._time)
 
     @property
+    def newest_stamp(self) -> float:
+        """The stamp of the newest goal, whether it is being driven or still waits."""
+        return self._newest.stamp if self._newest is not None else self.status.goal_stamp
+
+    @property
     def is_at_rest(self) -> bool:
         """Whether nothing moves and nothing is about to."""
         return isinstance(self._plan, Hold) and self._newest is None

@@ -130,7 +130,7 @@ def test_plan_answers_the_way_or_nothing(enabled):
 
 def test_goal_for_a_machine_that_is_not_enabled_is_refused(enabled):
     enabled.disable()
-    enabled.wait('disarming', lambda: enabled.machine_state.message == 'disarmed', 5.0)
+    enabled.wait('disarming', lambda: enabled.motion('mode') == 'disabled', 5.0)
     with pytest.raises(Refused, match='enable it first'):
         enabled.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.043)))
     enabled.enable()

@@ -34,11 +34,23 @@ def test_source_whose_clock_is_off_by_an_hour_is_understood(offset):
         gate.admit(offset + 105.0, 107.0)
 
 
-def test_clock_set_back_is_learnt_at_once():
+def test_clock_set_back_is_believed_with_the_second_message():
     gate = StampGate()
     gate.admit(5000.0, 100.0)
-    gate.admit(101.0, 101.0)
+    with pytest.raises(StaleMessage, match='the clock of the source was set'):
+        gate.admit(101.0, 101.0)
     gate.admit(102.0, 102.0)
+    gate.admit(103.0, 103.0)
+
+
+def test_one_message_from_long_ago_is_refused_and_forgotten():
+    gate = StampGate()
+    gate.admit(5000.0, 5000.0)
+    with pytest.raises(StaleMessage):
+        gate.admit(100.0, 5001.0)
+    gate.admit(5002.0, 5002.0)
+    with pytest.raises(StaleMessage):
+        gate.admit(200.0, 5003.0)
 
 
 def test_clock_that_went_back_between_rare_messages_is_learnt_with_the_second():

@@ -122,3 +122,10 @@ def test_pivot_waits_until_the_machine_stands_still():
 def test_pivot_that_is_no_place_is_refused():
     with pytest.raises(InvalidInput, match='pivot'):
         driving().set_pivot([float('nan'), 0.0, 0.0])
+
+
+def test_goal_that_still_waited_when_the_machine_was_lost_is_named():
+    made = driving()
+    made.player.pursue(Goal(ELSEWHERE, 9.0))
+    made.note_machine_state('disarmed', is_followed=False)
+    assert (made.status.result, made.status.goal_stamp) == ('stopped', 9.0)
