@@ -1,6 +1,6 @@
 """Down the distance to a target, within all limits: docs/workspace.md, section 2."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,7 +13,8 @@ from manipulator.reach.readings import read_limits
 from manipulator.reach.slope import slopes
 from manipulator.reach.way import admits
 
-CLEARANCE = 1e-6  # how far inside each limit an answer stays, as part of the characteristic length
+CLEARANCE = 1e-6  # how far inside each limit an answer stays, by the characteristic length
+WIDE = 30.0  # times that at first, since next to where a leg just closes slopes have no end
 SETTLED = 1e-7  # a step that changes nothing, likewise
 SHARES = 0.5 ** np.arange(10)
 RESTORATIONS = 2
@@ -35,13 +36,13 @@ class Linearised:
     rows: Mask
 
     @classmethod
-    def about(cls, machine: Machine, pose: Pose, target: Pose) -> 'Linearised':
+    def about(cls, machine: Machine, pose: Pose, target: Pose, clearance: float) -> 'Linearised':
         """By differences; margins that stand still or have no value are left out."""
         found = slopes(machine, pose)
         margins = found.readings.margins
         rows: Mask = (found.steepness > 0.0) & np.isfinite(margins)
         steepness = found.steepness[rows]
-        slack = margins[rows] / steepness - CLEARANCE * machine.kinematics.characteristic_length
+        slack = margins[rows] / steepness - clearance
         normals = found.gradients[rows] / steepness[:, None]
         return cls(pose, offset(machine, pose, target), normals, slack, steepness, rows)
 
@@ -60,39 +61,43 @@ class Linearised:
         return result
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Descent:
-    """Sequential quadratic programming, with the Lagrangian's curvature learnt by BFGS."""
+    """Sequential quadratic programming, with the Lagrangian's curvature learnt by BFGS.
+
+    clearance (m) is how far inside every limit its poses stay, to first order.
+    """
 
     machine: Machine
     target: Pose
-    pose: Pose
-    curvature: Array = field(default_factory=lambda: np.eye(6))
+    clearance: float
 
-    def run(self, most_steps: int) -> Pose:
-        """An admitted pose nearer and nearer to the target, until no step brings it nearer."""
-        length = self.machine.kinematics.characteristic_length
-        here = Linearised.about(self.machine, self.pose, self.target)
-        is_fresh = True
+    def run(self, start: Pose, most_steps: int) -> Pose:
+        """From an admitted pose to ones nearer the target, until no step brings it nearer."""
+        here, curvature, is_fresh = self._linearised(start), np.eye(6), True
         for _ in range(most_steps):
-            step, weights = here.step(self.curvature)
+            step, weights = here.step(curvature)
             better = None if np.isnan(weights).any() else self._searched(here, step, weights)
             if better is None and is_fresh:
                 break
             if better is None:
-                self.curvature, is_fresh = np.eye(6), True
+                curvature, is_fresh = np.eye(6), True
                 continue
-            there = Linearised.about(self.machine, better, self.target)
+            there = self._linearised(better)
             taken = offset(self.machine, here.pose, better)
-            change = there.lagrangian_slope(weights, here.rows) - here.lagrangian_slope(
-                weights, here.rows
-            )
-            self.curvature = damped_bfgs(self.curvature, taken, change)
-            is_settled = float(np.linalg.norm(taken)) < SETTLED * length and is_fresh
-            here, is_fresh = there, False
-            if is_settled:
+            before, after = (at.lagrangian_slope(weights, here.rows) for at in (here, there))
+            curvature = damped_bfgs(curvature, taken, after - before)
+            here, was_fresh, is_fresh = there, is_fresh, False
+            if was_fresh and float(np.linalg.norm(taken)) < SETTLED * self._length:
                 break
         return here.pose
+
+    @property
+    def _length(self) -> float:
+        return self.machine.kinematics.characteristic_length
+
+    def _linearised(self, pose: Pose) -> Linearised:
+        return Linearised.about(self.machine, pose, self.target, self.clearance)
 
     def _searched(self, here: Linearised, step: Array, weights: Array) -> Pose | None:
         """The nearest admitted pose to the target among parts of the step, each put right."""
@@ -101,16 +106,22 @@ class Descent:
         if active.any():
             rows = np.flatnonzero(here.rows)[active]
             inverse = np.linalg.pinv(here.normals[active])
-            clearance = CLEARANCE * self.machine.kinematics.characteristic_length
             for _ in range(RESTORATIONS):
                 margins = read_limits(self.machine, trials).margins[:, rows]
-                slack = np.nan_to_num(margins / here.steepness[active]) - clearance
+                slack = np.nan_to_num(margins / here.steepness[active]) - self.clearance
                 trials = displaced(self.machine, trials, -np.minimum(slack, 0.0) @ inverse.T)
         inside = admits(self.machine, trials)
         distances = np.where(inside, distance(self.machine, trials, self.target), np.inf)
         best = int(np.argmin(distances))
         is_nearer = distances[best] < float(np.linalg.norm(here.goal)) * (1.0 - 1e-12)
         return trials[best] if is_nearer else None
+
+
+def descended(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Pose:
+    """An admitted pose at a local minimum of the distance, from the admitted `start`."""
+    clearance = CLEARANCE * machine.kinematics.characteristic_length
+    pose = Descent(machine, target, WIDE * clearance).run(start, most_steps)
+    return Descent(machine, target, clearance).run(pose, most_steps)
 
 
 def damped_bfgs(curvature: Array, step: Array, change: Array) -> Array:

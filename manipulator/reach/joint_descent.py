@@ -8,8 +8,9 @@ from manipulator.pose import Pose
 from manipulator.reach.metric import distance, offset, scale
 
 MOST_STEPS = 200
-DAMPINGS = (1e-9, 1e-6, 1e-4, 1e-2, 1.0, 100.0)
+DAMPINGS = (1e-9, 1e-6, 1e-4, 1e-2, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0)
 SETTLED = 1e-12
+CLEARANCE = 1e-9  # rad or m inside the ranges, so that the answer's inverse is in range, too
 RANDOM_STARTS = 12
 
 
@@ -36,11 +37,11 @@ def nearest_by_joints(machine: Machine, target: Pose) -> Pose:
 
 
 def joint_box(machine: Machine) -> tuple[Array, Array]:
-    """The strictest lower and upper bounds (n,) of a machine with joint ranges alone."""
+    """The strictest bounds (n,) of a machine with joint ranges alone, a hair within."""
     limits = machine.constraints.limits
     return (
-        np.max([limit.low for limit in limits], axis=0),
-        np.min([limit.high for limit in limits], axis=0),
+        np.max([limit.low for limit in limits], axis=0) + CLEARANCE,
+        np.min([limit.high for limit in limits], axis=0) - CLEARANCE,
     )
 
 

@@ -7,12 +7,13 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.reach.descent import Descent
+from manipulator.reach.descent import descended
 from manipulator.reach.joint_descent import nearest_by_joints
-from manipulator.reach.metric import distance
-from manipulator.reach.way import is_connected, is_joint_box, way_home_share
+from manipulator.reach.metric import displaced, distance
+from manipulator.reach.way import admits, is_connected, is_joint_box, way_home_share
 
 MOST_STEPS = 60
+KICKS, KICK_POSES, KICK_RADII, KICK_GAIN = 6, 600, (3e-2, 1e-2, 1e-3, 1e-4), 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,20 +27,38 @@ class Nearest:
 def nearest_reachable(machine: Machine, target: Pose, most_steps: int = MOST_STEPS) -> Nearest:
     """The pose nearest to `target` (itself, when it is reachable) that keeps all limits.
 
-    It is admitted and connected to home: both are checked. It is a local minimum of the distance,
-    the best of three that are found from the ends of straight ways: from home towards the target,
-    towards its position alone, and towards its orientation alone.
+    It is admitted and connected to home: both are checked. It is a local minimum of the distance
+    that a random search about it could not better, the best of three that are found from the ends
+    of straight ways: from home towards the target, its position alone, its orientation alone.
     """
     if is_joint_box(machine):
         pose = nearest_by_joints(machine, target)
         return Nearest(pose, float(distance(machine, pose, target)))
     starts = _starts(machine, target)
-    ends = [Descent(machine, target, start).run(most_steps) for start in starts]
+    ends = [_settled(machine, target, start, most_steps) for start in starts]
     found = [(float(distance(machine, pose, target)), k) for k, pose in enumerate(ends)]
     for metres, k in sorted(found):
         if is_connected(machine, ends[k]):
             return Nearest(ends[k], metres)
     return Nearest(starts[0], float(distance(machine, starts[0], target)))
+
+
+def _settled(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Pose:
+    """A local minimum, left again as long as a random pose near it is nearer to the target."""
+    generator = np.random.default_rng(8)
+    length = machine.kinematics.characteristic_length
+    pose = descended(machine, target, start, most_steps)
+    for _ in range(KICKS):
+        radii = length * generator.choice(KICK_RADII, (KICK_POSES, 1))
+        trials = displaced(machine, pose, radii * generator.standard_normal((KICK_POSES, 6)))
+        distances = distance(machine, trials, target)
+        nearer = distances < float(distance(machine, pose, target)) - KICK_GAIN * length
+        nearer[nearer] = admits(machine, trials[nearer])
+        if not nearer.any():
+            break
+        best = int(np.argmin(np.where(nearer, distances, np.inf)))
+        pose = descended(machine, target, trials[best], most_steps)
+    return pose
 
 
 def _starts(machine: Machine, target: Pose) -> list[Pose]:

@@ -65,10 +65,11 @@ def travel(machine: Machine, pose: Pose, twist: Array, near: Array | None = None
     Zero where the pose itself is out of reach. Arms follow the branch of `near`. Raises
     InvalidInput for a twist that is zero or not finite.
     """
-    way = np.asarray(twist, dtype=np.float64) * scale(machine)
+    given = np.asarray(twist, dtype=np.float64)
+    if given.shape != (6,) or not np.isfinite(given).all() or not given.any():
+        raise InvalidInput(f'twist {given.tolist()} is not six finite numbers, not all 0')
+    way = given * scale(machine)
     speed = float(np.linalg.norm(way))
-    if way.shape != (6,) or not 0.0 < speed < np.inf:
-        raise InvalidInput(f'twist {np.asarray(twist).tolist()} is not six numbers, not all 0')
     length = machine.kinematics.characteristic_length
     direction, step = way / speed, length / CHECKS_PER_LENGTH
     turn = float(np.linalg.norm(direction[3:])) / length
@@ -106,9 +107,10 @@ def path_report(machine: Machine, poses: Pose, near: Array | None = None) -> Pat
 
 def _followed(machine: Machine, pose: Pose, near: Array | None) -> Array | None:
     """The joints to follow from: home's branch is the only one of a platform, and needs none."""
-    if near is None and is_joint_box(machine):
-        return machine.kinematics.inverse_or_nan(pose)
-    return near
+    if near is not None or not is_joint_box(machine):
+        return near
+    joints = machine.kinematics.inverse_or_nan(pose)
+    return joints if np.isfinite(joints).all() else None
 
 
 def _free_metres(

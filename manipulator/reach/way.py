@@ -7,9 +7,13 @@ from manipulator.continuity import joints_along
 from manipulator.limits.joint_range import JointRange
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.reach.least_distance import nearest_point
 from manipulator.reach.metric import CHECKS_PER_LENGTH, displaced, distance, offset
+from manipulator.reach.slope import slopes
 
-DETOURS = 200
+INSIDE = 3e-3  # how far inside the limits bent ways keep, by the characteristic length
+MOST_RESTORATIONS = 8
+MOST_BENDS = 8
 
 
 def is_joint_box(machine: Machine) -> bool:
@@ -56,30 +60,47 @@ def is_free(machine: Machine, start: Pose, end: Pose) -> bool:
 
 
 def is_connected(machine: Machine, pose: Pose) -> bool:
-    """Whether a free way leads from home to an admitted pose: straight, or with one corner.
+    """Whether a free way leads from home to an admitted pose: straight, or bent about limits.
 
     True is certain (to 1/70 of the characteristic length); False means that none was found.
     """
     if is_joint_box(machine):
         return True
-    home = machine.kinematics.home
-    if is_free(machine, home, pose):
+    if not admits(machine, pose[None])[0]:
+        return False
+    return _are_linked(machine, machine.kinematics.home, pose, MOST_BENDS)
+
+
+def _are_linked(machine: Machine, start: Pose, end: Pose, bends: int) -> bool:
+    """Whether a way is free that is straight, or bent at middles which are put inside."""
+    if is_free(machine, start, end):
         return True
-    corners = _corners(machine, home, pose)
-    return any(
-        is_free(machine, home, corners[k]) and is_free(machine, corners[k], pose)
-        for k in range(corners.position.shape[0])
+    middle = put_inside(machine, start.moved(0.5 * start.twist_to(end))) if bends else None
+    return (
+        middle is not None
+        and _are_linked(machine, start, middle, bends - 1)
+        and _are_linked(machine, middle, end, bends - 1)
     )
 
 
-def _corners(machine: Machine, home: Pose, pose: Pose) -> Pose:
-    """Admitted poses about the middle of the way, the same ones each time."""
-    generator = np.random.default_rng(4)
-    length = float(distance(machine, home, pose))
-    middle = home.moved(0.5 * home.twist_to(pose))
-    spread = generator.standard_normal((DETOURS, 6)) * (length / 4)
-    around = displaced(machine, middle, spread)
-    return around[admits(machine, around)]
+def put_inside(machine: Machine, pose: Pose) -> Pose | None:
+    """A pose a little inside all limits, by Newton's method from one that breaks some, or None."""
+    clearance = INSIDE * machine.kinematics.characteristic_length
+    for _ in range(MOST_RESTORATIONS):
+        found = slopes(machine, pose)
+        margins = found.readings.margins
+        rows = (found.steepness > 0.0) & np.isfinite(margins)
+        steepness = found.steepness[rows]
+        slack = margins[rows] / steepness - clearance
+        step, weights = nearest_point(
+            np.zeros(6), found.gradients[rows] / steepness[:, None], slack
+        )
+        if np.isnan(weights).any():
+            return None
+        if not step.any():
+            return pose
+        pose = displaced(machine, pose, step)
+    return pose if admits(machine, pose[None])[0] else None
 
 
 def way_home_share(machine: Machine, pose: Pose) -> float:
