@@ -51,6 +51,11 @@ def firmware(header: str) -> Path:
     return _built(header, 'firmware.elf')
 
 
+def bench(header: str) -> Path:
+    """The program that marks how long the kinematics take."""
+    return _built(header, 'bench.elf')
+
+
 def host_library(header: str) -> Path:
     """The parts of that program that know no hardware, as a library for this computer."""
     return _built(header, 'host.so')

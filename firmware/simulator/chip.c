@@ -16,6 +16,8 @@ enum {
     CHANNELS = 8,
     LOG = 1 << 18,
     MCUSR_ADDRESS = 0x54,
+    GPIOR0_ADDRESS = 0x3E,
+    MARKS = 255,
     WDRF_BIT = 3,
     REAL_BUFFER = 2,
     /* libsimavr counts a parity bit that is not there, and a byte's time only from when the one
@@ -94,6 +96,15 @@ static void on_servo_pin(avr_irq_t *irq, uint32_t value, void *param)
     on_pin(the_chip, (uint8_t)(uintptr_t)param, value & 1);
 }
 
+/* A program marks a moment by writing to GPIOR0: an edge of channel MARKS. */
+static void on_mark(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    Chip *chip = param;
+    avr->data[address] = value;
+    if (chip->edge_count < LOG)
+        chip->edges[chip->edge_count++] = (Edge){avr->cycle, MARKS, value};
+}
+
 static avr_cycle_count_t send_next(avr_t *avr, avr_cycle_count_t when, void *param)
 {
     (void)avr;
@@ -150,6 +161,7 @@ Chip *chip_new(const char *elf_path, uint32_t baud)
     chip->cycles_a_byte = (uint64_t)CLOCK_HZ * BITS_A_BYTE / baud;
     chip->is_open[1] = true;
     avr_irq_register_notify(uart_irq(chip, UART_IRQ_OUTPUT), on_byte, chip);
+    avr_register_io_write(chip->avr, GPIOR0_ADDRESS, on_mark, chip);
     for (uintptr_t channel = 0; channel < CHANNELS; channel++) {
         uint32_t port = AVR_IOCTL_IOPORT_GETIRQ(PINS[channel].port);
         avr_irq_t *irq = avr_io_getirq(chip->avr, port, PINS[channel].bit);

@@ -35,7 +35,8 @@ uint32_t chip_take(Chip *chip, uint8_t *bytes, uint32_t room);
 /* Bytes that a real chip, which buffers two, would have lost. */
 uint32_t chip_lost_bytes(const Chip *chip);
 
-/* The edges of the servo pins since the last call; how many. */
+/* The edges of the servo pins since the last call, and as channel 255 the moments that the program
+ * marked by writing to GPIOR0; how many. */
 uint32_t chip_edges(Chip *chip, Edge *edges, uint32_t room);
 
 /* The voltage at A0, and what is switched to ground: pin 0 stop button, pin 1 start button. */
