@@ -10,6 +10,7 @@ from manipulator.machine import Machine
 from manipulator.pose import Pose
 
 TRIES = 3000
+AWAY = 2.5e-3
 ANSWERS = ('right', 'refused', 'wrong, but beyond a limit', 'the twin within all limits')
 TWIN_AT_HOME = "a twin of a pose on home's side of every singularity"
 
@@ -24,7 +25,31 @@ def honesty_rows(name: str, machine: Machine, low: Array, high: Array) -> list[R
         found += [Row(f'{head}: {answer}', f'{100 * shares[answer]:.2f} %') for answer in ANSWERS]
         passed = shares[TWIN_AT_HOME]
         found.append(Row(f'{head}: {TWIN_AT_HOME}', f'{100 * passed:.2f} %', '0 %', passed == 0))
-    return found
+    return [*found, *warm_rows(f'{name}: warm start outside', machine, poses, joints)]
+
+
+def warm_rows(head: str, machine: Machine, poses: Pose, joints: Array) -> list[Row]:
+    """Starts five ticks away at full speed, or two and a half millimetres."""
+    shares = judged(machine, poses, joints, starts(machine, poses))
+    silent = shares['the twin within all limits']
+    flagged = shares['wrong, but beyond a limit']
+    return [
+        Row(f'{head}, {1e3 * AWAY} mm away: wrong, but beyond a limit', f'{100 * flagged:.2f} %'),
+        Row(
+            f'{head}, {1e3 * AWAY} mm away: wrong within all limits',
+            f'{100 * silent:.2f} %',
+            '0 %',
+            silent == 0,
+        ),
+    ]
+
+
+def starts(machine: Machine, poses: Pose) -> Pose:
+    """Poses AWAY from each in a random direction, turns made lengths."""
+    twists = np.random.default_rng(2).standard_normal((*poses.position.shape[:-1], 6))
+    twists *= AWAY / np.linalg.norm(twists, axis=-1, keepdims=True)
+    twists[..., 3:] /= machine.kinematics.characteristic_length
+    return poses.moved(twists)
 
 
 def outside(
@@ -49,21 +74,24 @@ def outside(
     return poses, np.concatenate(angles)[:TRIES]
 
 
-def judged(machine: Machine, poses: Pose, joints: Array) -> dict[str, float]:
+def judged(
+    machine: Machine, poses: Pose, joints: Array, near: Pose | None = None
+) -> dict[str, float]:
     """Shares of the answers; a twin is a pose within all limits that has the same joints."""
     kinematics = machine.kinematics
     counts = dict.fromkeys((*ANSWERS, TWIN_AT_HOME), 0)
-    for k in range(TRIES):
+    for k, q in enumerate(joints):
+        start = None if near is None else near[k]
         try:
-            found = kinematics.forward(joints[k]).pose
+            found = kinematics.forward(q, start).pose
         except NoSolution:
             counts['refused'] += 1
             continue
         if np.abs(poses[k].twist_to(found)).max() < 1e-6:
             counts['right'] += 1
-        elif machine.constraints.admits(found, joints[k]):
+        elif machine.constraints.admits(found, q):
             counts['the twin within all limits'] += 1
-            counts[TWIN_AT_HOME] += int(kinematics.is_as_at_home(poses[k], joints[k]))
+            counts[TWIN_AT_HOME] += int(kinematics.is_as_at_home(poses[k], q))
         else:
             counts['wrong, but beyond a limit'] += 1
-    return {name: count / TRIES for name, count in counts.items()}
+    return {name: count / len(joints) for name, count in counts.items()}

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.honesty import honesty_rows, judged
+from bench.honesty import honesty_rows, judged, starts
 from bench.row import Row, interleaved_medians
 from hexapod_control.load import hexapod
 from hexapod_control.modes import all_modes
@@ -35,15 +35,20 @@ def rows() -> list[Row]:
 
 def inside_rows(name: str, machine: Machine, poses: Pose) -> list[Row]:
     joints = machine.kinematics.inverse(poses)
-    shares = judged(machine, poses, joints)
-    wrong = 1.0 - shares['right']
+    wrong = 1.0 - judged(machine, poses, joints)['right']
+    changed = 1.0 - judged(machine, poses, joints, starts(machine, poses))['right']
     some = [all_modes(machine, joints[k]) for k in range(0, INSIDE, INSIDE // TIMED)]
     (seconds,) = interleaved_medians([lambda k: all_modes(machine, joints[k])], TIMED)
     lone = all(len(modes.that_fit) == 1 for modes in some)
     return [
-        Row(f'{name}: wrong or refused, cold, inside', f'{100 * wrong:.2f} %', '0 %', wrong == 0),
+        share_row(f'{name}: wrong or refused, cold, inside', wrong),
+        share_row(f'{name}: wrong or refused, warm from 2.5 mm away, inside', changed),
         Row(
             f'{name}: one mode fits, {len(some)} inside', 'all' if lone else 'not all', 'all', lone
         ),
         Row(f'{name}: all modes, judged', f'{1e3 * seconds:.1f} ms', '100 ms', seconds <= 0.1),
     ]
+
+
+def share_row(name: str, share: float) -> Row:
+    return Row(name, f'{100 * share:.2f} %', '0 %', share == 0)
