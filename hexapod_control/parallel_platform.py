@@ -8,9 +8,11 @@ from typing import Protocol
 import numpy as np
 
 from hexapod_control.assembly_modes import AssemblyModes, assembly_modes
+from hexapod_control.columns import chunks
 from hexapod_control.forward import XYZXY, ForwardByLengths
 from hexapod_control.geometry import LEGS
 from hexapod_control.leg_jacobian import leg_jacobian, rods, smallest_singular_value
+from hexapod_control.margin_test import keeps_margin
 from manipulator.arrays import Array, Mask
 from manipulator.errors import ConfigError, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
@@ -163,6 +165,14 @@ class ParallelPlatform(ABC):
     def sigma_min(self, pose: Pose, joints: Array) -> Array:
         """The forward singularity margin (...), dimensionless; NaN for NaN joints."""
         return smallest_singular_value(self.leg_jacobian(pose, joints), self.characteristic_length)
+
+    def keeps_margin(self, pose: Pose, joints: Array, minimum: float) -> Mask:
+        """Which of many configurations (N) have σmin above `minimum`: quicker than by σmin."""
+        kept = np.empty(len(joints), dtype=np.bool_)
+        points, length = self.geometry.platform_points, self.characteristic_length
+        for part, poses, some in chunks(pose, joints):
+            kept[part] = keeps_margin(self.base_points(some), points, poses, length, minimum)
+        return kept
 
     def _base_columns(self, joints: Array) -> Array:
         """The base points as the (5, 6) array that `ForwardByLengths.solve_columns` takes."""

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from hexapod_control.columns import MANY, chunks, turned_columns, unit_rods_and_arms
 from hexapod_control.geometry import LEGS
 from hexapod_control.parallel_platform import ParallelPlatform
 from hexapod_control.rotary import RotaryHexapod
-from manipulator.arrays import Array, frozen
+from manipulator.arrays import Array, Mask, frozen
 from manipulator.pose import Pose
 
 LEG_NAMES = tuple(f'leg {leg}' for leg in range(1, LEGS + 1))
@@ -43,6 +44,23 @@ class PlatformJointSwing:
         angle: Array = np.arccos(np.clip(cosine, -1.0, 1.0))
         return angle
 
+    def admits(self, pose: Pose, joints: Array) -> Mask:
+        """Which configurations (...) keep the cone; many at once by their cosines."""
+        if joints.ndim != 2 or len(joints) < MANY:
+            return np.asarray((self.values(pose, joints) <= self.largest).all(axis=-1))
+        inside = np.empty(len(joints), dtype=np.bool_)
+        points, least = self.kinematics.geometry.platform_points, np.cos(self.largest)
+        for part, poses, some in chunks(pose, joints):
+            base = self.kinematics.base_points(some)
+            units, _ = unit_rods_and_arms(base, points, poses)
+            cosine = (units * self._axes(poses)).sum(axis=0)
+            inside[part] = (cosine >= least).all(axis=0)
+        return inside
+
+    def _axes(self, pose: Pose) -> Array:
+        """The cones' axes in base axes, (3, 6, N)."""
+        return turned_columns(self.at_home, pose)
+
     def _directions(self, pose: Pose, joints: Array) -> Array:
         """The rods' unit vectors as the platform sees them."""
         directions: Array = self.kinematics.unit_rods(pose, joints) @ pose.rotation
@@ -54,6 +72,10 @@ class BaseJointSwing(PlatformJointSwing):
     """A linear leg's angle (rad) to its direction at home, as the base sees it: a cone."""
 
     quantity: str = 'base joint swing'
+
+    def _axes(self, pose: Pose) -> Array:
+        axes: Array = self.at_home.T[:, :, None]
+        return axes
 
     def _directions(self, pose: Pose, joints: Array) -> Array:
         return self.kinematics.unit_rods(pose, joints)
@@ -87,6 +109,20 @@ class CrankJointTilt:
         """The tilts (..., 6), signed."""
         change: Array = self._tilt(pose, joints) - self.at_home
         return change
+
+    def admits(self, pose: Pose, joints: Array) -> Mask:
+        """Which configurations (...) keep the tilt; many at once by the sine, AE of (2.1) by d."""
+        if joints.ndim != 2 or len(joints) < MANY:
+            return np.asarray((np.abs(self.values(pose, joints)) <= self.largest).all(axis=-1))
+        ends = self.at_home + np.array([[-self.largest], [self.largest]])
+        lengths = self.kinematics.geometry.rod_lengths
+        low, high = (np.sin(np.clip(ends, -np.pi / 2, np.pi / 2)) * lengths)[:, :, None]
+        inside = np.empty(len(joints), dtype=np.bool_)
+        for part, poses, some in chunks(pose, joints):
+            across = self.kinematics.closure.gaps(poses)[:LEGS]
+            kept = ((across >= low) & (across <= high)).all(axis=0)
+            inside[part] = kept & np.isfinite(some).all(axis=-1)
+        return inside
 
     def _tilt(self, pose: Pose, joints: Array) -> Array:
         sine = (self.kinematics.unit_rods(pose, joints) * self.kinematics.geometry.normals).sum(-1)

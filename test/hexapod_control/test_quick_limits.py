@@ -1,0 +1,55 @@
+"""What limits admit by their quick tests, against their values."""
+
+import numpy as np
+import pytest
+
+from hexarm.machines import load
+from manipulator.limits.limit import admitted
+
+
+@pytest.fixture(scope='module', params=['robocake', 'stewart_6_3', 'stewart_6_6'])
+def cloud(request):
+    """A machine, and poses of which each limit admits some and refuses some; some do not close."""
+    machine = load(request.param)
+    length = machine.kinematics.characteristic_length
+    generator = np.random.default_rng(1)
+    steps = generator.standard_normal((20_000, 6)) * generator.uniform(0, 0.8, (20_000, 1))
+    poses = machine.kinematics.home.moved(steps * ([length] * 3 + [1.0] * 3))
+    return machine, poses, machine.kinematics.inverse_or_nan(poses)
+
+
+def by_values(limit, poses, joints):
+    values = limit.values(poses, joints)
+    return ((values >= limit.low) & (values <= limit.high)).all(axis=-1)
+
+
+def test_many_poses_are_admitted_as_their_values_say(cloud):
+    machine, poses, joints = cloud
+    closed = np.isfinite(joints).all(axis=1)
+    for limit in machine.constraints.limits:
+        expected = by_values(limit, poses, joints)[closed]
+        np.testing.assert_array_equal(admitted(limit, poses, joints)[closed], expected)
+        if not limit.quantity.startswith('rod'):
+            assert 0 < expected.sum() < closed.sum()
+    assert not machine.constraints.admits(poses, joints)[~closed].any()
+
+
+def test_single_poses_are_admitted_as_the_many_are(cloud):
+    machine, poses, joints = cloud
+    everything = machine.constraints.admits(poses, joints)
+    for k in range(0, 20_000, 200):
+        if np.isfinite(joints[k]).all():
+            assert machine.constraints.admits(poses[k], joints[k]) == everything[k]
+
+
+def test_the_margin_test_is_sharp(cloud):
+    """Just below and just above σmin itself, where pivots tell the two apart."""
+    machine, poses, joints = cloud
+    kinematics = machine.kinematics
+    closed = np.flatnonzero(np.isfinite(joints).all(axis=1))[:300]
+    sigma = kinematics.sigma_min(poses[closed], joints[closed])
+    for k in closed[sigma > 1e-3][:60]:
+        one = np.full(64, k)
+        least = float(kinematics.sigma_min(poses[k], joints[k]))
+        assert kinematics.keeps_margin(poses[one], joints[one], least * (1 - 1e-6)).all()
+        assert not kinematics.keeps_margin(poses[one], joints[one], least * (1 + 1e-6)).any()
