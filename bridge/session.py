@@ -5,7 +5,7 @@ waiting for ever. `now` is monotonic time in seconds, given by the caller.
 """
 
 import enum
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from bridge.events import (
     Acknowledged,
@@ -25,6 +25,7 @@ from bridge.messages import (
     REASONS,
     Ack,
     Command,
+    Disarm,
     Fault,
     Hello,
     Mode,
@@ -42,6 +43,7 @@ MAX_TRIES = 4
 BOARD_SILENCE = 0.5
 MAX_BOOT = 5.0
 UPTIME_SLACK_MS = 250
+MODE_AFTER: dict[type, Mode] = {Disarm: Mode.DISARMED, Stop: Mode.STOPPED}
 SHORTEST_ADVANCE_MS = 125
 
 
@@ -243,6 +245,10 @@ class Session:
         if ack.result is not Result.OK:
             return self._fail_pending(REASONS[ack.result])
         self._pending = None
+        mode = MODE_AFTER.get(type(pending.command))
+        if mode is not None and self.state is not None:
+            # Known before the next STATE tells it: no setpoint may follow.
+            self.state = replace(self.state, mode=mode)
         return [Acknowledged(pending.command)]
 
     def _fail_pending(self, reason: str) -> list[Event]:

@@ -266,3 +266,12 @@ def test_a_wrapped_uptime_is_no_restart(line):
     line.now += 0.2
     wrapped = encode(Hello(1, ResetCause.POWER_ON, 6, 99), 1)
     assert line.session.receive(wrapped, line.now) == []
+
+
+@pytest.mark.parametrize('command', [Disarm(), Stop()])
+def test_no_setpoint_follows_an_acknowledged_disarm_or_stop(armed, command):
+    armed.session.send_command(command, armed.now)
+    while armed.session._pending is not None:
+        armed.run(0.005)
+    assert not armed.session.accepts_setpoints
+    assert armed.run(0.2) == []
