@@ -23,7 +23,9 @@ def draw(motion: LegMotion, machine: str, picture: Path) -> None:
     figure, axes = plt.subplots(3, 1, figsize=(8, 9), dpi=130, sharex=True, layout='constrained')
     straight = 1e3 * motion.straight.position
     _curves(axes[0], motion.share, 1e3 * motion.poses.position, ('x', 'y', 'z'))
-    axes[0].plot(motion.share, straight, color='#4a5a6a', lw=0.8, ls=':')
+    lines = axes[0].plot(motion.share, straight, color='#4a5a6a', lw=0.8, ls=':')
+    lines[0].set_label('linear')
+    _name(axes[0])
     axes[0].set(ylabel='position (mm)', title=f'{machine}: leg lengths linear in time')
     _curves(axes[1], motion.share, np.degrees(motion.euler_zxz), ('α', 'β', 'γ'))
     axes[1].set(ylabel='ZXZ Euler angles (°)')
@@ -40,5 +42,9 @@ def draw(motion: LegMotion, machine: str, picture: Path) -> None:
 def _curves(axes: Axes, share: Array, values: Array, names: tuple[str, str, str]) -> None:
     for column, (name, colour) in enumerate(zip(names, COLOURS, strict=True)):
         axes.plot(share, values[:, column], color=colour, lw=1.3, label=name)
-    axes.legend(ncols=3, frameon=False, loc='upper left')
     axes.grid(alpha=0.25)
+    _name(axes)
+
+
+def _name(axes: Axes) -> None:
+    axes.legend(frameon=False, loc='center left', bbox_to_anchor=(1.0, 0.5))

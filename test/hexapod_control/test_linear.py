@@ -6,6 +6,8 @@ from hypothesis import strategies as st
 from hexapod_control import load
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.linear_geometry import LinearGeometry, PlatesConfig
+from hexapod_control.modes import all_modes
+from hexapod_control.plane_method import PlaneMethod
 from hexapod_control.workspace import sample
 from manipulator.config import build
 from manipulator.errors import LimitViolated, NoSolution
@@ -107,6 +109,21 @@ def test_cold_starts_in_the_whole_workspace_never_end_in_another_mode(stewart_co
         found = kinematics.forward(legs)
         assert np.abs(poses[k].twist_to(found.pose)).max() < 1e-8
         assert found.iterations <= 8
+
+
+@pytest.mark.parametrize('name', ['stewart_6_3', 'stewart_6_6'])
+def test_newton_the_plane_method_and_all_modes_agree(stewart_content, name):
+    content = stewart_content(name)
+    machine = load.hexapod(build(MachineFile, content))
+    kinematics = machine.kinematics
+    plane = PlaneMethod.of(build(PlatesConfig, content['geometry'], 'geometry'))
+    poses = sample(machine, 40, np.random.default_rng(8))
+    for k, legs in enumerate(kinematics.inverse(poses)):
+        newton = kinematics.forward(legs).pose
+        by_plane = plane.solve(legs, newton.moved([2e-3, 1e-3, -2e-3, 0.03, 0.02, -0.04])).pose
+        (by_all,) = all_modes(machine, legs).that_fit
+        for pose in (newton, by_plane, by_all.pose):
+            assert np.abs(poses[k].twist_to(pose)).max() < 1e-8
 
 
 @pytest.mark.parametrize(
