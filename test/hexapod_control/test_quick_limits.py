@@ -1,5 +1,7 @@
 """What limits admit by their quick tests, against their values."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -27,6 +29,8 @@ def test_many_poses_are_admitted_as_their_values_say(cloud):
     machine, poses, joints = cloud
     closed = np.isfinite(joints).all(axis=1)
     for limit in machine.constraints.limits:
+        if hasattr(limit, 'largest'):  # swings and tilts, of which few are as large as allowed
+            limit = dataclasses.replace(limit, largest=0.5 * limit.largest)
         expected = by_values(limit, poses, joints)[closed]
         np.testing.assert_array_equal(admitted(limit, poses, joints)[closed], expected)
         if not limit.quantity.startswith('rod'):
