@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
     say('starting the graph: fake_hardware, serial_bridge, ik, trajectory, pose')
     with link_folder() as folder:
         nodes = machine_graph('hexapod', MACHINE, 'fake', Path(folder) / 'board')
-        with Graph(nodes, 'hexapod') as graph:
+        with Graph(nodes, 'hexapod', log_level='error') as graph:
 
             def interrupt() -> None:
                 stop.check()

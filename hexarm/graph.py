@@ -54,8 +54,11 @@ def machine_graph(kind: str, machine: str, port: str, link: Path) -> list[Execut
 class Graph:
     """The running processes; a context manager that leaves none behind."""
 
-    def __init__(self, nodes: Sequence[Executable], namespace: str) -> None:
+    def __init__(
+        self, nodes: Sequence[Executable], namespace: str, log_level: str = 'info'
+    ) -> None:
         self._nodes = nodes
+        self._log_level = log_level
         self._namespace = namespace
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
 
@@ -64,7 +67,7 @@ class Graph:
         for node in self._nodes:
             _wait_for(node.needs)
             self._processes[node.entry] = subprocess.Popen(
-                _command(node, self._namespace),
+                [*_command(node, self._namespace), '--log-level', self._log_level],
                 start_new_session=True,
                 stdin=subprocess.DEVNULL,
                 preexec_fn=_die_with_parent,  # noqa: PLW1509 (one prctl call, no threads yet)
