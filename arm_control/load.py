@@ -1,8 +1,11 @@
 """From a machine file's sections to a serial arm that the nodes can use."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from arm_control.arm import SerialArm
+from arm_control.arm_jogger import ArmJogger
 from arm_control.geometry import FORMS
 from arm_control.joint_limits import ArmLimits
 from arm_control.resolved_rate import ResolvedRate
@@ -16,9 +19,13 @@ KIND = 'serial_arm'
 
 def arm(machine_file: MachineFile) -> Machine:
     """The machine of one file; its kinematics is a `SerialArm`. ConfigError names each fault."""
-    kinematics = serial_arm(machine_file)
-    motion = MotionLimits.from_config(machine_file.motion)
-    return Machine(kinematics, kinematics.limits.constraints(), motion)
+    jog = jogging(machine_file)
+    return Machine(
+        jog.arm,
+        jog.arm.limits.constraints(),
+        jog.motion,
+        make_jogger=lambda machine: ArmJogger(jog, machine.frames),
+    )
 
 
 def serial_arm(machine_file: MachineFile) -> SerialArm:
@@ -39,5 +46,8 @@ def serial_arm(machine_file: MachineFile) -> SerialArm:
 def jogging(machine_file: MachineFile) -> ResolvedRate:
     """The resolved-rate step of one file's arm, within its joint and motion limits."""
     limits = build(ArmLimits, machine_file.limits, 'limits')
+    kinematics = serial_arm(machine_file)
     motion = MotionLimits.from_config(machine_file.motion)
-    return ResolvedRate(serial_arm(machine_file), motion, limits.damping_onset)
+    own = kinematics.limits
+    motion = replace(motion, joint=motion.joint.tightened(own.speed, own.acceleration))
+    return ResolvedRate(kinematics, motion, limits.damping_onset)

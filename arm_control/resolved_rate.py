@@ -72,15 +72,14 @@ class ResolvedRate:
 
     def __post_init__(self) -> None:
         """Combines the joints' own limits with the machine's."""
-        limits, joint = self.arm.limits, self.motion.joint
+        joint = self.motion.joint.tightened(self.arm.limits.speed, self.arm.limits.acceleration)
         unit = np.array([1 / self.arm.characteristic_length] * 3 + [1.0] * 3)
-        acceleration = np.minimum(limits.acceleration, joint.acceleration)
         for name, value in (
-            ('_unit', unit),
-            ('_speed', np.minimum(limits.speed, joint.speed)),
-            ('_acceleration', acceleration),
+            ('_unit', frozen(unit)),
+            ('_speed', joint.speed),
+            ('_acceleration', joint.acceleration),
         ):
-            object.__setattr__(self, name, frozen(value))
+            object.__setattr__(self, name, value)
 
     def step(self, state: JogState, twist: Array, dt: float) -> JogStep:
         """The state dt seconds later, for a twist (6,) of the tool in base axes.

@@ -18,6 +18,7 @@ from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
+from manipulator.teleop.platform_jogger import PlatformJogger
 
 Parts = tuple[Kinematics, Constraints]
 CRANK_SETTINGS = 8
@@ -34,7 +35,8 @@ def hexapod(machine_file: MachineFile) -> Machine:
     beyond = constraints.violations(home, kinematics.inverse(home))
     if beyond:
         raise ConfigError([f'limits: home has {violation}' for violation in beyond])
-    return Machine(kinematics, constraints, MotionLimits.from_config(machine_file.motion))
+    motion = MotionLimits.from_config(machine_file.motion)
+    return Machine(kinematics, constraints, motion, make_jogger=PlatformJogger)
 
 
 def rotary_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:

@@ -125,7 +125,8 @@ def _park_problems(machine: Machine, calibration: Calibration, order: list[int])
 
 def _slow_servos(machine: Machine, calibration: Calibration) -> Iterator[str]:
     factor, unit = _file_unit(calibration)
-    wanted, rated = machine.motion.joint.speed * factor, calibration.speed * factor
+    wanted = float(np.max(machine.motion.joint.speed)) * factor
+    rated = calibration.speed * factor
     if np.isfinite(wanted) and wanted > rated * (1 + 1e-9):
         yield (
             f'motion.joint_speed_{unit}_s: {wanted:g} is more than the servos do '

@@ -1,5 +1,6 @@
 """A machine as the nodes use it: its kinematics, its limits, its way of moving."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -7,6 +8,7 @@ from manipulator.frames import Frames, FramesConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.motion_limits import MotionConfig, MotionLimits
+from manipulator.teleop.jogger import Jogger
 
 
 @dataclass(frozen=True)
@@ -32,10 +34,12 @@ class Machine:
     """What trajectory, ik and pose need to know of a machine.
 
     frames are those that its user works in; kinematics and constraints are in the base frame,
-    unless the machine was made by `in_frames`.
+    unless the machine was made by `in_frames`. make_jogger makes what follows twists with this
+    machine, or with the same in other frames.
     """
 
     kinematics: Kinematics
     constraints: Constraints
     motion: MotionLimits
+    make_jogger: 'Callable[[Machine], Jogger]'
     frames: Frames = field(default_factory=Frames)

@@ -3,6 +3,10 @@
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from manipulator.arrays import Array, frozen
 from manipulator.config import quantity
 
 BRAKING_SHARE = 0.3
@@ -34,13 +38,32 @@ class Derivatives:
     jerk: float = math.inf
 
 
+@dataclass(frozen=True, eq=False)
+class JointDerivatives:
+    """Bounds on each joint's speed and acceleration: (n,), or () where all joints are alike."""
+
+    speed: Array
+    acceleration: Array
+
+    @classmethod
+    def of(cls, speed: ArrayLike, acceleration: ArrayLike) -> 'JointDerivatives':
+        """From numbers or arrays, in rad or m per s and s²."""
+        return cls(frozen(speed), frozen(acceleration))
+
+    def tightened(self, speed: Array, acceleration: Array) -> 'JointDerivatives':
+        """The smaller bounds of both."""
+        return JointDerivatives.of(
+            np.minimum(self.speed, speed), np.minimum(self.acceleration, acceleration)
+        )
+
+
 @dataclass(frozen=True)
 class MotionLimits:
     """Norm of linear velocity, norm of angular velocity, and every single joint."""
 
     linear: Derivatives
     angular: Derivatives
-    joint: Derivatives
+    joint: JointDerivatives
 
     @property
     def for_plans(self) -> 'MotionLimits':
@@ -49,25 +72,34 @@ class MotionLimits:
         def share(limit: Derivatives) -> Derivatives:
             return replace(limit, acceleration=(1.0 - BRAKING_SHARE) * limit.acceleration)
 
-        return MotionLimits(share(self.linear), share(self.angular), share(self.joint))
+        joint = JointDerivatives.of(
+            self.joint.speed, (1.0 - BRAKING_SHARE) * self.joint.acceleration
+        )
+        return MotionLimits(share(self.linear), share(self.angular), joint)
 
     @property
     def braking_rate(self) -> float:
         """How fast the rate of a plan at full speed may change (1/s), by the braking share."""
-        ratios = (d.acceleration / d.speed for d in (self.linear, self.angular, self.joint))
-        return BRAKING_SHARE * min(r for r in ratios if math.isfinite(r))
+        ratios = [d.acceleration / d.speed for d in (self.linear, self.angular)]
+        joints = np.broadcast_arrays(self.joint.acceleration, self.joint.speed)
+        ratios += [
+            a / v
+            for a, v in zip(*(np.ravel(b).tolist() for b in joints), strict=True)
+            if math.isfinite(a) and math.isfinite(v)
+        ]
+        return BRAKING_SHARE * min(ratios)
 
     @classmethod
     def from_config(cls, config: MotionConfig) -> 'MotionLimits':
         """SI units; a machine's joints are rotary or linear, never both."""
         degree, millimetre = math.radians(1), 1e-3
         if config.joint_speed_mm_s is not None:
-            joint = Derivatives(
+            joint = JointDerivatives.of(
                 config.joint_speed_mm_s * millimetre,
                 (config.joint_acceleration_mm_s2 or math.inf) * millimetre,
             )
         else:
-            joint = Derivatives(
+            joint = JointDerivatives.of(
                 (config.joint_speed_deg_s or math.inf) * degree,
                 (config.joint_acceleration_deg_s2 or math.inf) * degree,
             )

@@ -7,6 +7,7 @@ import numpy as np
 from manipulator.arrays import Array, Mask
 from manipulator.errors import LimitViolated
 from manipulator.limits.limit import Limit, Violation, admitted
+from manipulator.limits.stretched import StretchedLimit
 from manipulator.pose import Pose
 
 
@@ -22,6 +23,17 @@ class Constraints:
         for limit in self.limits:
             inside &= admitted(limit, pose, joints)
         return inside
+
+    def stretched_to(self, pose: Pose, joints: Array) -> 'Constraints':
+        """These limits for a machine that stands beyond some of them: it may not go further out.
+
+        The same ones where one configuration keeps them all.
+        """
+        if bool(self.admits(pose, joints)):
+            return self
+        return Constraints(
+            tuple(StretchedLimit.around(limit, pose, joints) for limit in self.limits)
+        )
 
     def violations(self, pose: Pose, joints: Array) -> list[Violation]:
         """Everything that one configuration violates, in the order of the limits."""

@@ -64,10 +64,11 @@ class IkNode(Node):
     def _check_step(self, joints: Array, near: Array, age: float) -> None:
         """Refuses a jump away from the last command, unless it leads to where the joints are."""
         time = min(max(age, SHORTEST_STEP), LONGEST_STEP)
-        allowed = self._machine.motion.joint.speed * time
+        bounds = np.broadcast_to(self._machine.motion.joint.speed * time, joints.shape)
         steps = np.abs(joints - near)
-        worst = int(np.argmax(steps))
-        if steps[worst] <= allowed or self._is_present(joints, allowed):
+        worst = int(np.argmax(steps / bounds))
+        allowed = float(bounds[worst])
+        if steps[worst] <= allowed or self._is_present(joints, bounds):
             return
         unit = self._machine.kinematics.joint_unit
         raise LimitViolated(
@@ -79,9 +80,9 @@ class IkNode(Node):
             worst + 1,
         )
 
-    def _is_present(self, joints: Array, tolerance: float) -> bool:
+    def _is_present(self, joints: Array, tolerance: Array) -> bool:
         return self._measured is not None and bool(
-            np.abs(joints - self._measured).max() <= tolerance
+            (np.abs(joints - self._measured) <= tolerance).all()
         )
 
     def _report(self) -> Report:

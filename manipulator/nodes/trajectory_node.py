@@ -23,8 +23,9 @@ from manipulator.nodes.messages import (
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.trajectory_services import TrajectoryServices
+from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.pilot import Pilot
-from manipulator.trajectory.player import Goal, MotionStatus
+from manipulator.trajectory.player import Goal
 
 POSE_DEADLINE = 0.5
 TOLERANCE = 'how far a joint may be from its commands of the last half second (rad or m)'

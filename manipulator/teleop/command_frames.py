@@ -1,30 +1,39 @@
-"""In which axes, and about which point, a commanded twist is meant."""
+"""In which axes a commanded twist is meant; it is always the pivot's."""
 
-from typing import Literal, get_args
+from collections.abc import Callable
 
 import numpy as np
 
 from manipulator.arrays import Array
 from manipulator.errors import Refused
+from manipulator.frames import Frames
 from manipulator.pose import Pose
 
-CommandFrame = Literal['base', 'tool', 'pivot']
+AXES: dict[str, Callable[[Frames, Pose], Array | None]] = {
+    '': lambda frames, pose: frames.T_base_work.rotation.T,
+    'base': lambda frames, pose: frames.T_base_work.rotation.T,
+    'work': lambda frames, pose: None,
+    'pivot': lambda frames, pose: None,
+    'tool': lambda frames, pose: pose.rotation,
+}
+"""What turns each frame's axes into work axes; None where they are the same."""
 
 
-def in_base(command: Array, frame: str, pose: Pose, pivot: Array | None = None) -> Array:
-    """The twist (6,) of the moving frame's origin in base axes, for the named frame's command.
+def check_axes(frame: str) -> None:
+    """Raises Refused, naming the frames that there are, for any other."""
+    if frame not in AXES:
+        raise Refused(f'frame {frame[:80]!r} is not one of {list(AXES)[1:]}')
 
-    '' and 'base': already so. 'tool': both vectors in the moving frame's axes. 'pivot': base
-    axes, turning about `pivot` (3,) in the base frame. Raises Refused for any other name, and
-    for a pivot that was never given.
+
+def in_work_axes(command: Array, frame: str, pose: Pose, frames: Frames) -> Array:
+    """The pivot's twist (6,) in work axes; pose is T_work_pivot. Refused for unknown frames.
+
+    '' and 'base': along the base's axes. 'work': along the work frame's. 'pivot': the same, for
+    those who want to say that turns are about the pivot. 'tool': along the axes of the platform
+    or tool.
     """
-    if frame in ('', 'base'):
+    check_axes(frame)
+    axes = AXES[frame](frames, pose)
+    if axes is None:
         return command
-    if frame == 'tool':
-        return np.concatenate([pose.rotation @ command[:3], pose.rotation @ command[3:]])
-    if frame != 'pivot':
-        raise Refused(f'frame {frame!r} is not one of {list(get_args(CommandFrame))}')
-    if pivot is None:
-        raise Refused('frame pivot: no pivot was given yet')
-    arm = pose.position - pivot
-    return np.concatenate([command[:3] + np.cross(command[3:], arm), command[3:]])
+    return np.concatenate([axes @ command[:3], axes @ command[3:]])

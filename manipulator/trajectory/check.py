@@ -63,14 +63,14 @@ def demand(state: MotionState, joints: Array, limits: MotionLimits, dt: float) -
     readings = {
         'platform speed': _norm(state.twist[:, :3]) / limits.linear.speed,
         'turning speed': _norm(state.twist[:, 3:]) / limits.angular.speed,
-        'joint speed': _largest(speed) / limits.joint.speed,
+        'joint speed': _largest(speed / limits.joint.speed),
         'platform acceleration': sqrt(
             _norm(state.acceleration[:, :3]) / limits.linear.acceleration
         ),
         'turning acceleration': sqrt(
             _norm(state.acceleration[:, 3:]) / limits.angular.acceleration
         ),
-        'joint acceleration': sqrt(_largest(acceleration) / limits.joint.acceleration),
+        'joint acceleration': sqrt(_largest(acceleration / limits.joint.acceleration)),
     }
     worst = max(readings, key=lambda name: readings[name])
     return Demand(readings[worst], worst)

@@ -12,7 +12,8 @@ from manipulator.frames import Frames
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.trajectory.following import Following
-from manipulator.trajectory.player import MotionStatus, Player
+from manipulator.trajectory.motion_status import MotionStatus
+from manipulator.trajectory.player import Player
 
 HOLDING = 'holding'
 DRIVABLE = ('enabled', HOLDING)

@@ -1,10 +1,13 @@
 """Playing plans tick by tick: goals in, setpoints out, and every stop along the checked way.
 
 A plan runs in its own time, whose rate goes from 0 (paused) to 1 (full speed). Stopping, pausing
-and slowing change the rate alone, so the machine never leaves the way that was checked.
+and slowing change the rate alone, so the machine never leaves the way that was checked. A jog
+begins and ends at rest: it first brakes the plan, and drops it.
 """
 
 from dataclasses import dataclass
+
+import numpy as np
 
 from manipulator.arrays import Array
 from manipulator.errors import Refused, Unreachable
@@ -12,6 +15,8 @@ from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.trajectory.check import check_plan
 from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.jogging import Jogging, Wish
+from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.move import Move
 from manipulator.trajectory.plan import Hold, MotionState, Plan
 from manipulator.trajectory.planner import plan_to
@@ -29,20 +34,6 @@ class Goal:
 
     pose: Pose
     stamp: float = 0.0
-
-
-@dataclass(frozen=True)
-class MotionStatus:
-    """What goes out on motion_status.
-
-    mode: hold, move, cycle. result: idle, moving, reached, refused, stopped. goal_stamp is that
-    of the goal which the result is about.
-    """
-
-    mode: str = 'hold'
-    result: str = 'idle'
-    goal_stamp: float = 0.0
-    reason: str = ''
 
 
 class Player:
@@ -64,10 +55,16 @@ class Player:
         self._is_stopping = False
         self._newest: Goal | None = None
         self._next: Goal | Cycle | None = None
+        self._wish: Wish | None = None
+        self._jogging: Jogging | None = None
+        self._measured: Pose | None = None
 
     @property
     def state(self) -> MotionState:
-        """The commanded state in the plan's own time."""
+        """The commanded state, in the plan's own time while a plan is played."""
+        if self._jogging is not None:
+            motion = self._jogging.motion
+            return MotionState(motion.pose, motion.twist, np.zeros(6))
         return self._plan.at(self._time)
 
     @property
@@ -78,7 +75,13 @@ class Player:
     @property
     def is_at_rest(self) -> bool:
         """Whether nothing moves and nothing is about to."""
-        return isinstance(self._plan, Hold) and self._newest is None
+        is_jogged = self._jogging is not None or self._wish is not None
+        return isinstance(self._plan, Hold) and self._newest is None and not is_jogged
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a goal or a cycle is being driven, or waits."""
+        return not isinstance(self._plan, Hold) or self._newest is not None
 
     @property
     def rate(self) -> float:
@@ -90,14 +93,30 @@ class Player:
         return 0.0 if self._is_paused or self._is_stopping else self._override
 
     def pursue(self, goal: Goal) -> None:
-        """Takes a goal up at the next tick; of several the newest wins."""
+        """Takes a goal up at the next tick; of several the newest wins. Refused during a jog."""
+        self._refuse_while_jogged()
         self._newest = goal
+
+    def jog(self, wish: Wish | None) -> None:
+        """What the source that has the machine wants from now on; None when nobody has it.
+
+        What was being driven brakes along its way and is dropped.
+        """
+        if wish is not None and self._wish is None and self.is_busy:
+            self._newest = self._next = None
+            self._is_stopping = not isinstance(self._plan, Hold)
+        self._wish = wish
+
+    def note_measured(self, pose: Pose) -> None:
+        """Where the joints are measured to be: what a jog mode closes its loop on."""
+        self._measured = pose
 
     def start_cycle(self, cycle: Cycle) -> None:
         """Goes to the cycle's first pose and begins it there.
 
         Raises Refused or Unreachable, with the moment and the limit, if it cannot be driven.
         """
+        self._refuse_while_jogged()
         needed = check_plan(cycle, self._machine, self.joints, self._dt)
         if not needed.fits:
             raise Refused(
@@ -110,8 +129,10 @@ class Player:
 
     def stop(self) -> None:
         """Brakes along the way, then holds; what was to come is dropped."""
-        self._newest = self._next = None
-        if isinstance(self._plan, Hold):
+        self._newest = self._next = self._wish = None
+        if self._jogging is not None:
+            self._is_stopping = True
+        elif isinstance(self._plan, Hold):
             self._report('stopped', self._stamp)
         else:
             self._is_stopping = True
@@ -128,6 +149,8 @@ class Player:
 
     def step(self) -> Pose:
         """Advances by one tick and returns the pose to command."""
+        if self._jogging is not None or (self._wish is not None and self._is_holding):
+            return self._step_jog()
         if isinstance(self._plan, Hold):
             self._rate = self._wanted_rate
         if self._newest is not None:
@@ -143,6 +166,29 @@ class Player:
             self._report('stopped', self._stamp, str(error))
             return before
         return pose
+
+    @property
+    def _is_holding(self) -> bool:
+        return isinstance(self._plan, Hold) and self._newest is None
+
+    def _refuse_while_jogged(self) -> None:
+        if self._wish is not None:
+            raise Refused(f'{self._wish.source} has the machine')
+
+    def _step_jog(self) -> Pose:
+        if self._jogging is None:
+            self._jogging = Jogging(self._machine, self.state.pose, self.joints, self._dt)
+        jogging = self._jogging
+        jogging.step(self._wish, self._wanted_rate, self._measured)
+        self.joints = jogging.motion.joints
+        if jogging.motion.is_at_rest and (self._wish is None or self._is_stopping):
+            result = 'stopped' if self._is_stopping else 'idle'
+            self._jogging, self._is_stopping = None, False
+            self._begin(Hold(jogging.motion.pose), 0.0)
+            self._report(result, 0.0)
+        else:
+            self.status = MotionStatus('jog', 'moving', 0.0, jogging.reason)
+        return jogging.motion.pose
 
     def _take(self, goal: Goal) -> None:
         """Goes there at once if it can be joined in motion, else stops first and then goes."""
@@ -185,6 +231,8 @@ class Player:
     def _settle(self, result: str) -> None:
         """The plan is over: hold its last pose, or begin what waits."""
         following, self._next = self._next, None
+        wish = self._wish if result == 'stopped' else None
+        reason = '' if wish is None else f'{wish.source} took the machine over'
         stamp = self._stamp
         self._begin(Hold(self.state.pose), stamp)
         self._is_stopping = False
@@ -195,4 +243,4 @@ class Player:
         elif isinstance(following, Goal):
             self._take(following)
         else:
-            self._report(result, stamp)
+            self._report(result, stamp, reason)

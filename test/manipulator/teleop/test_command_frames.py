@@ -2,39 +2,43 @@ import numpy as np
 import pytest
 
 from manipulator.errors import InvalidInput, Refused
-from manipulator.motion_limits import Derivatives, MotionLimits
+from manipulator.frames import Frames
+from manipulator.motion_limits import Derivatives, JointDerivatives, MotionLimits
 from manipulator.pose import Pose
-from manipulator.teleop.command_frames import in_base
+from manipulator.teleop.command_frames import in_work_axes
 from manipulator.teleop.speed_limits import within_speed
 
 POSE = Pose.from_xyz_rpy([0.3, 0.1, 0.4], [0.0, 0.0, np.pi / 2])
 COMMAND = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
-MOTION = MotionLimits(Derivatives(0.2, 1.0), Derivatives(0.5, 1.0), Derivatives(1.0, 1.0))
+MOTION = MotionLimits(Derivatives(0.2, 1.0), Derivatives(0.5, 1.0), JointDerivatives.of(1.0, 1.0))
+TURNED = Frames(T_base_work=Pose.from_xyz_rpy([0.1, 0.2, 0.3], [0.3, -0.2, 0.9]))
 
 
-def test_base_commands_stay_as_they_are():
-    for frame in ('', 'base'):
-        assert np.array_equal(in_base(COMMAND, frame, POSE), COMMAND)
+@pytest.mark.parametrize('frame', ['', 'base', 'work', 'pivot'])
+def test_plain_frames_leave_commands_as_they_are(frame):
+    assert np.array_equal(in_work_axes(COMMAND, frame, POSE, Frames()), COMMAND)
 
 
 def test_tool_commands_turn_with_the_tool():
     expected = [-0.2, 0.1, 0.3, -0.5, 0.4, 0.6]
-    assert np.abs(in_base(COMMAND, 'tool', POSE) - expected).max() < 1e-12
+    assert np.abs(in_work_axes(COMMAND, 'tool', POSE, TURNED) - expected).max() < 1e-12
 
 
-def test_a_turn_about_the_pivot_leaves_the_pivot_where_it_is():
-    pivot = np.array([0.5, -0.2, 0.1])
-    turn = np.concatenate([np.zeros(3), COMMAND[3:]])
-    twist = in_base(turn, 'pivot', POSE, pivot)
-    fixed_in_tool = POSE.inverse().transform(pivot[None])
-    moved = POSE.moved(1e-6 * twist).transform(fixed_in_tool)[0]
-    assert np.abs(moved - pivot).max() < 1e-11
+@pytest.mark.parametrize('frame', ['', 'base'])
+def test_base_commands_move_along_base_axes_whatever_the_work_frame(frame):
+    twist = in_work_axes(COMMAND, frame, POSE, TURNED)
+    start, end = (TURNED.platform(p) for p in (POSE, POSE.moved(1e-6 * twist)))
+    assert np.abs(start.twist_to(end) * 1e6 - COMMAND).max() < 1e-6
 
 
-@pytest.mark.parametrize(('frame', 'reason'), [('world', 'not one of'), ('pivot', 'no pivot')])
-def test_unknown_frames_and_missing_pivots_are_refused(frame, reason):
-    with pytest.raises(Refused, match=reason):
-        in_base(COMMAND, frame, POSE)
+@pytest.mark.parametrize('frame', ['work', 'pivot'])
+def test_work_commands_move_along_work_axes(frame):
+    assert np.array_equal(in_work_axes(COMMAND, frame, POSE, TURNED), COMMAND)
+
+
+def test_unknown_frames_are_refused_with_those_that_there_are():
+    with pytest.raises(Refused, match=r"'moon' is not one of .*'tool'"):
+        in_work_axes(COMMAND, 'moon', POSE, Frames())
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,128 @@
+"""Jogging any machine by its inverse kinematics, with the way to brake checked at every tick.
+
+A platform's limits (reach, rod ends, singularity margin) cannot be turned into joint ranges. So
+each tick drives only such a twist from which braking straight ahead keeps all of them: that way
+is there to be taken when no other twist is allowed. It ends at the edge, where everything that
+led there is open for the way back.
+"""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from manipulator import rotation as so3
+from manipulator.arrays import Array, Mask, frozen
+from manipulator.limits.constraints import Constraints
+from manipulator.pose import Pose
+from manipulator.teleop.jogger import JogMotion
+from manipulator.teleop.speed_limits import ticks_for, towards
+
+if TYPE_CHECKING:
+    from manipulator.machine import Machine
+
+SCALES = 0.75 ** np.arange(17)
+"""Parts of the wanted twist that are tried, from all of it down to 1 %."""
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class PlatformJogger:
+    """`Jogger` of a machine whose joints follow from its pose."""
+
+    machine: 'Machine'
+
+    def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
+        """See `Jogger`; the largest of SCALES that can be driven and braked, else it brakes."""
+        constraints = self.machine.constraints.stretched_to(motion.pose, motion.joints)
+        wanted = SCALES[:, None] * twist
+        aims = towards(motion.twist, wanted, self.machine.motion, dt)
+        held_by = ''
+        for first, last in ((0, 1), (1, len(SCALES))):
+            ways = self._ways(motion, aims[first:last], dt)
+            is_fit = ways.fits(self.machine, constraints, motion, dt)
+            if is_fit.any():
+                chosen = int(np.argmax(is_fit))
+                scale = float(SCALES[first + chosen])
+                return self._moved(motion, aims[first + chosen], dt, scale, held_by)
+            held_by = held_by or ways.obstacle(self.machine, constraints, motion, dt)
+        ticks = _braking_ticks(motion.twist, self.machine, dt)
+        return self._moved(motion, motion.twist * (1.0 - 1.0 / ticks), dt, 0.0, held_by)
+
+    def _moved(
+        self, motion: JogMotion, twist: Array, dt: float, scale: float, held_by: str
+    ) -> JogMotion:
+        if not twist.any():
+            still = JogMotion.at_rest(motion.pose, motion.joints)
+            return replace(still, scale=scale, held_by=held_by)
+        pose = motion.pose.moved(twist * dt)
+        joints = self.machine.kinematics.inverse(pose, motion.joints)
+        rates = frozen((joints - motion.joints) / dt)
+        return JogMotion(pose, frozen(joints), frozen(twist), rates, scale, held_by)
+
+    def _ways(self, motion: JogMotion, twists: Array, dt: float) -> '_Ways':
+        """One tick at each of the twists (k, 6), then braking straight ahead."""
+        ticks = _braking_ticks(twists, self.machine, dt)
+        steps = np.arange(int(ticks.max()))
+        parts = np.maximum(1.0 - steps / ticks[:, None], 0.0)
+        gone = np.cumsum(parts, axis=1)[..., None] * twists[:, None] * dt
+        poses = Pose(
+            motion.pose.position + gone[..., :3],
+            so3.exp(gone[..., 3:]) @ motion.pose.rotation,
+        )
+        return _Ways(poses, self.machine.kinematics.inverse_or_nan(poses, motion.joints))
+
+
+@dataclass(frozen=True, eq=False)
+class _Ways:
+    """Poses (k, ticks) of k ways to rest, and their joints."""
+
+    poses: Pose
+    joints: Array
+
+    def fits(
+        self, machine: 'Machine', constraints: Constraints, motion: JogMotion, dt: float
+    ) -> Mask:
+        """Which of the k ways keep the constraints and the joints' limits."""
+        speed, acceleration = self._excess(machine, motion, dt)
+        inside = constraints.admits(self.poses, self.joints)
+        slow_enough = (speed <= 1.0).all(axis=-1) & (acceleration <= 1.0).all(axis=-1)
+        result: Mask = np.asarray((inside & slow_enough).all(axis=-1), dtype=np.bool_)
+        return result
+
+    def obstacle(
+        self, machine: 'Machine', constraints: Constraints, motion: JogMotion, dt: float
+    ) -> str:
+        """What holds the first of the ways back, in words."""
+        inside = constraints.admits(self.poses[0], self.joints[0])
+        if not inside.all():
+            first = int(np.argmin(inside))
+            found = constraints.violations(self.poses[0][first], self.joints[0, first])[0]
+            return f'{found.quantity} of {found.owner}' if found.owner else found.quantity
+        names = machine.kinematics.joint_names
+        for what, excess in zip(
+            ('speed', 'acceleration'), self._excess(machine, motion, dt), strict=True
+        ):
+            worst = excess[0].max(axis=0)
+            if worst.max() > 1.0:
+                return f'{what} of {names[int(np.argmax(worst))]}'
+        return ''
+
+    def _excess(self, machine: 'Machine', motion: JogMotion, dt: float) -> tuple[Array, Array]:
+        """Speeds and accelerations (k, ticks, n) of the joints, over their limits."""
+        k, _, n = self.joints.shape
+        start = np.broadcast_to(motion.joints, (k, 1, n))
+        rates = np.diff(self.joints, axis=1, prepend=start) / dt
+        before = np.broadcast_to(motion.rates, (k, 1, n))
+        changes = np.diff(rates, axis=1, prepend=before) / dt
+        limits = machine.motion.joint
+        return np.abs(rates) / limits.speed, np.abs(changes) / limits.acceleration
+
+
+def _braking_ticks(twist: Array, machine: 'Machine', dt: float) -> Array:
+    """In how many ticks (...) a twist (..., 6) comes to rest, at least 1.
+
+    One tick of braking from n takes to exactly n − 1, so that a way once checked stays the same.
+    """
+    result: Array = np.ceil(np.maximum(ticks_for(twist, machine.motion, dt) - ROUNDING, 1.0))
+    return result

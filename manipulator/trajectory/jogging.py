@@ -1,0 +1,84 @@
+"""A jog under way: one source's twists through a jog mode, within speed and machine limits."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from manipulator.arrays import Array
+from manipulator.errors import Refused
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+from manipulator.teleop.command_frames import in_work_axes
+from manipulator.teleop.jog_mode import Held, JogMode
+from manipulator.teleop.jogger import JogMotion
+from manipulator.teleop.speed_limits import within_speed
+
+SAY_AGAIN_AFTER = 0.5
+"""Seconds between two changes of what is said to hold a jog back."""
+NOTABLE = 0.995
+STILL = np.zeros(6)
+
+
+@dataclass(frozen=True, eq=False)
+class Wish:
+    """What a source wants at this moment: twist (6,) of the pivot in the axes of `frame`."""
+
+    source: str
+    twist: Array
+    frame: str
+    mode: JogMode
+
+
+class Jogging:
+    """From rest, through twists, to rest again; poses are T_work_pivot."""
+
+    def __init__(self, machine: Machine, pose: Pose, joints: Array, dt: float) -> None:
+        """Begins at rest at `pose`, where the joints are."""
+        self.motion = JogMotion.at_rest(pose, joints)
+        self.reason = ''
+        self._machine = machine
+        self._jogger = machine.make_jogger(machine)
+        self._dt = dt
+        self._mode: JogMode | None = None
+        self._held: Held | None = None
+        self._obstacle_said = ''
+        self._ticks_to_silence = 0
+
+    def step(self, wish: Wish | None, rate: float, measured: Pose | None) -> None:
+        """One tick towards what is wished, at `rate` of its speed; None brakes.
+
+        The mode's loop is closed on the measured pose, or on the commanded one where there is
+        none.
+        """
+        twist, scale, refusal = STILL, 1.0, ''
+        if wish is not None:
+            try:
+                wanted = self._through_mode(wish, measured or self.motion.pose)
+            except Refused as error:
+                self._held, refusal = None, str(error)
+            else:
+                twist, scale = within_speed(wanted, self._machine.motion)
+        self.motion = self._jogger.step(self.motion, rate * twist, self._dt)
+        self._say(refusal or self._obstacle(scale, rate), rate * scale * self.motion.scale)
+
+    def _through_mode(self, wish: Wish, pose: Pose) -> Array:
+        """The mode's twist; its reference is taken where it begins."""
+        command = in_work_axes(wish.twist, wish.frame, pose, self._machine.frames)
+        if self._held is None or self._mode is not wish.mode:
+            self._held = wish.mode.latched(pose)
+            self._mode = wish.mode
+        twist, self._held = self._held.step(command, pose)
+        return twist
+
+    def _obstacle(self, scale: float, rate: float) -> str:
+        if rate == 0.0:
+            return 'paused, or speed override 0'
+        return self.motion.held_by or ('speed limits' if scale < NOTABLE else '')
+
+    def _say(self, obstacle: str, part: float) -> None:
+        """What holds the jog back, said when it changes and not more often than people read."""
+        self._ticks_to_silence -= 1
+        if obstacle != self._obstacle_said and self._ticks_to_silence <= 0:
+            self._obstacle_said = obstacle
+            self._ticks_to_silence = round(SAY_AGAIN_AFTER / self._dt)
+            self.reason = f'scaled to {part:.2g}: {obstacle}' if obstacle else ''
