@@ -134,7 +134,7 @@ def test_a_crank_platform_that_no_rods_can_hold_is_refused(robocake_content):
     """All its joints lie on one straight line, about which it turns freely."""
     g = load(robocake_content).kinematics.geometry
     joints = 1e3 * g.platform_points * [1.0, 0.0, 0.0]
-    gaps = joints + [0.0, 0.0, 41.19] - 1e3 * g.crank_centres
+    gaps = joints + np.array([0.0, 0.0, 41.19]) - 1e3 * g.crank_centres
     coordinates = {
         'crank_centres_mm': (g.crank_centres * 1e3).tolist(),
         'crank_tangents': g.tangents.tolist(),
