@@ -1,0 +1,31 @@
+"""Finding and loading gamepad mappings: config/joystick_NAME.yaml, or a path."""
+
+import difflib
+from pathlib import Path
+
+from hexarm.machines import folders, text_of
+from manipulator.config import build, parse_yaml
+from manipulator.errors import ConfigError
+from manipulator.teleop.gamepad import Gamepad
+
+PREFIX = 'joystick_'
+
+
+def shipped() -> dict[str, Path]:
+    """The mappings that come with the package, by name."""
+    files = (f for folder in reversed(folders()) for f in sorted(folder.glob(f'{PREFIX}*.yaml')))
+    return {f.stem.removeprefix(PREFIX): f for f in files}
+
+
+def load(name_or_path: str) -> Gamepad:
+    """The mapping of a shipped name or a path; ConfigError lists all that is wrong."""
+    path = Path(name_or_path).expanduser()
+    if path.suffix not in ('.yaml', '.yml') and '/' not in name_or_path:
+        known = shipped()
+        if name_or_path not in known:
+            near = difflib.get_close_matches(name_or_path, known, n=1)
+            hint = f', did you mean {near[0]!r}?' if near else ''
+            problem = f'no gamepad is called {name_or_path!r}{hint} (shipped: {sorted(known)})'
+            raise ConfigError([problem])
+        path = known[name_or_path]
+    return build(Gamepad, parse_yaml(text_of(path), str(path)), source=str(path))

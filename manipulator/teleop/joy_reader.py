@@ -1,0 +1,177 @@
+"""From a gamepad's messages to what its user wants, failing closed.
+
+A value without a clock: `hear` takes a message with its receipt time and returns the successor,
+`wanted` says what holds at a later time. Three rules keep it safe:
+
+- *Trust.* A control counts only after it was seen at rest. So a trigger that reports 0 before
+  its first touch moves nothing, nor does a deadman that is stuck, or held while the pad comes
+  back; nor does a driver's leftover state.
+- *Silence.* Without messages for `lost_after` everything is released and all trust is gone.
+- *Stillness.* A thumb trembles, a frozen pad does not. While driving, a stream in which no number
+  changes for `still_after` counts as frozen; the first change goes on, unless it comes later
+  than `repress_after`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from manipulator.arrays import Array, frozen
+from manipulator.errors import InvalidInput
+from manipulator.teleop.gamepad import Gamepad
+from manipulator.teleop.joy_numbers import check_numbers
+from manipulator.teleop.stick import COMPONENTS
+
+NEVER = float('-inf')
+AT_REST = frozen(np.zeros(6))
+
+
+@dataclass(frozen=True, eq=False)
+class Wanted:
+    """What the user wants now.
+
+    twist (6,) in m/s and rad/s, in `frame`, zero unless `is_held`; `grip` is +1 to open, −1 to
+    close, 0 to rest. `stops` counts presses of the stop button. `reason` says why the deadman
+    does not count although it may be pressed.
+    """
+
+    twist: Array
+    frame: str
+    mode: str
+    is_held: bool
+    is_homing: bool
+    grip: int
+    stops: int
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class JoyReader:
+    """The state of one gamepad; times are receipt times of a monotonic clock, in seconds."""
+
+    gamepad: Gamepad
+    numbers: tuple[float, ...] = ()
+    heard: float = NEVER
+    changed: float = NEVER
+    trusted: frozenset[str] = frozenset()
+    pressed: frozenset[str] = frozenset()
+    twist: Array = field(default_factory=lambda: AT_REST)
+    mode: int = 0
+    frame: int = 0
+    stops: int = 0
+    fault: str = ''
+
+    def hear(self, axes: Sequence[float], buttons: Sequence[int], now: float) -> 'JoyReader':
+        """After a message; a bad one counts as all released, and `fault` says what is bad."""
+        trusted = self._trust_left(now)
+        try:
+            check_numbers(self.gamepad, axes, buttons)
+        except InvalidInput as error:
+            held_through = self.pressed - {'deadman'}
+            return replace(
+                self,
+                heard=now,
+                trusted=trusted - held_through,
+                pressed=frozenset(),
+                twist=AT_REST,
+                fault=str(error),
+            )
+        numbers = (*axes, *buttons)
+        trusted |= self._at_rest(axes, buttons)
+        pressed = self._presses(axes, buttons, trusted)
+        if pressed & {'stop', 'home'}:
+            trusted, pressed = trusted - {'deadman'}, pressed - {'deadman'}
+        return replace(
+            self,
+            numbers=numbers,
+            heard=now,
+            changed=now if numbers != self.numbers else self.changed,
+            trusted=trusted,
+            pressed=pressed,
+            twist=self._twist(axes, trusted, pressed),
+            fault='',
+        )._after_presses(pressed - self.pressed)
+
+    def wanted(self, now: float) -> Wanted:
+        """What holds at `now`, which is not before the last message."""
+        reason = self._why_not(now)
+        pressed = frozenset[str]() if reason else self.pressed
+        is_held = 'deadman' in pressed
+        grip = ('gripper_open' in pressed) - ('gripper_close' in pressed)
+        return Wanted(
+            self.twist if is_held else AT_REST,
+            self.gamepad.frames[self.frame],
+            self.gamepad.modes[self.mode],
+            is_held,
+            'home' in pressed,
+            grip if is_held else 0,
+            self.stops,
+            reason,
+        )
+
+    @property
+    def untrusted(self) -> tuple[str, ...]:
+        """The controls that were not seen at rest yet."""
+        names = [*self.gamepad.presses, *(stick.name for stick in self.gamepad.sticks)]
+        return tuple(name for name in names if name not in self.trusted)
+
+    def _why_not(self, now: float) -> str:
+        silence, stillness = now - self.heard, now - self.changed
+        if self.heard == NEVER:
+            return 'no message yet'
+        if silence > self.gamepad.lost_after:
+            return f'no message for {silence:.2f} s'
+        if self.twist.any() and stillness > self.gamepad.still_after:
+            return f'frozen: no number has changed for {stillness:.2f} s'
+        return self.fault
+
+    def _trust_left(self, now: float) -> frozenset[str]:
+        """What is still trusted when a message comes at `now`."""
+        if now - self.heard > self.gamepad.lost_after:
+            return frozenset()
+        if self.twist.any() and now - self.changed > self.gamepad.repress_after:
+            return self.trusted - {'deadman'}
+        return self.trusted
+
+    def _at_rest(self, axes: Sequence[float], buttons: Sequence[int]) -> frozenset[str]:
+        presses = self.gamepad.presses.items()
+        names = [name for name, press in presses if press.is_at_rest(axes, buttons)]
+        names += [s.name for s in self.gamepad.sticks if s.is_at_rest(axes[s.axis])]
+        return frozenset(names)
+
+    def _presses(
+        self, axes: Sequence[float], buttons: Sequence[int], trusted: frozenset[str]
+    ) -> frozenset[str]:
+        presses = self.gamepad.presses.items()
+        return frozenset(n for n, p in presses if n in trusted and p.is_pressed(axes, buttons))
+
+    def _twist(
+        self, axes: Sequence[float], trusted: frozenset[str], pressed: frozenset[str]
+    ) -> Array:
+        if 'deadman' not in pressed:
+            return AT_REST
+        layers = ('always', 'shift' if 'shift' in pressed else 'plain')
+        twist = np.zeros(6)
+        for stick in self.gamepad.sticks:
+            if stick.layer in layers and stick.name in trusted:
+                twist[COMPONENTS.index(stick.moves)] += stick.speed(axes[stick.axis])
+        if 'slow' in pressed:
+            twist *= self.gamepad.slow_factor
+        elif 'turbo' in pressed:
+            twist *= self.gamepad.turbo_factor
+        return frozen(twist)
+
+    def _after_presses(self, news: frozenset[str]) -> 'JoyReader':
+        """Modes and frames change only while nothing is driven."""
+        stops = self.stops + ('stop' in news)
+        if self.twist.any():
+            return replace(self, stops=stops)
+        mode = self.mode + ('mode_next' in news) - ('mode_previous' in news)
+        frame = self.frame + ('frame_next' in news)
+        return replace(
+            self,
+            stops=stops,
+            mode=mode % len(self.gamepad.modes),
+            frame=frame % len(self.gamepad.frames),
+        )
