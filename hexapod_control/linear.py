@@ -6,7 +6,7 @@ import numpy as np
 
 from hexapod_control.forward import XYZXY
 from hexapod_control.geometry import LEGS
-from hexapod_control.leg_jacobian import rods
+from hexapod_control.leg_gaps import LegGaps, chunks
 from hexapod_control.linear_geometry import LinearGeometry
 from hexapod_control.parallel_platform import ParallelPlatform
 from manipulator.arrays import Array, frozen
@@ -24,11 +24,15 @@ class LinearPlatform(ParallelPlatform):
     """
 
     geometry: LinearGeometry
+    gaps: LegGaps = field(init=False)
     columns: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        """Lays out the base points for the forward solver."""
-        columns = frozen(self.geometry.base_points.T.take(XYZXY, axis=0))
+        """Lays out the base points for the inverse and for the forward solver."""
+        g = self.geometry
+        axes = np.tile(np.eye(3)[:, None], (1, LEGS, 1))
+        object.__setattr__(self, 'gaps', LegGaps(axes, g.base_points, g.platform_points))
+        columns = frozen(g.base_points.T.take(XYZXY, axis=0))
         object.__setattr__(self, 'columns', columns)
         super().__post_init__()
 
@@ -48,9 +52,8 @@ class LinearPlatform(ParallelPlatform):
 
     def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
         """As `inverse`: no leg fails to close."""
-        rod = rods(self.geometry.base_points, self.geometry.platform_points, pose)
-        lengths: Array = np.sqrt((rod * rod).sum(axis=-1))
-        return lengths
+        lengths = np.concatenate([self._lengths(part) for part in chunks(pose)])
+        return lengths.reshape(*pose.position.shape[:-1], LEGS)
 
     def base_points(self, joints: Array) -> Array:
         """The base's joint centres (..., 6, 3), whatever the lengths."""
@@ -71,6 +74,14 @@ class LinearPlatform(ParallelPlatform):
     def leverage(self, pose: Pose, joints: Array) -> Array:
         """1 for every leg: linear legs have no inverse singularity."""
         return np.ones(np.shape(joints))
+
+    def _lengths(self, pose: Pose) -> Array:
+        """(N, 6) of N poses."""
+        squares = self.gaps(pose) ** 2
+        squares[:LEGS] += squares[LEGS : 2 * LEGS]
+        squares[:LEGS] += squares[2 * LEGS :]
+        lengths: Array = np.sqrt(squares[:LEGS].T)
+        return lengths
 
     def _base_columns(self, joints: Array) -> Array:
         return self.columns

@@ -115,6 +115,11 @@ def test_arrays_of_poses_give_what_single_poses_give(subject):
         assert margins[index] == pytest.approx(kinematics.sigma_min(pose, joints[index]))
 
 
+def test_no_poses_have_no_joints(subject):
+    none = subject.poses[:0]
+    assert subject.machine.kinematics.inverse_or_nan(none).shape == (0, subject.joints.shape[-1])
+
+
 def test_inverse_stays_on_the_branch_that_it_is_given(subject):
     again = subject.machine.kinematics.inverse(subject.poses, subject.joints)
     np.testing.assert_allclose(again, subject.joints, atol=1e-12)

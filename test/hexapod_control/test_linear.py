@@ -37,6 +37,16 @@ def test_joints_are_the_distances_between_joint_centres(platform):
     np.testing.assert_allclose(platform.inverse(pose), distances(platform, pose), rtol=1e-13)
 
 
+def test_many_poses_have_the_lengths_of_each_in_any_shape(platform):
+    twists = np.random.default_rng(1).uniform(-0.1, 0.1, (3, 1000, 6))
+    home = platform.home
+    poses = Pose(np.tile(home.position, (3, 1000, 1)), home.rotation).moved(twists)
+    lengths = platform.inverse(poses)
+    assert lengths.shape == (3, 1000, 6)
+    for index in [(0, 0), (1, 999), (2, 47), (2, 48), (2, 999)]:
+        np.testing.assert_allclose(lengths[index], distances(platform, poses[index]), rtol=1e-13)
+
+
 def test_joint_rates_are_how_lengths_follow_the_pose(platform):
     pose, step = Pose.from_xyz_rpy((0.02, -0.03, 0.19), (0.2, -0.1, 0.3)), 1e-6
     rates = platform.joint_rates(pose, platform.inverse(pose))
