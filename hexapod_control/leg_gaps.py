@@ -36,7 +36,7 @@ class LegGaps:
         object.__setattr__(self, 'offset', frozen(offset.reshape(-1, 1)))
 
     def __call__(self, pose: Pose) -> Array:
-        """The gaps (18, N) of poses (...): six legs along the first axis, then second, then third."""
+        """The gaps (18, N) of poses (...): all legs along axis 1, then 2, then 3."""
         rotation = pose.rotation.reshape(-1, 9)
         numbers = np.concatenate((rotation, pose.position.reshape(-1, 3)), axis=1)
         gap: Array = self.matrix.dot(numbers.T)

@@ -6,6 +6,8 @@ import numpy as np
 
 from hexapod_control.parallel_platform import ParallelPlatform
 from manipulator.arrays import Array
+from manipulator.framed_machine import FramedKinematics
+from manipulator.kinematics import Kinematics
 from manipulator.limits.limit import Violation
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -49,18 +51,21 @@ def all_modes(machine: Machine, joints: Array) -> Modes:
 
     Raises NoSolution for joints that are not six finite numbers, or fix no pose.
     """
-    kinematics = machine.kinematics
+    poses, is_complete = _poses(machine.kinematics, joints)
+    modes = (_judged(machine, pose, joints, at_home) for pose, at_home in poses)
+    return Modes(tuple(modes), is_complete)
+
+
+def _poses(kinematics: Kinematics, joints: Array) -> tuple[list[tuple[Pose, bool]], bool]:
+    """Every pose, whether it is on home's side of every singularity; whether none is missing."""
+    if isinstance(kinematics, FramedKinematics):
+        poses, is_complete = _poses(kinematics.inner, joints)
+        return [(kinematics.frames.pivot(pose), side) for pose, side in poses], is_complete
     if not isinstance(kinematics, ParallelPlatform):
-        found = kinematics.forward(joints)
-        return Modes((_judged(machine, found.pose, joints, True),), True)
-    modes = kinematics.forward_all(joints)
-    return Modes(
-        tuple(
-            _judged(machine, pose, joints, bool(kinematics.is_as_at_home(pose, joints)))
-            for pose in modes.poses
-        ),
-        modes.is_complete,
-    )
+        return [(kinematics.forward(joints).pose, True)], True
+    found = kinematics.forward_all(joints)
+    sides = [bool(kinematics.is_as_at_home(pose, joints)) for pose in found.poses]
+    return list(zip(found.poses, sides, strict=True)), found.is_complete
 
 
 def _judged(machine: Machine, pose: Pose, joints: Array, is_on_home_side: bool) -> Mode:

@@ -6,6 +6,8 @@ from hexapod_control.modes import all_modes
 from hexapod_control.workspace import sample
 from manipulator.config import build
 from manipulator.errors import NoSolution
+from manipulator.framed_machine import in_frames
+from manipulator.frames import Frames
 from manipulator.machine import MachineFile
 from manipulator.pose import Pose
 
@@ -88,3 +90,14 @@ def test_modes_of_home_are_complete_where_symmetry_makes_real_turns_with_complex
     found = all_modes(machine, kinematics.inverse(kinematics.home))
     assert found.is_complete
     assert np.abs(found.that_fit[0].pose.twist_to(kinematics.home)).max() < 1e-9
+
+
+def test_modes_of_a_machine_in_the_users_frames_are_those_of_the_machine(machine):
+    frames = Frames(Pose.from_xyz_rpy([0.1, -0.2, 0.05], [0.0, 0.0, 0.7])).with_pivot([0, 0, 0.03])
+    joints = machine.kinematics.inverse(machine.kinematics.home.moved([2e-3, 0, 0, 0, 0, 0.03]))
+    plain, framed = all_modes(machine, joints), all_modes(in_frames(machine, frames), joints)
+    assert len(framed.modes) == len(plain.modes) > 1
+    for one, other in zip(plain.modes, framed.modes, strict=True):
+        assert np.abs(frames.pivot(one.pose).twist_to(other.pose)).max() < 1e-12
+        assert one.is_reachable == other.is_reachable
+        assert len(one.violations) == len(other.violations)
