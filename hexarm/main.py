@@ -8,12 +8,23 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import NoReturn
 
-from hexarm import check, demo, firmware_header, fk, ik, leg_motion, machine_list, reach, up
+from hexarm import (
+    check,
+    demo,
+    firmware_header,
+    fk,
+    ik,
+    leg_motion,
+    machine_list,
+    reach,
+    up,
+    workspace,
+)
 from hexarm.answers import REFUSED
 from manipulator.errors import ManipulatorError
 from manipulator.requirements import missing
 
-COMMANDS = (up, demo, ik, fk, reach, leg_motion, machine_list, check, firmware_header)
+COMMANDS = (up, demo, ik, fk, reach, workspace, leg_motion, machine_list, check, firmware_header)
 EXAMPLES = """\
 examples:
   hexarm demo                                          the whole graph on a fake board
