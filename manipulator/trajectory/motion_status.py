@@ -7,11 +7,13 @@ from dataclasses import dataclass
 class MotionStatus:
     """What goes out on motion_status.
 
-    mode: hold, move, cycle, jog. result: idle, moving, reached, refused, stopped. goal_stamp is
-    that of the goal which the result is about. reason: why so, or what holds a jog back.
+    mode: hold, move, path, cycle, jog. result: idle, planning (a path), moving, reached, refused,
+    stopped. goal_stamp is that of the goal which the result is about. reason: why so, or what
+    holds a jog back. percent: how much of a path's time is over.
     """
 
     mode: str = 'hold'
     result: str = 'idle'
     goal_stamp: float = 0.0
     reason: str = ''
+    percent: int | None = None

@@ -1,7 +1,7 @@
 """Jerk-limited moves from any state of motion to a pose at rest, by ruckig.
 
-The six coordinates are the position and the rotation vector w with R = exp(w)·R_goal: the goal
-lies at w = 0, far from the chart's edge at |w| = π.
+The six coordinates are those of `chart` about R_goal: the goal lies at w = 0, far from the
+chart's edge at |w| = π.
 """
 
 from dataclasses import dataclass
@@ -10,14 +10,12 @@ from typing import Any
 import numpy as np
 import ruckig
 
-from manipulator import rotation as so3
 from manipulator.arrays import Array
 from manipulator.errors import Refused
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
+from manipulator.trajectory.chart import coordinates, state_of
 from manipulator.trajectory.plan import MotionState
-
-DIFFERENCE_STEP = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +36,7 @@ class Move:
         flat = np.clip(np.ravel(times), 0.0, self.duration)
         samples = np.array([self._trajectory.at_time(t)[:3] for t in flat.tolist()])
         x, v, a = np.moveaxis(samples.reshape(*np.shape(times), 3, 6), -2, 0)
-        return _state(x, v, a, self.goal.rotation)
+        return state_of(x, v, a, self.goal.rotation)
 
 
 def plan_move(start: MotionState, goal: Pose, limits: MotionLimits, slowness: float = 1.0) -> Move:
@@ -48,7 +46,7 @@ def plan_move(start: MotionState, goal: Pose, limits: MotionLimits, slowness: fl
     ruckig finds none.
     """
     request = ruckig.InputParameter(6)
-    x, v, a = _coordinates(start, goal.rotation)
+    x, v, a = coordinates(start, goal.rotation)
     request.current_position, request.current_velocity = x.tolist(), v.tolist()
     request.current_acceleration = a.tolist()
     request.target_position = [*goal.position.tolist(), 0.0, 0.0, 0.0]
@@ -62,37 +60,3 @@ def plan_move(start: MotionState, goal: Pose, limits: MotionLimits, slowness: fl
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
         raise Refused(f'no jerk-limited move was found ({result.name})')
     return Move(goal, float(trajectory.duration), trajectory)
-
-
-def _coordinates(state: MotionState, reference: Array) -> tuple[Array, Array, Array]:
-    """The state in the chart about `reference`: (6,) coordinates and two derivatives."""
-    w = so3.log(state.pose.rotation @ reference.T)
-    inverse = np.linalg.inv(so3.left_jacobian(w))
-    w_rate = inverse @ state.twist[3:]
-    w_acceleration = inverse @ (state.acceleration[3:] - _jacobian_change(w, w_rate))
-    return (
-        np.concatenate([state.pose.position, w]),
-        np.concatenate([state.twist[:3], w_rate]),
-        np.concatenate([state.acceleration[:3], w_acceleration]),
-    )
-
-
-def _state(x: Array, v: Array, a: Array, reference: Array) -> MotionState:
-    """The inverse of `_coordinates`, for arrays of any shape."""
-    w, w_rate = x[..., 3:], v[..., 3:]
-    jacobian = so3.left_jacobian(w)
-    omega = np.einsum('...ij,...j->...i', jacobian, w_rate)
-    alpha = np.einsum('...ij,...j->...i', jacobian, a[..., 3:]) + _jacobian_change(w, w_rate)
-    return MotionState(
-        Pose(x[..., :3], so3.exp(w) @ reference),
-        np.concatenate([v[..., :3], omega], axis=-1),
-        np.concatenate([a[..., :3], alpha], axis=-1),
-    )
-
-
-def _jacobian_change(w: Array, w_rate: Array) -> Array:
-    """J̇(w)·ẇ by a central difference along ẇ."""
-    h = DIFFERENCE_STEP
-    ahead, behind = so3.left_jacobian(w + h * w_rate), so3.left_jacobian(w - h * w_rate)
-    change: Array = np.einsum('...ij,...j->...i', (ahead - behind) / (2 * h), w_rate)
-    return change

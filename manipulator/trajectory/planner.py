@@ -5,6 +5,7 @@ from manipulator.errors import Refused
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.trajectory.check import check_plan
+from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.move import plan_move
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.straight import plan_straight
@@ -16,6 +17,16 @@ MARGIN = 1.01
 def check_goal(machine: Machine, goal: Pose, near: Array) -> None:
     """Raises Unreachable, naming leg, value and limit, when the machine cannot stand there."""
     machine.constraints.check(goal, machine.kinematics.inverse(goal, near))
+
+
+def check_cycle(machine: Machine, cycle: Cycle, near: Array, dt: float) -> None:
+    """Raises Refused when the machine cannot drive a cycle as it is: its speed is not ours."""
+    needed = check_plan(cycle, machine, near, dt)
+    if not needed.fits:
+        raise Refused(
+            f'cycle: {needed.quantity} is {needed.slowness:.2f} times too fast: '
+            'lower the frequencies by that factor, or the amplitudes'
+        )
 
 
 def plan_to(machine: Machine, start: MotionState, goal: Pose, near: Array, dt: float) -> Plan:

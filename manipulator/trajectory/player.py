@@ -5,35 +5,26 @@ and slowing change the rate alone, so the machine never leaves the way that was 
 begins and ends at rest: it first brakes the plan, and drops it.
 """
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
 from manipulator.arrays import Array
+from manipulator.continuity import BRANCH_JUMP
 from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.trajectory.check import check_plan
 from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.jogging import Jogging, Wish
 from manipulator.trajectory.motion_status import MotionStatus
-from manipulator.trajectory.move import Move
+from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import Hold, MotionState, Plan
-from manipulator.trajectory.planner import plan_to
-from manipulator.trajectory.straight import StraightMove
+from manipulator.trajectory.plan_modes import MODES
+from manipulator.trajectory.planner import check_cycle, plan_to
 
 SPEEDING_UP_RATE = 2.0
 """Change of rate per second when a cycle begins, a pause ends or the override is raised."""
-
-MODES: dict[type, str] = {Hold: 'hold', StraightMove: 'move', Move: 'move', Cycle: 'cycle'}
-
-
-@dataclass(frozen=True)
-class Goal:
-    """A pose to go to, known to its sender by the stamp of his message."""
-
-    pose: Pose
-    stamp: float = 0.0
 
 
 class Player:
@@ -54,7 +45,8 @@ class Player:
         self._is_paused = False
         self._is_stopping = False
         self._newest: Goal | None = None
-        self._next: Goal | Cycle | None = None
+        self._next: Goal | Cycle | TimedPath | None = None
+        self.expected: float | None = None
         self._wish: Wish | None = None
         self._jogging: Jogging | None = None
         self._measured: Pose | None = None
@@ -84,18 +76,19 @@ class Player:
         return not isinstance(self._plan, Hold) or self._newest is not None
 
     @property
-    def rate(self) -> float:
-        """How fast the plan's time runs, 0 to 1."""
-        return self._rate
-
-    @property
     def _wanted_rate(self) -> float:
         return 0.0 if self._is_paused or self._is_stopping else self._override
 
     def pursue(self, goal: Goal) -> None:
         """Takes a goal up at the next tick; of several the newest wins. Refused during a jog."""
         self._refuse_while_jogged()
-        self._newest = goal
+        self._newest, self.expected = goal, None
+
+    def expect(self, stamp: float) -> None:
+        """A path is being worked out; `expected` is its stamp until a newer command comes."""
+        self._refuse_while_jogged()
+        self.expected = stamp
+        self._report('planning', stamp)
 
     def jog(self, wish: Wish | None) -> None:
         """What the source that has the machine wants from now on; None when nobody has it.
@@ -105,6 +98,7 @@ class Player:
         if wish is not None and self._wish is None and self.is_busy:
             self._newest = self._next = None
             self._is_stopping = not isinstance(self._plan, Hold)
+        self.expected = self.expected if wish is None else None
         self._wish = wish
 
     def note_measured(self, pose: Pose) -> None:
@@ -117,19 +111,14 @@ class Player:
         Raises Refused or Unreachable, with the moment and the limit, if it cannot be driven.
         """
         self._refuse_while_jogged()
-        needed = check_plan(cycle, self._machine, self.joints, self._dt)
-        if not needed.fits:
-            raise Refused(
-                f'cycle: {needed.quantity} is {needed.slowness:.2f} times too fast: '
-                'lower the frequencies by that factor, or the amplitudes'
-            )
+        check_cycle(self._machine, cycle, self.joints, self._dt)
         start = cycle.at(0.0).pose
         self._begin(plan_to(self._machine, self.state, start, self.joints, self._dt), stamp=0.0)
-        self._newest, self._next, self._is_stopping = None, cycle, False
+        self._newest, self._next, self._is_stopping, self.expected = None, cycle, False, None
 
     def stop(self) -> None:
         """Brakes along the way, then holds; what was to come is dropped."""
-        self._newest = self._next = self._wish = None
+        self._newest = self._next = self._wish = self.expected = None
         if self._jogging is not None:
             self._is_stopping = True
         elif isinstance(self._plan, Hold):
@@ -206,7 +195,7 @@ class Player:
             else:
                 self._next, self._is_stopping = goal, True
         else:
-            self._next = None
+            self._next = goal.then
             self._begin(move, goal.stamp)
 
     def _begin(self, plan: Plan, stamp: float) -> None:
@@ -227,6 +216,8 @@ class Player:
             self._settle('stopped')
         elif self._time >= self._plan.duration and not isinstance(self._plan, Hold):
             self._settle('reached')
+        elif isinstance(self._plan, TimedPath) and self.status.result == 'moving':
+            self.status = replace(self.status, percent=self._plan.percent(self._time))
 
     def _settle(self, result: str) -> None:
         """The plan is over: hold its last pose, or begin what waits."""
@@ -240,7 +231,16 @@ class Player:
         if isinstance(following, Cycle):
             self._rate = 0.0
             self._begin(following, stamp)
+        elif isinstance(following, TimedPath):
+            self._follow(following, stamp)
         elif isinstance(following, Goal):
             self._take(following)
         else:
             self._report(result, stamp, reason)
+
+    def _follow(self, path: TimedPath, stamp: float) -> None:
+        """Begins a path at whose first pose the machine now is."""
+        if np.abs(self.joints - path.joints).max() > BRANCH_JUMP:
+            self._report('refused', stamp, 'the joints came to the first pose on another branch')
+        else:
+            self._begin(path, stamp)

@@ -1,0 +1,148 @@
+"""A path with its timing: a plan like any other, worked out and checked before it begins.
+
+Speed and acceleration of joints and platform are limited; jerk is not, except by the corners'
+width and by the drives themselves.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from manipulator.arrays import Array
+from manipulator.errors import Refused
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+from manipulator.trajectory.check import TOLERANCE as CHECK_TOLERANCE
+from manipulator.trajectory.check import check_plan
+from manipulator.trajectory.path import Path, Tolerance, path_along, path_in_time
+from manipulator.trajectory.path_limits import PathLimits, path_limits
+from manipulator.trajectory.phase_plane import fastest
+from manipulator.trajectory.plan import MotionState
+
+FEWEST_INTERVALS = 500
+REFINEMENTS = (1, 2, 4)
+MOST_TICKS = 500_000
+
+
+@dataclass(frozen=True, eq=False)
+class TimedPath:
+    """Squared speeds along the path at its nodes (m + 1,); between them s̈ is constant.
+
+    joints are those at the first pose: another branch of them cannot drive this plan.
+    """
+
+    path: Path
+    nodes: Array
+    squares: Array
+    joints: Array
+
+    @cached_property
+    def _times(self) -> Array:
+        speeds = np.sqrt(self.squares)
+        steps = 2 * np.diff(self.nodes) / np.maximum(speeds[:-1] + speeds[1:], 1e-12)
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+    @property
+    def duration(self) -> float:
+        """Seconds from rest to rest."""
+        return float(self._times[-1])
+
+    @property
+    def checked_duration(self) -> float:
+        """All of it."""
+        return self.duration
+
+    def percent(self, time: float) -> int:
+        """How much of its time is over at the last half second before `time`."""
+        return int(100 * (time // 0.5 * 0.5) / self.duration)
+
+    def at(self, times: Array | float) -> MotionState:
+        """The state at each of the times (...)."""
+        t = np.clip(np.asarray(times, dtype=np.float64), 0.0, self.duration)
+        last = len(self.nodes) - 2
+        i = np.minimum(np.searchsorted(self._times, t, side='right') - 1, last)
+        step = self.nodes[i + 1] - self.nodes[i]
+        pull = (self.squares[i + 1] - self.squares[i]) / (2 * step)
+        begin, into = np.sqrt(self.squares[i]), t - self._times[i]
+        s = self.nodes[i] + (begin + pull * into / 2) * into
+        rate = np.maximum(begin + pull * into, 0.0)[..., None]
+        way = self.path.at(s)
+        acceleration = way.acceleration * rate**2 + way.twist * pull[..., None]
+        return MotionState(way.pose, way.twist * rate, acceleration)
+
+
+@dataclass(frozen=True, eq=False)
+class PathRequest:
+    """Poses (n,) to pass, n ≥ 1; at their stamps (s, (n,)), or at `speed` (m/s) at most."""
+
+    poses: Pose
+    speed: float
+    tolerance: Tolerance
+    stamps: Array | None = None
+
+
+def plan_path(machine: Machine, request: PathRequest, near: Array, dt: float) -> TimedPath | Pose:
+    """The plan, checked at every tick dt; or the one pose to go to, where all are the same.
+
+    near: the joints from which the first pose is approached. Raises Refused, saying at which pose
+    and how many metres along the path, where it leaves the reach or is stamped too fast.
+    """
+    turn_length = machine.motion.linear.speed / machine.motion.angular.speed
+    if request.stamps is not None and len(request.stamps) > 1:
+        path: Path | Pose = path_in_time(request.poses, request.stamps, request.tolerance)
+        speed = 1.0
+    else:
+        path = path_along(request.poses, request.tolerance, turn_length)
+        speed = request.speed
+    if isinstance(path, Pose):
+        return path
+    for refinement in REFINEMENTS:
+        limits = path_limits(machine, path, nodes_of(path, refinement), near)
+        if request.stamps is not None:
+            _check_stamped(path, limits)
+        timed = timed_path(path, limits, speed)
+        _check_length(timed, dt)
+        demand = check_plan(timed, machine, near, dt)
+        if demand.fits:
+            return timed
+    if request.stamps is None:
+        slower = replace(timed, squares=timed.squares / (1.01 * demand.slowness) ** 2)
+        if check_plan(slower, machine, near, dt).fits:
+            return slower
+    raise Refused(f'{demand.quantity} stays {demand.slowness:.3f} times too fast on the path')
+
+
+def nodes_of(path: Path, refinement: int) -> Array:
+    """Values of s: poses, the ends of their blends, and points between, close enough."""
+    own = np.unique(np.concatenate([path.marks - path.blends, path.marks + path.blends]))
+    spans = np.diff(own)
+    own = own[np.concatenate([[True], spans > 1e-9 * own[-1]])]
+    spans = np.diff(own)
+    pieces = np.ceil(spans / (own[-1] / FEWEST_INTERVALS)).astype(int)
+    pieces = refinement * np.maximum(pieces, 2)
+    steps = np.repeat(spans / pieces, pieces)
+    nodes: Array = np.concatenate([[0.0], np.cumsum(steps)])
+    return nodes
+
+
+def timed_path(path: Path, limits: PathLimits, speed: float) -> TimedPath:
+    """The fastest way along a path at `speed` (per second, in the path's parameter) at most."""
+    highest = np.minimum(limits.highest.min(axis=1), speed**2)
+    return TimedPath(path, limits.nodes, fastest(limits.rows, highest), limits.joints[0])
+
+
+def _check_stamped(path: Path, limits: PathLimits) -> None:
+    slowness, quantity, s = limits.most_at(1.0)
+    if slowness > CHECK_TOLERANCE:
+        raise Refused(
+            f'{path.where(s)}: by the stamps of the poses {quantity} would be '
+            f'{slowness:.3g} times too fast'
+        )
+
+
+def _check_length(timed: TimedPath, dt: float) -> None:
+    if timed.duration > MOST_TICKS * dt:
+        raise Refused(
+            f'the path would take {timed.duration:.0f} s, at most {MOST_TICKS * dt:.0f} s'
+        )
