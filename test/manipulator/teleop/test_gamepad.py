@@ -30,7 +30,7 @@ def test_unknown_gamepad_names_the_nearest():
 def test_mapping_is_loaded_by_path(tmp_path):
     path = tmp_path / 'mine.yaml'
     path.write_text('description: mine\ndeadman: {button: 0}\nsticks: []\n')
-    with pytest.raises(ConfigError, match='mine.yaml: sticks: empty'):
+    with pytest.raises(ConfigError, match=r'mine\.yaml: sticks: empty'):
         load(str(path))
 
 

@@ -1,0 +1,113 @@
+"""What every node of a person's input device sends: twists while held, mode, gripper, home, stop.
+
+A twist means that somebody holds the deadman. Letting go sends one zero and then nothing, so
+that silence and a node that has died look alike to the trajectory node.
+"""
+
+import time
+
+from geometry_msgs.msg import TwistStamped
+from rclpy.node import Node
+from rclpy.task import Future
+from std_msgs.msg import Float64, String
+from std_srvs.srv import Trigger
+
+from manipulator.arrays import Array, frozen
+from manipulator.nodes.qos import COMMAND, LATCHED
+
+NO_TWIST = frozen([0.0] * 6)
+
+HAND_OVER = 0.3
+"""Seconds of silence after which the trajectory node takes us to have let go."""
+
+HALF_OPEN = 0.5
+"""Of a gripper that nobody has moved yet: where a machine parks it."""
+
+
+class JogTopics:
+    """The publishers and service clients of one source of twists, cmd_vel/`source`."""
+
+    def __init__(self, node: Node, source: str) -> None:
+        self._node = node
+        self._is_moving = False
+        self._last_twist = float('-inf')
+        self._is_homing = False
+        self._is_home_asked = False
+        self._mode = ''
+        self._opening = HALF_OPEN
+        self._twists = node.create_publisher(TwistStamped, f'cmd_vel/{source}', COMMAND)
+        self._modes = node.create_publisher(String, 'jog_mode', LATCHED)
+        self._gripper = node.create_publisher(Float64, 'gripper', LATCHED)
+        node.create_subscription(Float64, 'gripper', self._on_gripper, LATCHED)
+        self._services = {
+            name: node.create_client(Trigger, f'trajectory/{name}') for name in ('home', 'stop')
+        }
+
+    def drive(self, twist: Array, frame: str, is_held: bool) -> None:
+        """Sends the twist (6,), or the one zero at release, or nothing."""
+        if is_held or self._is_moving:
+            message = TwistStamped()
+            message.header.stamp = self._node.get_clock().now().to_msg()
+            message.header.frame_id = frame
+            numbers = twist.tolist() if is_held else [0.0] * 6
+            linear, angular = message.twist.linear, message.twist.angular
+            linear.x, linear.y, linear.z, angular.x, angular.y, angular.z = numbers
+            self._twists.publish(message)
+            self._last_twist = time.monotonic()
+        self._is_moving = is_held
+
+    def choose(self, mode: str) -> None:
+        """Publishes the jog mode when it is another."""
+        if mode != self._mode:
+            self._mode = mode
+            self._modes.publish(String(data=mode))
+
+    def grip(self, step: float) -> None:
+        """Opens the gripper by `step` of its way, or closes it for negative ones."""
+        opening = min(max(self._opening + step, 0.0), 1.0)
+        if opening != self._opening:
+            self._opening = opening
+            self._gripper.publish(Float64(data=opening))
+
+    def home(self, is_held: bool) -> None:
+        """Goes home while held: asks once the machine is free, and stops it at release."""
+        if self._is_homing and not is_held and self._is_home_asked:
+            self.stop()
+        self._is_home_asked &= is_held
+        self._is_homing = is_held
+        is_free = time.monotonic() - self._last_twist > HAND_OVER
+        if is_held and is_free and not self._is_home_asked:
+            self._is_home_asked = True
+            self._ask('home')
+
+    def stop(self) -> None:
+        """Asks the trajectory node to stop whatever it does."""
+        self._ask('stop')
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether twists are sent."""
+        return self._is_moving
+
+    def close(self) -> None:
+        """Lets go."""
+        self.home(False)
+        self.drive(NO_TWIST, '', False)
+
+    def _ask(self, name: str) -> None:
+        client = self._services[name]
+        if not client.service_is_ready():
+            self._node.get_logger().warning(f'{name}: no trajectory node answers')
+            return
+        client.call_async(Trigger.Request()).add_done_callback(
+            lambda future: self._say(name, future)
+        )
+
+    def _say(self, name: str, future: Future) -> None:
+        answer = future.result()
+        logger = self._node.get_logger()
+        (logger.info if answer.success else logger.warning)(f'{name}: {answer.message}')
+
+    def _on_gripper(self, message: Float64) -> None:
+        if 0.0 <= message.data <= 1.0:
+            self._opening = message.data

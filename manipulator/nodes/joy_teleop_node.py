@@ -1,0 +1,75 @@
+"""From a gamepad's Joy messages to twists, jog modes, gripper, home and stop."""
+
+import time
+from collections.abc import Callable
+
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import Joy
+
+from manipulator.errors import InvalidInput
+from manipulator.nodes.diagnostics import OK, WARN, Diagnostics, Report
+from manipulator.nodes.intake import Intake
+from manipulator.nodes.jog_topics import JogTopics
+from manipulator.nodes.parameters import declare
+from manipulator.teleop.gamepad import Gamepad
+from manipulator.teleop.joy_reader import JoyReader
+
+GAMEPAD = 'mapping of the gamepad: a shipped name (xbox, playstation) or a path'
+SCALE = 'full stick in parts of the speeds (m/s, rad/s) that the mapping states'
+GRIPPER = 'part of its way that the gripper moves in 1 s'
+
+
+class JoyTeleop(Node):
+    """Joy in; cmd_vel/joy, jog_mode, gripper out; see docs/joystick.md."""
+
+    def __init__(self, load: Callable[[str], Gamepad]) -> None:
+        super().__init__('joy_teleop')
+        gamepad = load(declare(self, 'gamepad', 'xbox', GAMEPAD))
+        topic = declare(self, 'topic', '/joy', 'where the Joy messages come from')
+        rate = declare(self, 'rate', 50.0, 'twists per second (Hz)', (20.0, 500.0))
+        self._scale = declare(self, 'scale', 1.0, SCALE, (0.01, 10.0))
+        self._gripper_step = declare(self, 'gripper_speed', 0.5, GRIPPER, (0.05, 5.0)) / rate
+        self._reader = JoyReader(gamepad)
+        self._stops = 0
+        self._joy = Intake(self, 'joy', self._on_joy)
+        self._topics = JogTopics(self, 'joy')
+        self.create_subscription(Joy, topic, self._joy, qos_profile_sensor_data)
+        self._timer = self.create_timer(1.0 / rate, self._tick)
+        self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/joy',))
+
+    def close(self) -> None:
+        """Lets go of the machine."""
+        self._topics.close()
+
+    def _on_joy(self, message: Joy) -> None:
+        self._reader = self._reader.hear(
+            message.axes.tolist(), message.buttons.tolist(), time.monotonic()
+        )
+        if self._reader.fault:
+            raise InvalidInput(self._reader.fault)
+
+    def _tick(self) -> None:
+        wanted = self._reader.wanted(time.monotonic())
+        self._topics.choose(wanted.mode)
+        self._topics.drive(wanted.twist * self._scale, wanted.frame, wanted.is_held)
+        self._topics.home(wanted.is_homing)
+        if wanted.stops != self._stops:
+            self._stops = wanted.stops
+            self._topics.stop()
+        if wanted.grip:
+            self._topics.grip(wanted.grip * self._gripper_step)
+
+    def _report(self) -> Report:
+        wanted = self._reader.wanted(time.monotonic())
+        values = {
+            'mode': wanted.mode,
+            'frame': wanted.frame,
+            'last_joy_age_s': self._joy.age,
+            'joy_refused': self._joy.refused,
+            'last_refusal': self._joy.last_refusal,
+            'not_seen_at_rest_yet': ', '.join(self._reader.untrusted),
+        }
+        if wanted.reason:
+            return WARN, wanted.reason, values
+        return OK, 'deadman held' if wanted.is_held else 'deadman released', values

@@ -1,0 +1,233 @@
+"""The shipped joy_teleop process between Joy messages and twists."""
+
+import math
+import signal
+import time
+
+import pytest
+from sensor_msgs.msg import Joy
+
+pytestmark = pytest.mark.graph
+NAMESPACE = 'joysticks'
+LB, STOP, HOME, CLOSE = 4, 1, 7, 0
+PATIENCE = 10.0
+LONG_ENOUGH = 0.5
+"""Seconds in which a node that still sent twists would have sent a score of them."""
+
+
+class Pad:
+    """Sends Joy as a driver does: all the time, with a thumb that trembles or does not."""
+
+    def __init__(self, listener, publisher):
+        self.listener = listener
+        self.axes = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]
+        self.buttons = [0] * 11
+        self._publisher = publisher
+        self._sent = 0
+
+    def send(self, tremor=True):
+        self._sent += 1
+        axes = list(self.axes)
+        axes[7] = 0.001 * (self._sent % 2) if tremor else 0.0
+        message = Joy(axes=axes, buttons=self.buttons)
+        message.header.stamp = self.listener.node.get_clock().now().to_msg()
+        self._publisher.publish(message)
+        self.listener.spin(0.02)
+
+    def send_until(self, what, is_so, tremor=True):
+        end = time.monotonic() + PATIENCE
+        while not is_so():
+            assert time.monotonic() < end, what
+            self.send(tremor)
+
+    def send_for(self, seconds, tremor=True):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.send(tremor)
+
+    def rest(self):
+        self.axes[:6] = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0]
+        self.buttons[:] = [0] * 11
+        self.send_for(0.1)
+        self.listener.spin(0.1)
+        self.listener.twists.clear()
+
+    def drive(self):
+        """Holds the deadman and pushes along x until twists come."""
+        self.buttons[LB], self.axes[1] = 1, 1.0
+        self.send_until('driving', lambda: self.last == (0.05, 0, 0, 0, 0, 0))
+
+    @property
+    def last(self):
+        return self.listener.twists[-1][0] if self.listener.twists else None
+
+
+@pytest.fixture(scope='module')
+def connected(running, listening):
+    with running('joy_teleop', NAMESPACE, topic='joy'), listening(NAMESPACE, 'joy') as listener:
+        yield listener, listener.joy_publisher(Joy, 'joy')
+
+
+@pytest.fixture
+def pad(connected):
+    pad = Pad(*connected)
+    listener = pad.listener
+    ready = 'a publisher of twists'
+    topic = f'/{NAMESPACE}/cmd_vel/joy'
+    listener.wait(ready, lambda: listener.node.count_publishers(topic) > 0, PATIENCE)
+    pad.rest()
+    return pad
+
+
+def assert_one_zero_then_silence(pad):
+    """Of all twists that came, the last is the only zero, and nothing follows it."""
+    numbers = [twist for twist, _ in pad.listener.twists]
+    assert numbers[-1] == (0.0,) * 6
+    assert numbers.count((0.0,) * 6) == 1
+    before = len(numbers)
+    pad.send_for(LONG_ENOUGH, tremor=False)
+    assert len(pad.listener.twists) == before
+
+
+def is_zero(pad):
+    return pad.last == (0.0,) * 6
+
+
+def test_nothing_is_sent_without_the_deadman(pad):
+    pad.axes[1] = 1.0
+    pad.send_for(LONG_ENOUGH)
+    assert pad.listener.twists == []
+
+
+def test_release_sends_one_zero_and_then_nothing(pad):
+    pad.drive()
+    pad.buttons[LB] = 0
+    pad.send_until('the zero', lambda: is_zero(pad))
+    assert_one_zero_then_silence(pad)
+
+
+def test_zero_follows_when_messages_cease(pad):
+    pad.drive()
+    pad.listener.wait('the zero', lambda: is_zero(pad), 1.0)
+    before = len(pad.listener.twists)
+    pad.listener.spin(LONG_ENOUGH)
+    assert len(pad.listener.twists) == before
+    pad.send_for(LONG_ENOUGH)
+    assert len(pad.listener.twists) == before
+    pad.rest()
+    pad.drive()
+
+
+def test_zero_follows_when_a_frozen_pad_sends_on(pad):
+    pad.drive()
+    pad.send_until('the zero', lambda: is_zero(pad), tremor=False)
+    assert_one_zero_then_silence(pad)
+
+
+@pytest.mark.parametrize(
+    ('axes', 'buttons'),
+    [
+        ([], []),
+        ([0.0, 1.0], [0] * 11),
+        ([0.0, math.nan, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]),
+        ([0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0] * 4),
+    ],
+)
+def test_bad_messages_stop_the_motion_and_good_ones_go_on(pad, axes, buttons):
+    pad.drive()
+    good = pad.axes, pad.buttons
+    pad.axes, pad.buttons = axes, buttons
+
+    def send():
+        message = Joy(axes=axes, buttons=buttons)
+        pad._publisher.publish(message)
+        pad.listener.spin(0.02)
+
+    end = time.monotonic() + PATIENCE
+    while not is_zero(pad) and time.monotonic() < end:
+        send()
+    before = len(pad.listener.twists)
+    for _ in range(20):
+        send()
+    assert len(pad.listener.twists) == before
+    assert is_zero(pad)
+    pad.axes, pad.buttons = good
+    pad.drive()
+
+
+def test_first_mode_is_known_to_late_listeners_and_the_cross_changes_it(pad):
+    pad.listener.wait('the first mode', lambda: pad.listener.modes, PATIENCE)
+    pad.axes[6] = -1.0
+    pad.send_until('another mode', lambda: pad.listener.modes[-1] == 'hold_orientation')
+
+
+def test_stop_asks_the_trajectory_node_once(pad):
+    pad.drive()
+    pad.listener.asked.clear()
+    pad.buttons[STOP] = 1
+    pad.send_until('stop', lambda: 'stop' in pad.listener.asked)
+    pad.send_for(LONG_ENOUGH)
+    assert pad.listener.asked == ['stop']
+    assert is_zero(pad)
+
+
+def test_home_is_asked_while_held_and_stopped_at_release(pad):
+    pad.listener.asked.clear()
+    pad.buttons[HOME] = 1
+    pad.send_until('home', lambda: pad.listener.asked)
+    pad.send_for(LONG_ENOUGH)
+    assert pad.listener.asked == ['home']
+    pad.buttons[HOME] = 0
+    pad.send_until('stop', lambda: len(pad.listener.asked) > 1)
+    assert pad.listener.asked == ['home', 'stop']
+
+
+def test_home_stops_when_the_pad_is_lost(pad):
+    pad.listener.asked.clear()
+    pad.buttons[HOME] = 1
+    pad.send_until('home', lambda: pad.listener.asked)
+    pad.listener.wait('stop', lambda: pad.listener.asked == ['home', 'stop'], PATIENCE)
+
+
+def test_gripper_closes_while_button_and_deadman_are_held(pad):
+    pad.buttons[LB] = pad.buttons[CLOSE] = 1
+    pad.send_until('closing', lambda: len(pad.listener.openings) > 3)
+    assert pad.listener.openings == sorted(pad.listener.openings, reverse=True)
+    assert 0.0 <= pad.listener.openings[-1] < 0.5
+
+
+def test_diagnostics_tell_why_the_deadman_does_not_count(pad):
+    pad.drive()
+    name = f'{NAMESPACE}/joy_teleop'
+    pad.listener.wait(
+        'a warning',
+        lambda: (
+            'no message for' in pad.listener.diagnostics[name].message
+            if name in pad.listener.diagnostics
+            else False
+        ),
+        PATIENCE,
+    )
+
+
+def test_zero_is_the_last_word_of_a_node_that_is_ended(running, listening):
+    namespace = f'{NAMESPACE}_ended'
+    with (
+        running('joy_teleop', namespace, topic='joy') as process,
+        listening(namespace, 'joy') as listener,
+    ):
+        pad = Pad(listener, listener.joy_publisher(Joy, 'joy'))
+        topic = f'/{namespace}/cmd_vel/joy'
+        listener.wait('twists', lambda: listener.node.count_publishers(topic), PATIENCE)
+        pad.rest()
+        pad.drive()
+        process.send_signal(signal.SIGINT)
+        pad.send_until('the zero', lambda: is_zero(pad))
+        assert process.wait(10) == 0
+
+
+def test_unknown_gamepad_is_one_line_and_status_1(refusal):
+    status, said = refusal('joy_teleop', gamepad='xbix')
+    assert status == 1
+    assert "did you mean 'xbox'" in said
+    assert len(said.splitlines()) == 1
