@@ -24,9 +24,15 @@ def unwrapped(joints: Array, near: Array, low: Array, high: Array) -> Array:
 
 
 def nearest_branch(branches: Array, near: Array, low: Array, high: Array) -> Array:
-    """One (..., n) of the unwrapped branches (..., k, n); NaN where all are NaN."""
+    """One (..., n) of the unwrapped branches (..., k, n); NaN where all are NaN.
+
+    Joints that are beyond their range, by no more than `near` is, count as inside it: an arm that
+    stands there stays on its branch.
+    """
     distance = ((branches - near[..., None, :]) ** 2).sum(axis=-1)
-    cost = distance + OUTSIDE_COST * _outside(branches, low, high).sum(axis=-1)
+    lowest, highest = np.minimum(low, near), np.maximum(high, near)
+    outside = _outside(branches, lowest[..., None, :], highest[..., None, :])
+    cost = distance + OUTSIDE_COST * outside.sum(axis=-1)
     best = np.argmin(np.where(np.isnan(cost), np.inf, cost), axis=-1)
     chosen: Array = np.take_along_axis(branches, best[..., None, None], axis=-2)[..., 0, :]
     return chosen

@@ -16,6 +16,7 @@ from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import joint_message, joints_of, pose_of
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
+from manipulator.pose import Pose
 
 FORGET_AFTER = 0.25
 """Seconds after which the last command no longer says where the joints are."""
@@ -49,7 +50,7 @@ class IkNode(Node):
         is_fresh = self._commanded is not None and age < FORGET_AFTER
         near = self._commanded if is_fresh else self._measured
         joints = self._machine.kinematics.inverse(pose, near)
-        self._machine.constraints.check(pose, joints)
+        self._check_limits(pose, joints, near)
         if near is not None:
             self._check_step(joints, near, age if is_fresh else LONGEST_STEP)
         self._commanded = joints
@@ -60,6 +61,14 @@ class IkNode(Node):
             self._measured = joints_of(message, self._names)
         else:
             self._measured = self._commanded = None
+
+    def _check_limits(self, pose: Pose, joints: Array, near: Array | None) -> None:
+        """From beyond a limit, only the way back is allowed."""
+        constraints = self._machine.constraints
+        if near is not None and not constraints.admits(pose, joints):
+            start = self._machine.kinematics.forward(near, pose).pose
+            constraints = constraints.stretched_to(start, near)
+        constraints.check(pose, joints)
 
     def _check_step(self, joints: Array, near: Array, age: float) -> None:
         """Refuses a jump away from the last command, unless it leads to where the joints are."""

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import PointStamped, PoseStamped
+from geometry_msgs.msg import PointStamped, PoseStamped, TwistStamped
 from sensor_msgs.msg import JointState
 
 from manipulator.arrays import Array
@@ -55,9 +55,18 @@ def check_frame(frame_id: str, frames: tuple[str, ...]) -> None:
         raise InvalidInput(f'frame_id {frame_id!r} is unknown, needs {known}, or nothing')
 
 
-def point_of(message: PointStamped, frame: str) -> list[float]:
-    """The coordinates of a point in `frame`."""
-    check_frame(message.header.frame_id, (frame,))
+def twist_of(message: TwistStamped) -> Array:
+    """The twist (6,) in the axes of its frame."""
+    v, w = message.twist.linear, message.twist.angular
+    twist = np.array([v.x, v.y, v.z, w.x, w.y, w.z])
+    if not np.isfinite(twist).all():
+        raise InvalidInput(f'twist {twist.tolist()} is not finite')
+    return twist
+
+
+def point_of(message: PointStamped, *frames: str) -> list[float]:
+    """The coordinates of a point in its frame; an empty frame_id means the first of `frames`."""
+    check_frame(message.header.frame_id, frames)
     point = [message.point.x, message.point.y, message.point.z]
     if not all(math.isfinite(c) for c in point):
         raise InvalidInput(f'point {point} is not finite')

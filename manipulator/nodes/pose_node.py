@@ -67,9 +67,13 @@ class PoseNode(Node):
             self.get_logger().warning(f'pivot: {error}', throttle_duration_sec=1.0)
 
     def _cold(self, joints: Array) -> ForwardSolution:
-        """From home; what lies beyond a limit may be another assembly mode, so it is not used."""
+        """From home; what lies beyond a limit may be another assembly mode, so it is not used.
+
+        A solution that took no iteration is explicit, and the only one.
+        """
         solution = self._kinematics.forward(joints)
-        self._constraints.check(solution.pose, joints)
+        if solution.iterations > 0:
+            self._constraints.check(solution.pose, joints)
         return solution
 
     def _report(self) -> Report:

@@ -1,10 +1,12 @@
 """The owner of the Cartesian state: goals in, one setpoint a tick out while enabled."""
 
+import time
 from collections.abc import Callable
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PointStamped, PoseStamped
 from rclpy.node import Node
+from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 from manipulator.errors import ManipulatorError
@@ -15,6 +17,7 @@ from manipulator.nodes.jitter import Jitter
 from manipulator.nodes.messages import (
     PLATFORM_FRAME,
     goal_of,
+    joints_of,
     point_of,
     pose_message,
     pose_of,
@@ -22,12 +25,15 @@ from manipulator.nodes.messages import (
 )
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
+from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
+from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.pilot import Pilot
-from manipulator.trajectory.player import Goal
+from manipulator.trajectory.teleop import Teleop
 
 POSE_DEADLINE = 0.5
+DELAY = 'age of measured poses by the time that their correction moves the joints (s)'
 TOLERANCE = 'how far a joint may be from its commands of the last half second (rad or m)'
 
 
@@ -39,33 +45,47 @@ class TrajectoryNode(Node):
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         rate = declare(self, 'rate', 100.0, 'setpoints per second (Hz)', (10.0, 500.0))
         tolerance = declare(self, 'following_tolerance', 0.2, TOLERANCE, (0.0001, 10.0))
+        delay = declare(self, 'measurement_delay', 0.06, DELAY, (0.0, 1.0))
         self._dt = 1.0 / rate
         self._pilot = Pilot(load(name), self._dt, tolerance)
+        self._teleop = Teleop(self._pilot, delay)
         self._seen: MotionStatus | None = None
         self._published: MotionStatus | None = None
         self._refusals = 0
         self._last_refusal = ''
         self._jitter = Jitter(self._dt)
         self._connect()
-        self._answers = TrajectoryServices(self, self._pilot, self._dt)
+        self._teleop_topics = TeleopTopics(self, self._teleop)
+        self._answers = TrajectoryServices(self, self._pilot, self._teleop, self._dt)
         self._timer = self.create_timer(self._dt, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('setpoint', 'pose'))
 
     def _connect(self) -> None:
         self._goals = Intake(self, 'goal_pose', self._on_goal, self._on_bad_goal)
         self._poses = Intake(self, 'pose', self._on_pose)
+        self._joints = Intake(self, 'joint_states', self._on_joint_states)
         self._setpoints = self.create_publisher(PoseStamped, 'setpoint', COMMAND)
         self._statuses = self.create_publisher(DiagnosticStatus, 'motion_status', LATCHED)
         subscribe = self.create_subscription
         subscribe(PoseStamped, 'goal_pose', self._goals, COMMAND)
         subscribe(PoseStamped, 'pose', self._poses, MEASUREMENT)
+        subscribe(JointState, 'joint_states', self._joints, MEASUREMENT)
         subscribe(DiagnosticStatus, 'machine_state', self._on_machine_state, LATCHED)
         subscribe(Float64, 'speed_override', self._on_speed_override, COMMAND)
         subscribe(PointStamped, 'pivot', self._on_pivot, COMMAND)
 
     def _on_machine_state(self, message: DiagnosticStatus) -> None:
         values = {pair.key: pair.value for pair in message.values}
-        self._pilot.note_machine_state(message.message, values.get('followed') == 'yes')
+        is_followed, is_measured = (
+            values.get('followed') == 'yes',
+            values.get('joints') == 'measured',
+        )
+        self._pilot.note_machine_state(message.message, is_followed, is_measured)
+
+    def _on_joint_states(self, message: JointState) -> None:
+        names = self._pilot.machine.kinematics.joint_names
+        if set(names) <= set(message.name):
+            self._pilot.note_joints(joints_of(message, names))
 
     def _on_pose(self, message: PoseStamped) -> None:
         self._pilot.note_pose(pose_of(message))
@@ -94,6 +114,7 @@ class TrajectoryNode(Node):
         self._jitter.tick()
         if self._poses.age > POSE_DEADLINE:
             self._pilot.release(f'no pose for {POSE_DEADLINE} s')
+        self._teleop.drive(time.monotonic())
         pose = self._pilot.step()
         if pose is not None:
             self._setpoints.publish(pose_message(pose, self.get_clock().now().to_msg()))
@@ -130,6 +151,7 @@ class TrajectoryNode(Node):
             'result': now.result,
             'goals_refused': self._refusals,
             'last_refusal': self._last_refusal,
+            **self._teleop_topics.report(),
             'last_pose_age_s': self._poses.age,
             'tick_jitter_p50_ms': self._jitter.quantile(0.5) * 1e3,
             'tick_jitter_p99_ms': self._jitter.quantile(0.99) * 1e3,

@@ -12,18 +12,21 @@ from manipulator.errors import ManipulatorError
 from manipulator.nodes.cycle_parameters import CycleParameters
 from manipulator.nodes.messages import goal_of, pose_message, seconds
 from manipulator.pose import Pose
+from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.plan import MotionState
 from manipulator.trajectory.planner import plan_to
-from manipulator.trajectory.player import Goal, Player
+from manipulator.trajectory.player import Player
+from manipulator.trajectory.teleop import Teleop
 
 
 class TrajectoryServices:
     """Answers with what will happen, or with why it will not."""
 
-    def __init__(self, node: Node, pilot: Pilot, dt: float) -> None:
+    def __init__(self, node: Node, pilot: Pilot, teleop: Teleop, dt: float) -> None:
         self._node = node
         self._pilot = pilot
+        self._teleop = teleop
         self._dt = dt
         self._cycle = CycleParameters(node)
         for name, act in (
@@ -37,6 +40,7 @@ class TrajectoryServices:
 
     def _stop(self, player: Player) -> str:
         player.stop()
+        self._teleop.stop()
         return 'braking along the way, then holding'
 
     def _home(self, player: Player) -> str:

@@ -6,6 +6,7 @@ Times are monotonic receipt times in seconds.
 """
 
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 from manipulator.errors import Refused
 
@@ -37,9 +38,9 @@ class Arbiter:
         if source in self._blocked:
             raise Refused(f'{self._blocked[source]}: let go first')
         if owner and owner != source and not self._overrides(source, owner):
-            self._turn_away(source, f'{owner} has the machine')
+            self.turn_away(source, now, f'{owner} has the machine')
         if source == COMPUTER and is_computer_busy and owner != source:
-            self._turn_away(source, 'a goal is being driven')
+            self.turn_away(source, now, 'a goal is being driven')
         if owner and owner != source:
             self._blocked[owner] = f'{source} took the machine over'
         self._owner = source
@@ -56,7 +57,9 @@ class Arbiter:
             self._blocked[self._owner] = 'the machine was stopped'
             self._owner = ''
 
-    def _turn_away(self, source: str, reason: str) -> None:
+    def turn_away(self, source: str, now: float, reason: str) -> NoReturn:
+        """Raises Refused with the reason; the source is not heard until it has let go."""
+        self._heard_at[source] = now
         self._blocked[source] = reason
         raise Refused(f'{reason}: let go first')
 

@@ -19,11 +19,16 @@ def jog_mode(name: str, feedback: Feedback, point: Array | None = None) -> JogMo
 
     Raises Refused for an unknown name, with the nearest known one, and for look_at without point.
     """
+    check_name(name)
+    return MODES[name](feedback, point)
+
+
+def check_name(name: str) -> None:
+    """Raises Refused for an unknown name, with the nearest known one."""
     if name not in MODES:
         near = difflib.get_close_matches(name, MODES, n=1)
         hint = f', did you mean {near[0]!r}?' if near else ''
-        raise Refused(f'jog mode {name!r} is not one of {list(MODES)}{hint}')
-    return MODES[name](feedback, point)
+        raise Refused(f'jog mode {name[:80]!r} is not one of {list(MODES)}{hint}')
 
 
 def _look_at(feedback: Feedback, point: Array | None) -> JogMode:

@@ -32,13 +32,18 @@ class Demand:
 def check_plan(plan: Plan, machine: Machine, near: Array, dt: float) -> Demand:
     """Drives the plan in thought, tick by tick, from joints `near`.
 
-    Returns what it demands of speed and acceleration. Raises Refused, with time, leg, value and
+    Returns what it demands of speed and acceleration. A plan that begins beyond a limit may not
+    go further out. Raises Refused, with time, leg, value and
     limit, where the way leaves the reach of the machine.
     """
     times = np.arange(0.0, plan.checked_duration + dt, dt)
     state = plan.at(times)
     joints = joints_along(machine, state.pose, near)
-    admitted = machine.constraints.admits(state.pose, joints)
+    constraints = machine.constraints
+    admitted = constraints.admits(state.pose, joints)
+    if not admitted[0] and np.isfinite(joints[0]).all():
+        constraints = constraints.stretched_to(state.pose[0], joints[0])
+        admitted = constraints.admits(state.pose, joints)
     if not admitted.all():
         first = int(np.argmin(admitted))
         reason = why_not(machine, state.pose[first], near if first == 0 else joints[first - 1])

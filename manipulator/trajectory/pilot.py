@@ -6,6 +6,7 @@ ends that drops every goal; what comes after begins where the joints then are.
 
 from collections.abc import Sequence
 
+from manipulator.arrays import Array
 from manipulator.errors import Refused
 from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames
@@ -37,6 +38,8 @@ class Pilot:
         self._following: Following | None = None
         self._state = ''
         self._is_followed = False
+        self._is_measured = False
+        self._joints: Array | None = None
         self._override = 1.0
         self._next_frames: Frames | None = None
 
@@ -54,8 +57,14 @@ class Pilot:
         """Whether setpoints go out."""
         return self._player is not None
 
-    def note_machine_state(self, state: str, is_followed: bool) -> None:
-        """What the bridge says: its word, and whether the board follows setpoints."""
+    @property
+    def is_measured(self) -> bool:
+        """Whether poses tell where the joints are, and not only where they were sent."""
+        return self._is_measured
+
+    def note_machine_state(self, state: str, is_followed: bool, is_measured: bool = False) -> None:
+        """What the bridge says: its word, whether the board follows setpoints and measures."""
+        self._is_measured = is_measured
         is_lost = state not in DRIVABLE or (state == HOLDING and state != self._state)
         self._state = state
         if is_lost:
@@ -64,16 +73,20 @@ class Pilot:
             self._is_followed = True
             self.status = self._player.status
 
+    def note_joints(self, joints: Array) -> None:
+        """Where the joints are: on their branch the machine is taken over; they must follow."""
+        self._joints = joints
+        if self._following is not None:
+            self._following.measure(joints)
+
     def note_pose(self, T_base_platform: Pose) -> None:
         """Where the platform is: there a machine that may be driven is taken over."""
-        if self._player is None:
-            if self._state in DRIVABLE:
-                self._is_followed = False
-                self._take_over(T_base_platform)
-        elif self._following is not None:
-            pivot = self.machine.frames.pivot(T_base_platform)
-            joints = self.machine.kinematics.inverse(pivot, self._player.joints)
-            self._following.measure(joints)
+        if self._player is not None:
+            if self._is_measured:
+                self._player.note_measured(self.machine.frames.pivot(T_base_platform))
+        elif self._state in DRIVABLE and self._joints is not None:
+            self._is_followed = False
+            self._take_over(T_base_platform, self._joints)
 
     def release(self, reason: str) -> None:
         """Lets go of the machine: no setpoints until its pose is known again."""
@@ -108,9 +121,9 @@ class Pilot:
             self.status = self._player.status
         return self.machine.frames.platform(pose)
 
-    def _take_over(self, T_base_platform: Pose) -> None:
+    def _take_over(self, T_base_platform: Pose, near: Array) -> None:
         pose = self.machine.frames.pivot(T_base_platform)
-        joints = self.machine.kinematics.inverse(pose)
+        joints = self.machine.kinematics.inverse(pose, near)
         self._player = Player(self.machine, pose, joints, self._dt)
         self._player.override(self._override)
         names = self.machine.kinematics.joint_names
@@ -121,4 +134,5 @@ class Pilot:
         old, self.machine = self.machine, in_frames(self._bare, frames)
         self._next_frames = None
         if self._player is not None:
-            self._take_over(old.frames.platform(self._player.state.pose))
+            pose, joints = old.frames.platform(self._player.state.pose), self._player.joints
+            self._take_over(pose, joints)

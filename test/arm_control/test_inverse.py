@@ -101,10 +101,19 @@ def test_branches_within_the_joint_ranges_come_before_nearer_ones(arm_6r):
     branches = arm_6r.inverse_all(pose, inside)
     outside = (branches < arm_6r.limits.low) | (branches > arm_6r.limits.high)
     assert outside.any()
-    start = branches[outside.any(axis=-1)][0]
+    start = branches[outside.any(axis=-1)][0].clip(arm_6r.limits.low, arm_6r.limits.high)
     found = arm_6r.inverse(pose, start)
     assert (found >= arm_6r.limits.low).all()
     assert (found <= arm_6r.limits.high).all()
+
+
+def test_an_arm_that_stands_beyond_its_range_stays_on_its_branch(arm_6r):
+    beyond = np.radians([10.0, 20.0, 80.0, 30.0, 121.5, 0.0])
+    assert beyond[4] > arm_6r.limits.high[4]
+    found = arm_6r.inverse(arm_6r.chain.forward(beyond), beyond)
+    assert np.abs(found - beyond).max() < 1e-9
+    further_in = arm_6r.inverse(arm_6r.chain.forward(beyond - [0, 0, 0, 0, 0.01, 0]), beyond)
+    assert np.abs(further_in - beyond).max() < 0.011
 
 
 def test_a_straight_path_stays_on_one_branch(arm):

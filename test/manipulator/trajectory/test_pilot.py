@@ -16,10 +16,15 @@ def pilot():
     return Pilot(MACHINE, 0.01, 0.2)
 
 
+def see(made, pose):
+    made.note_joints(MACHINE.kinematics.inverse(pose))
+    made.note_pose(pose)
+
+
 def driving(pose=HOME):
     made = pilot()
     made.note_machine_state('enabled', is_followed=False)
-    made.note_pose(pose)
+    see(made, pose)
     made.step()
     made.note_machine_state('enabled', is_followed=True)
     return made
@@ -29,14 +34,14 @@ def run(made, ticks, is_following=True):
     for _ in range(ticks):
         pose = made.step()
         if pose is not None and is_following:
-            made.note_pose(pose)
+            see(made, pose)
     return pose
 
 
 def test_nothing_goes_out_before_the_machine_is_enabled_and_its_pose_known():
     made = pilot()
     assert made.step() is None
-    made.note_pose(HOME)
+    see(made, HOME)
     assert made.step() is None
     made.note_machine_state('enabled', is_followed=False)
     assert made.step() is None
@@ -52,7 +57,7 @@ def test_motion_begins_where_the_joints_are():
 def test_no_goal_is_taken_until_the_board_follows():
     made = pilot()
     made.note_machine_state('enabled', is_followed=False)
-    made.note_pose(HOME)
+    see(made, HOME)
     assert made.step() is not None
     with pytest.raises(Refused, match='does not follow'):
         _ = made.player
@@ -72,14 +77,14 @@ def test_leaving_enabled_drops_the_goal_and_the_next_motion_begins_where_the_joi
     assert state in made.status.reason
     assert made.step() is None
     made.note_machine_state('enabled', is_followed=False)
-    made.note_pose(ELSEWHERE)
+    see(made, ELSEWHERE)
     assert np.abs(run(made, 20).twist_to(ELSEWHERE)).max() < 1e-12
 
 
 def test_holding_board_is_taken_up_again_without_asking():
     made = driving()
     made.note_machine_state('holding', is_followed=False)
-    made.note_pose(ELSEWHERE)
+    see(made, ELSEWHERE)
     assert np.abs(made.step().twist_to(ELSEWHERE)).max() < 1e-12
 
 
@@ -87,12 +92,12 @@ def test_joints_that_do_not_follow_end_the_motion_and_name_one():
     made = driving()
     made.player.pursue(Goal(Pose.from_xyz_rpy((0.0, 0.0, 0.055)), 3.0))
     for _ in range(150):
-        made.note_pose(HOME)
+        see(made, HOME)
         if made.step() is None:
             break
     assert made.status.result == 'stopped'
     assert 'away from its command' in made.status.reason
-    made.note_pose(HOME)
+    see(made, HOME)
     assert np.abs(made.step().twist_to(HOME)).max() < 1e-12
 
 
@@ -101,7 +106,7 @@ def test_override_is_kept_over_a_new_enabling():
     made.override(0.0)
     made.note_machine_state('disarmed', is_followed=False)
     made.note_machine_state('enabled', is_followed=False)
-    made.note_pose(HOME)
+    see(made, HOME)
     made.note_machine_state('enabled', is_followed=True)
     made.player.pursue(Goal(ELSEWHERE, 1.0))
     assert np.abs(run(made, 50).twist_to(HOME)).max() < 1e-6

@@ -1,0 +1,62 @@
+"""The topics of jogging: one twist topic a source, the mode, the point to look at."""
+
+import time
+
+import numpy as np
+from geometry_msgs.msg import PointStamped, TwistStamped
+from rclpy.node import Node
+from std_msgs.msg import String
+
+from manipulator.errors import ManipulatorError
+from manipulator.nodes.intake import Intake
+from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, point_of, twist_of
+from manipulator.nodes.qos import COMMAND
+from manipulator.teleop.arbiter import SOURCES
+from manipulator.trajectory.teleop import Teleop
+
+
+class TeleopTopics:
+    """cmd_vel of every source, jog_mode and look_at; see docs/teleop.md."""
+
+    def __init__(self, node: Node, teleop: Teleop) -> None:
+        self._node = node
+        self._teleop = teleop
+        self._intakes = [self._subscribe(source) for source in SOURCES]
+        node.create_subscription(String, 'jog_mode', self._on_mode, COMMAND)
+        node.create_subscription(PointStamped, 'look_at', self._on_look_at, COMMAND)
+
+    def report(self) -> dict[str, object]:
+        """What /diagnostics tells of jogging."""
+        worst = max(self._intakes, key=lambda intake: intake.refused)
+        return {
+            'jogged_by': self._teleop.owner(time.monotonic()),
+            'jog_mode': self._teleop.mode,
+            'twists_refused': sum(intake.refused for intake in self._intakes),
+            'last_twist_refusal': worst.last_refusal,
+        }
+
+    def _subscribe(self, source: str) -> Intake:
+        def accept(message: TwistStamped) -> None:
+            frame = message.header.frame_id
+            self._teleop.hear(source, twist_of(message), frame, time.monotonic())
+
+        intake = Intake(self._node, source, accept)
+        self._node.create_subscription(TwistStamped, source, intake, COMMAND)
+        return intake
+
+    def _on_mode(self, message: String) -> None:
+        try:
+            self._teleop.set_mode(message.data)
+        except ManipulatorError as error:
+            self._warn(f'jog_mode: {error}')
+
+    def _on_look_at(self, message: PointStamped) -> None:
+        try:
+            point = np.array(point_of(message, BASE_FRAME, WORK_FRAME))
+            is_in_work = message.header.frame_id == WORK_FRAME
+            self._teleop.look_at(point, is_in_work)
+        except ManipulatorError as error:
+            self._warn(f'look_at: {error}')
+
+    def _warn(self, text: str) -> None:
+        self._node.get_logger().warning(text, throttle_duration_sec=1.0)

@@ -1,0 +1,96 @@
+"""From the sources of twists to the player: who has the machine, in which mode, what he wants."""
+
+import numpy as np
+
+from manipulator.arrays import Array, frozen
+from manipulator.errors import Refused
+from manipulator.teleop.arbiter import Arbiter
+from manipulator.teleop.command_frames import check_axes
+from manipulator.teleop.feedback import Feedback
+from manipulator.teleop.jog_mode import JogMode
+from manipulator.teleop.modes import check_name, jog_mode
+from manipulator.trajectory.jogging import Wish
+from manipulator.trajectory.pilot import Pilot
+
+PLAIN = 'free'
+
+
+class Teleop:
+    """Hears twists and modes; `drive` hands what counts to the player, once a tick.
+
+    Times are monotonic, in seconds.
+    """
+
+    def __init__(self, pilot: Pilot, delay: float) -> None:
+        """delay: how old a measured pose is by the time that its correction moves the joints."""
+        self._pilot = pilot
+        self._delay = delay
+        self._arbiter = Arbiter()
+        self._wish: tuple[Array, str] = (np.zeros(6), '')
+        self._name = PLAIN
+        self._point: Array | None = None
+        self._is_measured = pilot.is_measured
+        self._made_name, self._mode = PLAIN, self._made(PLAIN)
+
+    @property
+    def mode(self) -> str:
+        """The name of the jog mode that was asked for last."""
+        return self._name
+
+    def owner(self, now: float) -> str:
+        """The source that has the machine, '' where nobody has."""
+        return self._arbiter.owner(now)
+
+    def hear(self, source: str, twist: Array, frame: str, now: float) -> None:
+        """A twist (6,) of the pivot in the axes of `frame`; Refused says why it does not count."""
+        check_axes(frame)
+        try:
+            is_busy = self._pilot.player.is_busy
+        except Refused as refusal:
+            self._arbiter.turn_away(source, now, str(refusal))
+        self._arbiter.hear(source, now, is_busy)
+        self._wish = frozen(twist), frame
+
+    def set_mode(self, name: str) -> None:
+        """Another jog mode; Refused for unknown names, the last one stays.
+
+        look_at waits for its point: until there is one, the last mode stays as well.
+        """
+        check_name(name)
+        self._name = name
+        self._take(name)
+
+    def look_at(self, point: Array, is_in_work: bool = False) -> None:
+        """The point (3,) of the mode look_at, in the base frame or the work frame."""
+        to_work = self._pilot.machine.frames.T_base_work.inverse()
+        self._point = frozen(point if is_in_work else to_work.transform(point[None])[0])
+        self._take(self._name)
+
+    def stop(self) -> None:
+        """Whoever has the machine is not heard until he has let go."""
+        self._arbiter.stop()
+
+    def drive(self, now: float) -> None:
+        """Hands on what the source that has the machine wants."""
+        try:
+            player = self._pilot.player
+        except Refused:
+            self._arbiter.stop()
+            return
+        source = self._arbiter.owner(now)
+        if not source:
+            player.jog(None)
+            return
+        if self._pilot.is_measured != self._is_measured:
+            self._is_measured = self._pilot.is_measured
+            self._take(self._made_name)
+        twist, frame = self._wish
+        player.jog(Wish(source, twist, frame, self._mode))
+
+    def _take(self, name: str) -> None:
+        self._mode = self._made(name)
+        self._made_name = name
+
+    def _made(self, name: str) -> JogMode:
+        feedback = Feedback.for_delay(self._delay if self._is_measured else 0.0)
+        return jog_mode(name, feedback, self._point)
