@@ -5,15 +5,12 @@ as docs/protocol.md says. The simulated chip has the same three methods.
 """
 
 from bridge.board_modes import PULSE_PERIOD_US, BoardModes, BoardSettings
-from bridge.frames import DELIMITER, Unreadable, encode
+from bridge.frames import DELIMITER, Unreadable, code_of, encode
 from bridge.framing import FrameReader
 from bridge.messages import (
     NO_JOINT,
     Ack,
-    Arm,
-    Clear,
     Command,
-    Disarm,
     Fault,
     FaultCode,
     Hello,
@@ -79,10 +76,10 @@ class Board:
             match frame.message:
                 case Setpoint():
                     self._take_setpoint(frame.message, frame.sequence)
-                case Arm() | Disarm() | Stop() | Clear():
-                    self._take_command(frame.message, frame.sequence)
+                case Hello() | State() | Ack() | Fault():
+                    self._refuse(Fault(FaultCode.UNKNOWN_TYPE, NO_JOINT, code_of(frame.message)))
                 case _:
-                    self._refuse(Fault(FaultCode.UNKNOWN_TYPE, NO_JOINT, 0))
+                    self._take_command(frame.message, frame.sequence)
         for unreadable in self._reader.unreadable:
             self._refuse(_fault_of(unreadable))
 

@@ -7,6 +7,8 @@ the start, as the board counts them.
 from dataclasses import dataclass
 from typing import Literal
 
+from bridge.board_courses import Solver
+from bridge.board_programs import Programs, Step
 from bridge.calibration import Calibration
 from bridge.messages import (
     MAX_DEADLINE_MS,
@@ -25,6 +27,7 @@ from bridge.messages import (
     Setpoint,
     Stop,
 )
+from bridge.program_messages import Finish, Play
 from bridge.pulse_drive import PulseDrive
 from bridge.servo_config import BoardConfig
 
@@ -33,11 +36,15 @@ UNDERVOLTAGE_DELAY_US = 500_000
 
 LATCHED = {Mode.STOPPED: Result.STOPPED, Mode.FAULT: Result.FAULT}
 FOLLOWING = (Mode.ARMED, Mode.HOLDING)
+BY_ITSELF = (Mode.CHECKING, Mode.PLAYING)
 
 
 @dataclass(frozen=True)
 class BoardSettings:
-    """What the firmware has from the machine file; ranges and speeds in counts, per channel."""
+    """What the firmware has from the machine file; ranges and speeds in counts, per channel.
+
+    solve: the inverse kinematics by which the board plays cycles; None: it has none.
+    """
 
     count_ranges: tuple[tuple[int, int], ...]
     count_speeds: tuple[float, ...]
@@ -46,6 +53,7 @@ class BoardSettings:
     minimum_battery_mv: int = 0
     boot_us: int = 300_000
     version: int = PROTOCOL_VERSION
+    solve: Solver | None = None
 
     @classmethod
     def from_config(cls, config: BoardConfig, boot_s: float) -> 'BoardSettings':
@@ -75,6 +83,7 @@ class BoardModes:
         self._low_since_us: int | None = None
         self._park: tuple[int, ...] = ()
         self._energise_at_us = 0
+        self._programs = Programs(settings.count_ranges, settings.count_speeds, settings.solve)
 
     @property
     def flags(self) -> Flag:
@@ -90,6 +99,8 @@ class BoardModes:
         fault = self._watch_battery(now_us, battery_mv)
         self._watch_deadline(now_us)
         self._energise_next(now_us)
+        if fault is None and self.mode in BY_ITSELF:
+            fault = self._play_on()
         self.drive.advance(PULSE_PERIOD_US * 1e-6)
         return fault
 
@@ -115,6 +126,14 @@ class BoardModes:
                 return Result.OK
             case Clear():
                 return self._clear()
+            case Play(program, is_loop):
+                return self._play(program, is_loop)
+            case Finish():
+                self._programs.finish()
+                return Result.OK
+            case _:
+                is_playing = self.mode in BY_ITSELF
+                return Result.NO_PROGRAM if is_playing else self._programs.store(command)
 
     def _arm(self, park: tuple[int, ...], now_us: int) -> Result:
         if self.mode in LATCHED:
@@ -125,7 +144,7 @@ class BoardModes:
             return Result.WRONG_JOINTS
         if self._range_fault(park) is not None:
             return Result.OUT_OF_RANGE
-        if self.mode in FOLLOWING:
+        if self.mode in (*FOLLOWING, *BY_ITSELF):
             self._hold(Mode.ARMED)
         elif self.mode is Mode.DISARMED:
             self._park = park
@@ -151,6 +170,29 @@ class BoardModes:
             self.drive.release()
             self._hold(Mode.DISARMED)
         return Result.OK
+
+    def _play(self, program: int, is_loop: bool) -> Result:
+        if self.mode in LATCHED:
+            return LATCHED[self.mode]
+        if self.mode not in FOLLOWING:
+            return Result.NOT_ARMED
+        present = tuple(pulse for pulse in self.drive.pulses if pulse is not None)
+        result = self._programs.begin(program, is_loop, present)
+        if result is Result.OK:
+            self._hold(Mode.CHECKING)
+        return result
+
+    def _play_on(self) -> Fault | None:
+        """One period of a program; what cannot be reached ends it where the joints are."""
+        step, counts = self._programs.step()
+        if step in (Step.UNREACHABLE, Step.TOO_FAST):
+            self._hold(Mode.ARMED)
+            code = FaultCode.OUT_OF_REACH if step is Step.UNREACHABLE else FaultCode.TOO_FAST
+            return Fault(code, NO_JOINT, self._programs.trouble_ms)
+        if step is not Step.CHECKING:
+            self.mode = Mode.PLAYING if step is Step.MOVING else Mode.ARMED
+            self.drive.aim([round(count) for count in counts])
+        return None
 
     def _hold(self, mode: Mode) -> None:
         """Stands still in `mode`, with no deadline running."""
@@ -194,7 +236,7 @@ class BoardModes:
         if self._low_since_us is None:
             self._low_since_us = now_us
         is_lasting = now_us - self._low_since_us >= UNDERVOLTAGE_DELAY_US
-        if not is_lasting or self.mode not in (Mode.ARMING, *FOLLOWING):
+        if not is_lasting or self.mode in (Mode.DISARMED, *LATCHED):
             return None
         self._hold(Mode.FAULT)
         self.fault = FaultCode.UNDERVOLTAGE

@@ -5,11 +5,12 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bridge.board import Board
+from bridge.board_courses import Solver
 from bridge.board_modes import BoardSettings
 from bridge.calibration import COUNTS_PER_US, Calibration
 from bridge.fake_line import FakeLine
@@ -30,12 +31,14 @@ class FakeMachine:
     calibration: Calibration
 
     @classmethod
-    def from_config(cls, config: BoardConfig, boot_s: float, hysteresis: float) -> 'FakeMachine':
-        """Unpowered at park; hysteresis in rad (or m)."""
+    def from_config(
+        cls, config: BoardConfig, boot_s: float, hysteresis: float, solve: Solver | None = None
+    ) -> 'FakeMachine':
+        """Unpowered at park; hysteresis in rad (or m); `solve` is what cycles are played by."""
         calibration = Calibration.from_config(config.servos)
         dead_band = COUNTS_PER_US * config.simulation.dead_band_us / np.abs(calibration.scale)
         servos = Servos.at_rest(calibration.park, calibration.speed, dead_band, hysteresis)
-        settings = BoardSettings.from_config(config, boot_s)
+        settings = replace(BoardSettings.from_config(config, boot_s), solve=solve)
         return cls(Board(settings, round(1000 * config.simulation.battery_v)), servos, calibration)
 
     def step(self, dt: float) -> None:

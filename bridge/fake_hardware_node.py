@@ -10,10 +10,12 @@ from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 
 from bridge.board_thread import BoardThread, FakeMachine
+from bridge.calibration import Calibration
 from bridge.fake_line import FakeLine
 from bridge.messages import ResetCause
 from bridge.servo_config import BoardConfig, SimulationConfig
 from hexarm import machines
+from hexarm.board_solver import board_solver
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, LinkError
 from manipulator.nodes.parameters import declare
@@ -49,7 +51,8 @@ class FakeHardware(Node):
             raise InvalidInput(f'parameter preset: {preset!r} is not one of {list(PRESETS)}')
         config = BoardConfig.from_machine(machines.read(name), str(machines.find(name)))
         hysteresis = math.radians(own) if own >= 0 else PRESETS[preset] * config.hysteresis
-        machine = FakeMachine.from_config(config, boot_s, hysteresis)
+        solve = board_solver(machines.load(name), Calibration.from_config(config.servos))
+        machine = FakeMachine.from_config(config, boot_s, hysteresis, solve)
         self._names = machine.calibration.names
         self._path = Path(link)
         self._board = machine.board

@@ -32,6 +32,14 @@ from bridge.messages import (
     State,
     Stop,
 )
+from bridge.program_messages import (
+    CycleAxis,
+    Finish,
+    Play,
+    TableBegin,
+    TableEnd,
+    TableRow,
+)
 from manipulator.errors import InvalidInput, ProtocolError
 
 MAX_WIRE_BYTES = 63
@@ -44,6 +52,9 @@ _HELLO = struct.Struct('<BBBI')
 _STATE = struct.Struct('<HHBBBHHHHH')
 _ACK = struct.Struct('<HB')
 _FAULT = struct.Struct('<BBH')
+_CYCLE_AXIS = struct.Struct('<BfHf')
+_TABLE_BEGIN = struct.Struct('<HH')
+_PLAY = struct.Struct('<B?')
 
 
 @dataclass(frozen=True)
@@ -74,6 +85,11 @@ def encode(message: Message, sequence: int) -> bytes:
     if len(wire) > MAX_WIRE_BYTES:
         raise InvalidInput(f'{message} takes {len(wire)} bytes, at most {MAX_WIRE_BYTES}')
     return wire
+
+
+def code_of(message: Message) -> int:
+    """The type byte of a message's frame."""
+    return _ENCODERS[type(message)][0]
 
 
 def decode(stuffed: bytes) -> Frame:
@@ -158,6 +174,11 @@ def _unpack_fault(payload: bytes) -> Fault:
     return Fault(FaultCode(code), joint, value)
 
 
+def _unpack_row(payload: bytes) -> TableRow:
+    (index,) = _U16.unpack_from(payload)
+    return TableRow(index, _unpack_counts(payload[_U16.size :]))
+
+
 def _unpack_empty(message: Message) -> Callable[[bytes], Message]:
     def unpack(payload: bytes) -> Message:
         if payload:
@@ -175,6 +196,15 @@ _ENCODERS: dict[type, _Encoder] = {
     Disarm: (0x03, lambda m: b''),
     Stop: (0x04, lambda m: b''),
     Clear: (0x05, lambda m: b''),
+    CycleAxis: (
+        0x06,
+        lambda m: _CYCLE_AXIS.pack(m.axis, m.amplitude, m.frequency_mhz, m.phase),
+    ),
+    TableBegin: (0x07, lambda m: _TABLE_BEGIN.pack(m.rows, m.step_ms)),
+    TableRow: (0x08, lambda m: _U16.pack(m.index) + _pack_counts(m.counts)),
+    TableEnd: (0x09, lambda m: _U16.pack(m.crc)),
+    Play: (0x0A, lambda m: _PLAY.pack(m.program, m.is_loop)),
+    Finish: (0x0B, lambda m: b''),
     Hello: (0x81, lambda m: _HELLO.pack(m.version, m.reset_cause, m.joint_count, m.uptime_ms)),
     State: (0x82, _pack_state),
     Ack: (0x83, lambda m: _ACK.pack(m.sequence, m.result)),
@@ -187,6 +217,12 @@ _DECODERS: dict[int, Callable[[bytes], Message]] = {
     0x03: _unpack_empty(Disarm()),
     0x04: _unpack_empty(Stop()),
     0x05: _unpack_empty(Clear()),
+    0x06: lambda payload: CycleAxis(*_CYCLE_AXIS.unpack(payload)),
+    0x07: lambda payload: TableBegin(*_TABLE_BEGIN.unpack(payload)),
+    0x08: _unpack_row,
+    0x09: lambda payload: TableEnd(*_U16.unpack(payload)),
+    0x0A: lambda payload: Play(*_PLAY.unpack(payload)),
+    0x0B: _unpack_empty(Finish()),
     0x81: _unpack_hello,
     0x82: _unpack_state,
     0x83: _unpack_ack,

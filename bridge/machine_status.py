@@ -11,7 +11,7 @@ OK, WARN, ERROR = 0, 1, 2
 @dataclass(frozen=True)
 class MachineStatus:
     """level is OK, WARN or ERROR; `word` one of disconnected, booting, disarmed, arming, enabled,
-    holding, unclaimed, stopped, fault; `reason` is empty where all is well.
+    holding, unclaimed, playing, stopped, fault; `reason` is empty where all is well.
     """
 
     level: int
@@ -26,6 +26,8 @@ _MODES = {
     Mode.HOLDING: MachineStatus(WARN, 'holding', 'no joint command within the deadline'),
     Mode.STOPPED: MachineStatus(WARN, 'stopped', 'stopped: ~/clear_fault ends it'),
     Mode.FAULT: MachineStatus(ERROR, 'fault'),
+    Mode.CHECKING: MachineStatus(OK, 'playing', 'the board checks its program'),
+    Mode.PLAYING: MachineStatus(OK, 'playing', 'the board plays its program'),
 }
 _FAULTS = {FaultCode.UNDERVOLTAGE: 'the battery is too low'}
 

@@ -8,6 +8,8 @@ import enum
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from bridge.program_messages import Finish, Play, ProgramPart
+
 PROTOCOL_VERSION = 1
 MAX_JOINTS = 8
 MIN_DEADLINE_MS, MAX_DEADLINE_MS = 1, 2000
@@ -22,6 +24,8 @@ class Mode(enum.IntEnum):
     HOLDING = 3  # the last setpoint's deadline passed; the next one is followed again
     STOPPED = 4  # STOP: holds where it is, until CLEAR
     FAULT = 5  # holds where it is, until CLEAR
+    CHECKING = 6  # computes whether a program can be played; nothing moves
+    PLAYING = 7  # moves by itself, host or no host
 
 
 class Known(enum.IntEnum):
@@ -60,6 +64,12 @@ class Result(enum.IntEnum):
     UNDERVOLTAGE = 4
     OUT_OF_RANGE = 5
     WRONG_JOINTS = 6
+    TOO_LARGE = 7  # more rows than the board's memory holds
+    BAD_TABLE = 8  # a row out of turn, a row too few, or the CRC over the whole does not fit
+    TOO_FAST = 9  # a servo could not follow
+    NOT_ARMED = 10
+    NOT_AT_START = 11  # the joints are too far from where the program begins
+    NO_PROGRAM = 12
 
 
 REASONS = {
@@ -69,6 +79,12 @@ REASONS = {
     Result.UNDERVOLTAGE: 'the battery is too low',
     Result.OUT_OF_RANGE: 'a position is out of range',
     Result.WRONG_JOINTS: 'the board has another number of joints',
+    Result.TOO_LARGE: 'the table has more rows than the board can hold',
+    Result.BAD_TABLE: 'the table did not arrive whole',
+    Result.TOO_FAST: 'a servo could not follow',
+    Result.NOT_ARMED: 'the servos are off',
+    Result.NOT_AT_START: 'the joints are too far from where the program begins',
+    Result.NO_PROGRAM: 'the board has no such program, or is playing',
 }
 """Why a command was not obeyed, for people."""
 
@@ -85,6 +101,8 @@ class FaultCode(enum.IntEnum):
     UNKNOWN_TYPE = 6  # value: the frame's type
     MALFORMED = 7  # value: the frame's type
     UNDERVOLTAGE = 8  # value: millivolts; the mode becomes FAULT
+    OUT_OF_REACH = 9  # value: when in the program, in ms; the program has ended
+    TOO_FAST = 10  # value: when in the program, in ms; the program has ended
 
 
 NO_JOINT = 255
@@ -156,7 +174,7 @@ class State:
 
 @dataclass(frozen=True)
 class Ack:
-    """Board: the answer to ARM, DISARM, STOP and CLEAR."""
+    """Board: the answer to everything that a host says but SETPOINT."""
 
     sequence: int
     result: Result
@@ -171,7 +189,7 @@ class Fault:
     value: int
 
 
-Command: TypeAlias = Arm | Disarm | Stop | Clear
+Command: TypeAlias = Arm | Disarm | Stop | Clear | ProgramPart | Play | Finish
 Message: TypeAlias = Setpoint | Command | Hello | State | Ack | Fault
 
 

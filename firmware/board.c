@@ -2,12 +2,15 @@
 
 #include <avr/wdt.h>
 #include <stdbool.h>
+#include <string.h>
 
 #include "clock.h"
+#include "cycle.h"
 #include "link.h"
 #include "machine.h"
 #include "motion.h"
 #include "safety.h"
+#include "table.h"
 
 #define HELLO_PERIOD_MS 250
 #define HOST_SILENCE_MS 500
@@ -90,6 +93,13 @@ static void take_setpoint(const Frame *frame)
         refuse(fault);
 }
 
+static float get_float(const uint8_t *at)
+{
+    float value;
+    memcpy(&value, at, sizeof value); /* little endian, as the chip is */
+    return value;
+}
+
 static uint8_t arm(const Frame *frame)
 {
     uint16_t park[MAX_JOINTS];
@@ -97,8 +107,19 @@ static uint8_t arm(const Frame *frame)
     return safety_arm(park, joints);
 }
 
+static uint8_t take_row(const Frame *frame)
+{
+    uint16_t counts[MAX_JOINTS];
+    uint8_t joints = read_counts(frame->payload + 2, frame->length - 2, counts);
+    return table_row(get16(frame->payload), counts, joints);
+}
+
 static uint8_t obey(const Frame *frame)
 {
+    const uint8_t *payload = frame->payload;
+    bool changes_program = frame->type >= TYPE_CYCLE_AXIS && frame->type <= TYPE_TABLE_END;
+    if (changes_program && safety_is_playing())
+        return RESULT_NO_PROGRAM; /* not the one that is being played */
     switch (frame->type) {
     case TYPE_ARM:
         return arm(frame);
@@ -106,16 +127,46 @@ static uint8_t obey(const Frame *frame)
         return safety_disarm();
     case TYPE_CLEAR:
         return safety_clear();
+    case TYPE_CYCLE_AXIS:
+        return cycle_set(payload[0], get_float(payload + 1), get16(payload + 5),
+                         get_float(payload + 7));
+    case TYPE_TABLE_BEGIN:
+        return table_begin(get16(payload), get16(payload + 2));
+    case TYPE_TABLE_ROW:
+        return take_row(frame);
+    case TYPE_TABLE_END:
+        return table_end(get16(payload));
+    case TYPE_PLAY:
+        return safety_play(payload[0], payload[1]);
+    case TYPE_FINISH:
+        return safety_finish();
     default:
         return safety_stop();
     }
 }
 
+static bool are_counts(uint8_t length)
+{
+    return length && length % 2 == 0 && length <= 2 * MAX_JOINTS;
+}
+
 static bool is_well_formed(const Frame *frame)
 {
-    if (frame->type != TYPE_ARM)
+    switch (frame->type) {
+    case TYPE_ARM:
+        return are_counts(frame->length);
+    case TYPE_CYCLE_AXIS:
+        return frame->length == 11;
+    case TYPE_TABLE_BEGIN:
+        return frame->length == 4;
+    case TYPE_TABLE_ROW:
+        return frame->length > 2 && are_counts(frame->length - 2);
+    case TYPE_TABLE_END:
+    case TYPE_PLAY:
+        return frame->length == 2;
+    default:
         return frame->length == 0;
-    return frame->length && frame->length % 2 == 0 && frame->length <= 2 * MAX_JOINTS;
+    }
 }
 
 static void take_command(const Frame *frame)
@@ -148,19 +199,12 @@ static void take_command(const Frame *frame)
 
 static void take(const Frame *frame)
 {
-    switch (frame->type) {
-    case TYPE_SETPOINT:
+    if (frame->type == TYPE_SETPOINT)
         take_setpoint(frame);
-        break;
-    case TYPE_ARM:
-    case TYPE_DISARM:
-    case TYPE_STOP:
-    case TYPE_CLEAR:
+    else if (frame->type >= TYPE_ARM && frame->type <= TYPE_FINISH)
         take_command(frame);
-        break;
-    default:
+    else
         refuse((Fault){FAULT_UNKNOWN_TYPE, NO_JOINT, frame->type});
-    }
 }
 
 static void say_hello(void)

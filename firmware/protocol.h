@@ -13,6 +13,12 @@ enum Type {
     TYPE_DISARM = 0x03,
     TYPE_STOP = 0x04,
     TYPE_CLEAR = 0x05,
+    TYPE_CYCLE_AXIS = 0x06,
+    TYPE_TABLE_BEGIN = 0x07,
+    TYPE_TABLE_ROW = 0x08,
+    TYPE_TABLE_END = 0x09,
+    TYPE_PLAY = 0x0A,
+    TYPE_FINISH = 0x0B,
     TYPE_HELLO = 0x81,
     TYPE_STATE = 0x82,
     TYPE_ACK = 0x83,
@@ -26,7 +32,11 @@ enum Mode {
     MODE_HOLDING = 3,  /* the last setpoint's deadline passed */
     MODE_STOPPED = 4,  /* holds until CLEAR */
     MODE_FAULT = 5,    /* holds until CLEAR */
+    MODE_CHECKING = 6, /* computes whether a program can be played; nothing moves */
+    MODE_PLAYING = 7,  /* moves by itself, host or no host */
 };
+
+enum Program { PROGRAM_CYCLE = 1, PROGRAM_TABLE = 2, PROGRAM_FLASH_TABLE = 3 };
 
 enum Known { KNOWN_UNKNOWN = 0, KNOWN_COMMANDED = 1 };
 
@@ -40,6 +50,12 @@ enum Result {
     RESULT_UNDERVOLTAGE = 4,
     RESULT_OUT_OF_RANGE = 5,
     RESULT_WRONG_JOINTS = 6,
+    RESULT_TOO_LARGE = 7,
+    RESULT_BAD_TABLE = 8,
+    RESULT_TOO_FAST = 9,
+    RESULT_NOT_ARMED = 10,
+    RESULT_NOT_AT_START = 11,
+    RESULT_NO_PROGRAM = 12,
 };
 
 enum FaultCode {
@@ -52,4 +68,6 @@ enum FaultCode {
     FAULT_UNKNOWN_TYPE = 6,
     FAULT_MALFORMED = 7,
     FAULT_UNDERVOLTAGE = 8,
+    FAULT_OUT_OF_REACH = 9,
+    FAULT_TOO_FAST = 10,
 };

@@ -5,11 +5,11 @@
 #include "clock.h"
 #include "machine.h"
 #include "motion.h"
+#include "play.h"
+#include "servo.h"
 
 #define UNDERVOLTAGE_DELAY_MS 500
 
-static const uint16_t LOWEST[JOINT_COUNT] = LOWEST_COUNTS;
-static const uint16_t HIGHEST[JOINT_COUNT] = HIGHEST_COUNTS;
 static const uint16_t MINIMUM_MV = MINIMUM_BATTERY_MV; /* 0 where no battery is watched */
 static const Fault NO_FAULT = {FAULT_NONE, NO_JOINT, 0};
 
@@ -23,12 +23,14 @@ static bool is_undervoltage;
 static uint32_t low_since_ms;
 static uint16_t park_counts[JOINT_COUNT];
 static uint32_t energise_ms;
+static uint8_t program_after_arming; /* 0: none; the start button asked for it */
 
 static void hold(uint8_t new_mode)
 {
     motion_halt();
     has_deadline = false;
     is_deadline_passed = false;
+    program_after_arming = 0;
     mode = new_mode;
 }
 
@@ -42,18 +44,14 @@ static bool is_following(void)
     return mode == MODE_ARMED || mode == MODE_HOLDING;
 }
 
+bool safety_is_playing(void)
+{
+    return mode == MODE_CHECKING || mode == MODE_PLAYING;
+}
+
 static uint8_t latched_result(void)
 {
     return mode == MODE_STOPPED ? RESULT_STOPPED : RESULT_FAULT;
-}
-
-/* The first joint whose count is out of range; NO_JOINT where none is. */
-static uint8_t out_of_range(const uint16_t *counts)
-{
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
-        if (counts[i] < LOWEST[i] || counts[i] > HIGHEST[i])
-            return i;
-    return NO_JOINT;
 }
 
 Fault safety_follow(uint16_t deadline_ms, const uint16_t *counts, uint8_t joints)
@@ -64,7 +62,7 @@ Fault safety_follow(uint16_t deadline_ms, const uint16_t *counts, uint8_t joints
         return (Fault){FAULT_WRONG_JOINTS, NO_JOINT, joints};
     if (deadline_ms < MIN_DEADLINE_MS || deadline_ms > MAX_DEADLINE_MS)
         return (Fault){FAULT_BAD_DEADLINE, NO_JOINT, deadline_ms};
-    uint8_t joint = out_of_range(counts);
+    uint8_t joint = servo_out_of_range(counts);
     if (joint != NO_JOINT)
         return (Fault){FAULT_OUT_OF_RANGE, joint, counts[joint]};
     motion_aim(counts);
@@ -83,9 +81,9 @@ uint8_t safety_arm(const uint16_t *park, uint8_t joints)
         return RESULT_UNDERVOLTAGE;
     if (joints != JOINT_COUNT)
         return RESULT_WRONG_JOINTS;
-    if (out_of_range(park) != NO_JOINT)
+    if (servo_out_of_range(park) != NO_JOINT)
         return RESULT_OUT_OF_RANGE;
-    if (is_following()) {
+    if (is_following() || safety_is_playing()) {
         hold(MODE_ARMED);
     } else if (mode == MODE_DISARMED) {
         for (uint8_t i = 0; i < JOINT_COUNT; i++)
@@ -125,6 +123,51 @@ uint8_t safety_clear(void)
     return RESULT_OK;
 }
 
+uint8_t safety_play(uint8_t program, bool is_loop)
+{
+    if (is_latched())
+        return latched_result();
+    if (!is_following())
+        return RESULT_NOT_ARMED;
+    uint8_t result = play_begin(program, is_loop);
+    if (result == RESULT_OK)
+        hold(MODE_CHECKING);
+    return result;
+}
+
+uint8_t safety_finish(void)
+{
+    play_finish();
+    return RESULT_OK;
+}
+
+/* What the start button plays: what was uploaded, else what is in flash, else the cycle. */
+static uint8_t program_to_start(void)
+{
+    static const uint8_t CHOICE[] = {PROGRAM_TABLE, PROGRAM_FLASH_TABLE, PROGRAM_CYCLE};
+    for (uint8_t i = 0; i < sizeof CHOICE; i++)
+        if (play_has(CHOICE[i]) == RESULT_OK)
+            return CHOICE[i];
+    return 0;
+}
+
+/* Without a host: arm where the program begins, play it in a loop, end it; or forget a stop. */
+static void press_start(void)
+{
+    uint8_t program = program_to_start();
+    if (is_latched()) {
+        safety_clear();
+    } else if (safety_is_playing()) {
+        play_finish();
+    } else if (is_following()) {
+        safety_play(program, true);
+    } else if (mode == MODE_DISARMED && program) {
+        uint16_t start[JOINT_COUNT];
+        if (play_start_counts(program, start) && safety_arm(start, JOINT_COUNT) == RESULT_OK)
+            program_after_arming = program;
+    }
+}
+
 static void watch_deadline(void)
 {
     if (!has_deadline || (int32_t)(clock_us() - deadline_us) < 0)
@@ -140,6 +183,8 @@ void safety_watch(void)
     buttons_read();
     if (buttons_is_stop() && mode != MODE_STOPPED)
         safety_stop();
+    if (buttons_take_start() && !buttons_is_stop())
+        press_start();
     watch_deadline();
 }
 
@@ -156,7 +201,7 @@ static Fault watch_battery(void)
         low_since_ms = now_ms;
     is_undervoltage = true;
     bool is_lasting = now_ms - low_since_ms >= UNDERVOLTAGE_DELAY_MS;
-    if (!is_lasting || !(mode == MODE_ARMING || is_following()))
+    if (!is_lasting || is_latched() || mode == MODE_DISARMED)
         return NO_FAULT;
     hold(MODE_FAULT);
     fault = FAULT_UNDERVOLTAGE;
@@ -168,7 +213,10 @@ static void energise_next(void)
     if (mode != MODE_ARMING || (int32_t)(clock_period_ms() - energise_ms) < 0)
         return;
     if (motion_is_all_on()) {
+        uint8_t program = program_after_arming;
         hold(MODE_ARMED);
+        if (program)
+            safety_play(program, true);
         return;
     }
     uint8_t channel = 0;
@@ -178,10 +226,27 @@ static void energise_next(void)
     energise_ms = clock_period_ms() + ARM_INTERVAL_MS;
 }
 
+/* One period of a program; what cannot be reached ends it where the joints are. */
+static Fault play(void)
+{
+    uint8_t step = play_step();
+    if (step == PLAY_MOVING)
+        mode = MODE_PLAYING;
+    if (step == PLAY_DONE)
+        mode = MODE_ARMED; /* what was aimed at last still goes out */
+    if (step != PLAY_UNREACHABLE && step != PLAY_TOO_FAST)
+        return NO_FAULT;
+    hold(MODE_ARMED);
+    uint8_t code = step == PLAY_TOO_FAST ? FAULT_TOO_FAST : FAULT_OUT_OF_REACH;
+    return (Fault){code, NO_JOINT, play_trouble_ms()};
+}
+
 Fault safety_pass_period(void)
 {
     Fault begun = watch_battery();
     energise_next();
+    if (begun.code == FAULT_NONE && safety_is_playing())
+        begun = play();
     return begun;
 }
 

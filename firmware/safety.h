@@ -1,7 +1,7 @@
 /* The board's modes: when pulses go out, when they follow the host, when they stand still.
  *
  * Safe states: DISARMED (no pulses: after power-up, reset and DISARM) and, while armed, standing
- * still (STOPPED, FAULT, HOLDING). Only ARMED and HOLDING accept setpoints.
+ * still (STOPPED, FAULT, HOLDING). Only ARMED and HOLDING accept setpoints and programs.
  */
 #pragma once
 #include <stdbool.h>
@@ -23,13 +23,16 @@ uint8_t safety_arm(const uint16_t *park, uint8_t joints);
 uint8_t safety_disarm(void);
 uint8_t safety_stop(void);
 uint8_t safety_clear(void);
+uint8_t safety_play(uint8_t program, bool is_loop);
+uint8_t safety_finish(void);
 
-/* Deadline and stop button; call in every round of the loop. */
+/* Deadline and buttons; call in every round of the loop. */
 void safety_watch(void);
 
-/* Battery and arming, once a period; the fault that begins now, if one does. */
+/* Battery, arming and playing, once a period; the fault that begins now, if one does. */
 Fault safety_pass_period(void);
 
+bool safety_is_playing(void);
 uint8_t safety_mode(void);
 uint8_t safety_flags(void);
 uint8_t safety_fault(void);

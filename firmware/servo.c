@@ -4,6 +4,7 @@
 #include <util/atomic.h>
 
 #include "clock.h"
+#include "protocol.h"
 
 typedef struct {
     volatile uint16_t *width;
@@ -45,6 +46,14 @@ void servo_begin(void)
     TCCR5B = _BV(WGM53) | _BV(WGM52) | _BV(CS51);
     TCNT4 = TCNT1;
     TCNT5 = TCNT1;
+}
+
+uint8_t servo_out_of_range(const uint16_t counts[JOINT_COUNT])
+{
+    for (uint8_t i = 0; i < JOINT_COUNT; i++)
+        if (counts[i] < LOWEST[i] || counts[i] > HIGHEST[i])
+            return i;
+    return NO_JOINT;
 }
 
 bool servo_stage(const uint16_t counts[JOINT_COUNT], uint8_t is_on, uint8_t periods)

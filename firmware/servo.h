@@ -16,5 +16,8 @@ void servo_begin(void);
  * and nothing has changed. Counts are kept within the machine's pulse range whatever they are. */
 bool servo_stage(const uint16_t counts[JOINT_COUNT], uint8_t is_on, uint8_t periods);
 
+/* The first joint whose count is out of its servo's range; NO_JOINT where none is. */
+uint8_t servo_out_of_range(const uint16_t counts[JOINT_COUNT]);
+
 /* The clock's interrupt calls it, once a period. */
 void servo_latch(void);

@@ -46,9 +46,11 @@ def simulator() -> Path:
     return FIRMWARE / 'build' / 'simulator'
 
 
-def firmware(header: str) -> Path:
-    """The program for a machine.h, up to date."""
-    return _built(header, 'firmware.elf')
+def firmware(header: str, table: Path | None = None) -> Path:
+    """The program for a machine.h, up to date; `table` is a CSV for robocake's flash."""
+    if table is None:
+        return _built(header, 'firmware.elf')
+    return _built(header + f'/* {table.read_text()} */\n', 'firmware.elf', f'TABLE={table}')
 
 
 def bench(header: str) -> Path:
@@ -77,7 +79,7 @@ def sizes(program: Path) -> Sizes:
     return Sizes(text + initialised, initialised + zeroed)
 
 
-def _built(header: str, what: str) -> Path:
+def _built(header: str, what: str, *words: str) -> Path:
     """A file made with this header, in a folder of its own: machines never mix."""
     out = f'build/{hashlib.sha256(header.encode()).hexdigest()[:12]}'
     machine_h = FIRMWARE / out / 'machine.h'
@@ -85,7 +87,7 @@ def _built(header: str, what: str) -> Path:
         machine_h.parent.mkdir(parents=True, exist_ok=True)
         machine_h.write_text(header)
     # -o: the header is as it shall be, whatever stands in config/.
-    _make(f'OUT={out}', '-o', f'{out}/machine.h', f'{out}/{what}')
+    _make(f'OUT={out}', '-o', f'{out}/machine.h', *words, f'{out}/{what}')
     return FIRMWARE / out / what
 
 

@@ -2,12 +2,14 @@
 
 import argparse
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 
 from bridge.board_modes import PULSE_PERIOD_US, BoardSettings
 from bridge.calibration import Calibration
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.firmware_kinematics import WITHOUT, kinematics_of
+from hexarm.firmware_table import flash_header, read_table
 from manipulator.errors import ConfigError
 
 WIDEST_COUNT = 36_000
@@ -19,23 +21,32 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     """Declares the subcommand."""
     parser = commands.add_parser('firmware-header', help="a machine file as the board's C header")
     parser.add_argument('machine', help='a shipped name or a path')
+    parser.add_argument('--table', type=Path, help='a CSV of joint positions, for flash_table.h')
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Prints the header."""
-    print(header_of(arguments.machine), end='')
+    """Prints machine.h, or flash_table.h where a table is given."""
+    if arguments.table is None:
+        print(header_of(arguments.machine), end='')
+    else:
+        calibration = Calibration.from_config(_board_config(arguments.machine).servos)
+        table = read_table(arguments.table, calibration)
+        print(flash_header(table, arguments.table.name), end='')
     return 0
 
 
 def header_of(machine: str) -> str:
     """machine.h of a machine file; ConfigError where the machine does not fit the board."""
-    source = machines.find(machine)
-    config = BoardConfig.from_machine(machines.read(machine), str(source))
+    config = _board_config(machine)
     calibration = Calibration.from_config(config.servos)
     kinematics = kinematics_of(machines.load(machine), calibration)
     settings = BoardSettings.from_config(config, BOOT_S)
-    return header(settings, config.link.baud, source.name, kinematics)
+    return header(settings, config.link.baud, machines.find(machine).name, kinematics)
+
+
+def _board_config(machine: str) -> BoardConfig:
+    return BoardConfig.from_machine(machines.read(machine), str(machines.find(machine)))
 
 
 def header(

@@ -67,7 +67,7 @@ class Graph:
         for node in self._nodes:
             _wait_for(node.needs)
             self._processes[node.entry] = subprocess.Popen(
-                [*_command(node, self._namespace), '--log-level', self._log_level],
+                _command(node, self._namespace, self._log_level),
                 start_new_session=True,
                 stdin=subprocess.DEVNULL,
                 preexec_fn=_die_with_parent,  # noqa: PLW1509 (one prctl call, no threads yet)
@@ -110,14 +110,14 @@ def _wait_for(path: Path | None) -> None:
         time.sleep(0.01)
 
 
-def _command(node: Executable, namespace: str) -> list[str]:
+def _command(node: Executable, namespace: str, log_level: str) -> list[str]:
     if node.command:
         return list(node.command)
     command = [sys.executable, '-m', node.module, node.entry, '--ros-args']
     command += ['-r', f'__ns:=/{namespace.strip("/")}']
     for name, value in node.parameters.items():
         command += ['-p', f'{name}:={value}']
-    return command
+    return [*command, '--log-level', log_level]
 
 
 def _environment() -> dict[str, str]:

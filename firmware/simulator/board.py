@@ -1,12 +1,18 @@
 """The simulated chip behind the fake board's three methods: feed, step, take_output."""
 
+import functools
+from pathlib import Path
+
 import numpy as np
 
 from bridge.board_modes import BoardSettings
+from bridge.calibration import Calibration
 from bridge.messages import ResetCause
+from bridge.servo_config import BoardConfig
 from firmware.simulator.chip import CLOCK_HZ, CYCLES_A_COUNT, Chip
-from hexarm import firmware_build
+from hexarm import firmware_build, machines
 from hexarm.firmware_header import header
+from hexarm.firmware_kinematics import WITHOUT, kinematics_of
 
 BAUD = 250_000
 CHANNELS = 8
@@ -19,8 +25,11 @@ DIVIDER = 2
 class SimulatedBoard:
     """The firmware for these settings, on a chip, its boot loader's silence included."""
 
-    def __init__(self, settings: BoardSettings, battery_mv: int = 7600) -> None:
-        program = firmware_build.firmware(header(settings, BAUD, 'of a test'))
+    def __init__(
+        self, settings: BoardSettings, battery_mv: int = 7600, table: Path | None = None
+    ) -> None:
+        kinematics = WITHOUT if settings.solve is None else _kinematics()
+        program = firmware_build.firmware(header(settings, BAUD, 'a test', kinematics), table)
         self.chip = Chip(firmware_build.simulator() / 'chip.so', program, BAUD)
         self.settings = settings
         self.battery_mv = battery_mv
@@ -91,3 +100,10 @@ class SimulatedBoard:
                 self._risen[channel] = cycle
             else:
                 self._widths[channel] = cycle - self._risen[channel]
+
+
+@functools.cache
+def _kinematics() -> dict[str, object]:
+    """RoboCake's: the settings say the rest."""
+    config = BoardConfig.from_machine(machines.read('robocake'))
+    return kinematics_of(machines.load('robocake'), Calibration.from_config(config.servos))

@@ -280,7 +280,10 @@ void chip_set_button(Chip *chip, uint8_t pin, bool is_open)
     for (uint8_t i = 0; i < 2; i++)
         external.value |= (unsigned)chip->is_open[i] << i;
     avr_ioctl(chip->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('A'), &external);
-    avr_raise_irq(avr_io_getirq(chip->avr, AVR_IOCTL_IOPORT_GETIRQ('A'), pin), is_open);
+    /* There and back: a reset clears the pin, but a value that is no news is not passed on. */
+    avr_irq_t *irq = avr_io_getirq(chip->avr, AVR_IOCTL_IOPORT_GETIRQ('A'), pin);
+    avr_raise_irq(irq, !is_open);
+    avr_raise_irq(irq, is_open);
 }
 
 void chip_hang(Chip *chip, bool with_interrupts)

@@ -26,6 +26,15 @@ from bridge.messages import (
     Stop,
     is_newer,
 )
+from bridge.program_messages import (
+    CycleAxis,
+    Finish,
+    Play,
+    Program,
+    TableBegin,
+    TableEnd,
+    TableRow,
+)
 from manipulator.errors import InvalidInput, ProtocolError
 
 PARK = (3000,) * 6
@@ -38,6 +47,12 @@ MESSAGES = {
     'disarm': Disarm(),
     'stop': Stop(),
     'clear': Clear(),
+    'cycle_axis': CycleAxis(5, 0.0625, 500, 0.25),
+    'table_begin': TableBegin(448, 50),
+    'table_row_six': TableRow(3, (1100, 4900, 3000, 3001, 2999, 256)),
+    'table_end': TableEnd(0x29B1),
+    'play_table_loop': Play(Program.TABLE, True),
+    'finish': Finish(),
     'hello_power_on': Hello(1, ResetCause.POWER_ON, 6, 1500),
     'hello_watchdog': Hello(1, ResetCause.WATCHDOG | ResetCause.EXTERNAL, 6, 4_294_967_295),
     'state_fresh': State(

@@ -7,12 +7,16 @@ import pytest
 
 from bridge.board import Board
 from bridge.board_modes import BoardSettings
+from bridge.calibration import Calibration
 from bridge.frames import encode
 from bridge.framing import FrameReader
 from bridge.messages import Ack, Arm, Fault, Hello, ResetCause, State
+from bridge.servo_config import BoardConfig
 from firmware.simulator.board import SimulatedBoard
-from hexarm import firmware_build
+from hexarm import firmware_build, machines
+from hexarm.board_solver import board_solver
 
+ROBOCAKE = BoardConfig.from_machine(machines.read('robocake'))
 RANGE = (1100, 4900)
 JOINTS = 6
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
@@ -22,6 +26,7 @@ SETTINGS = BoardSettings(
     arm_interval_us=150_000,
     minimum_battery_mv=6400,
     boot_us=300_000,
+    solve=board_solver(machines.load('robocake'), Calibration.from_config(ROBOCAKE.servos)),
 )
 
 

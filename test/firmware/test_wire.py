@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from bridge import cobs, messages
 from bridge.frames import MAX_WIRE_BYTES, checksum
+from bridge.program_messages import Program
 from hexarm import firmware_build
 from hexarm.firmware_header import header_of
 from manipulator.errors import ProtocolError
@@ -94,6 +95,7 @@ ENUMS = {
     'FLAG': messages.Flag,
     'RESULT': messages.Result,
     'FAULT': messages.FaultCode,
+    'PROGRAM': Program,
 }
 
 

@@ -1,0 +1,270 @@
+"""What every board does by itself: plays an uploaded table, plays a cycle about home."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bridge.board_courses import table_crc
+from bridge.messages import (
+    Arm,
+    Disarm,
+    Fault,
+    FaultCode,
+    Mode,
+    Result,
+    Setpoint,
+    State,
+    Stop,
+)
+from bridge.program_messages import (
+    CycleAxis,
+    Finish,
+    Play,
+    Program,
+    TableBegin,
+    TableEnd,
+    TableRow,
+)
+
+PARK = (3000, 2900, 3100, 3000, 2900, 3100)
+HOME = (3000,) * 6
+STEP = 252  # counts that a servo can do in one pulse period
+WAVE = [
+    tuple(round(c + 150 * math.sin(math.pi * k / 20)) for c in PARK) for k in range(41)
+]  # 2 s at 50 ms, from PARK and back to it
+TURN = CycleAxis(5, 0.0625, 500, 0.0)  # yaw, with a period of 2 s
+
+
+def upload(driver, rows, step_ms=50):
+    assert driver.ask(TableBegin(len(rows), step_ms)) is Result.OK
+    for index, row in enumerate(rows):
+        assert driver.ask(TableRow(index, row)) is Result.OK
+    return driver.ask(TableEnd(table_crc(rows)))
+
+
+def record(driver, seconds):
+    """Modes and counts (n, joints), 50 times a second."""
+    states = [m for m in driver.run(seconds) if isinstance(m, State)]
+    counts = [[joint.count for joint in state.joints] for state in states]
+    return [state.mode for state in states], np.array(counts)
+
+
+@pytest.fixture
+def loaded(armed):
+    """Armed, with WAVE uploaded."""
+    assert upload(armed, WAVE) is Result.OK
+    return armed
+
+
+def test_a_table_is_played_once_smoothly_and_ends_at_its_last_row(loaded):
+    assert loaded.ask(Play(Program.TABLE, False)) is Result.OK
+    modes, counts = record(loaded, 5.0)
+    assert modes[0] in (Mode.CHECKING, Mode.PLAYING)
+    assert modes[-1] is Mode.ARMED
+    assert tuple(counts[-1]) == WAVE[-1]
+    way = counts[:, 0] - PARK[0]
+    assert way.max() == pytest.approx(150, abs=3)
+    assert way.min() == pytest.approx(-150, abs=3)
+    speed = np.abs(np.diff(way))
+    assert speed.max() <= 12  # 150 · π counts a second, in 20 ms
+    moving = np.flatnonzero(speed)
+    assert speed[moving[:3]].max() <= 2
+    assert speed[moving[-3:]].max() <= 2
+
+
+def test_a_loop_goes_on_without_a_host_until_it_is_finished_smoothly(loaded):
+    loaded.ask(Play(Program.TABLE, True))
+    modes, counts = record(loaded, 12.0)
+    assert set(modes[5:]) == {Mode.PLAYING}
+    # 41 rows, 50 ms apart, the way back to the first one included: twice that is 205 periods.
+    assert np.abs(counts[355:] - counts[150:-205]).max() <= 1
+    assert np.ptp(counts[150:, 0]) == pytest.approx(300, abs=2)
+    assert loaded.ask(Finish()) is Result.OK
+    modes, counts = record(loaded, 2.0)
+    assert modes[-1] is Mode.ARMED
+    speed = np.abs(np.diff(counts[:, 0]))
+    assert speed.max() <= 12
+    assert np.abs(np.diff(speed)).max() <= 3
+    assert speed[-10:].max() == 0
+
+
+def test_a_table_that_did_not_arrive_whole_is_not_played(armed):
+    armed.ask(TableBegin(3, 50))
+    assert armed.ask(TableRow(0, PARK)) is Result.OK
+    assert armed.ask(TableRow(2, PARK)) is Result.BAD_TABLE
+    assert armed.ask(TableEnd(table_crc([PARK]))) is Result.BAD_TABLE
+    assert armed.ask(TableRow(1, PARK)) is Result.OK
+    assert armed.ask(TableRow(2, PARK)) is Result.OK
+    assert armed.ask(TableRow(3, PARK)) is Result.BAD_TABLE
+    assert armed.ask(TableEnd(table_crc([PARK] * 3) ^ 1)) is Result.BAD_TABLE
+    assert armed.ask(Play(Program.TABLE, False)) is Result.NO_PROGRAM
+    assert armed.ask(TableEnd(table_crc([PARK] * 3))) is Result.OK
+    assert armed.ask(Play(Program.TABLE, False)) is Result.OK
+
+
+def test_a_row_that_is_repeated_because_its_answer_was_lost_counts_once(armed):
+    armed.ask(TableBegin(2, 50))
+    sequence = armed.say(TableRow(0, PARK))
+    armed.run(0.04)
+    assert armed.ask(TableRow(0, PARK), sequence) is Result.OK
+    assert armed.ask(TableRow(1, PARK)) is Result.OK
+    assert armed.ask(TableEnd(table_crc([PARK] * 2))) is Result.OK
+
+
+def test_a_table_larger_than_the_memory_is_refused(armed):
+    assert armed.ask(TableBegin(449, 50)) is Result.TOO_LARGE
+    assert armed.ask(TableBegin(448, 50)) is Result.OK
+
+
+@pytest.mark.parametrize(('rows', 'step_ms'), [(0, 50), (1, 50), (2, 19), (2, 0)])
+def test_a_table_without_way_or_time_is_refused(armed, rows, step_ms):
+    assert armed.ask(TableBegin(rows, step_ms)) is Result.BAD_TABLE
+
+
+def test_rows_are_checked_as_setpoints_are(armed):
+    armed.ask(TableBegin(2, 50))
+    assert armed.ask(TableRow(0, (1099, *PARK[1:]))) is Result.OUT_OF_RANGE
+    assert armed.ask(TableRow(0, PARK[:5])) is Result.WRONG_JOINTS
+    assert armed.ask(TableRow(0, PARK)) is Result.OK
+
+
+def test_a_table_that_servos_cannot_follow_is_refused_whole(armed):
+    far = tuple(count + STEP + 1 for count in PARK)
+    upload(armed, [PARK, far], 20)
+    assert armed.ask(Play(Program.TABLE, False)) is Result.TOO_FAST
+    slow = tuple(count + STEP for count in PARK)
+    upload(armed, [PARK, slow], 20)
+    assert armed.ask(Play(Program.TABLE, False)) is Result.OK
+
+
+def test_the_way_back_to_the_first_row_counts_in_a_loop(armed):
+    rows = [tuple(count + 200 * k for count in PARK) for k in range(3)]
+    upload(armed, rows, 20)
+    assert armed.ask(Play(Program.TABLE, True)) is Result.TOO_FAST
+    assert armed.ask(Play(Program.TABLE, False)) is Result.OK
+
+
+def test_a_program_that_begins_elsewhere_is_refused(armed):
+    rows = [tuple(count + 121 for count in row) for row in WAVE]
+    upload(armed, rows)
+    assert armed.ask(Play(Program.TABLE, False)) is Result.NOT_AT_START
+    _, counts = record(armed, 0.2)
+    assert set(map(tuple, counts.tolist())) == {PARK}
+
+
+def test_nothing_is_played_while_disarmed_or_stopped(loaded):
+    loaded.ask(Stop())
+    assert loaded.ask(Play(Program.TABLE, False)) is Result.STOPPED
+    loaded.ask(Disarm())
+    loaded.reset()
+    loaded.run(0.4)
+    assert loaded.ask(Play(Program.TABLE, False)) is Result.NOT_ARMED
+
+
+@pytest.mark.parametrize('program', [0, Program.CYCLE, Program.FLASH_TABLE, 4, 255])
+def test_programs_that_are_not_there_are_refused(loaded, program):
+    assert loaded.ask(Play(program, False)) is Result.NO_PROGRAM
+
+
+def test_a_stop_ends_a_program_at_once(loaded):
+    loaded.ask(Play(Program.TABLE, True))
+    loaded.run(2.5)
+    loaded.ask(Stop())
+    _, counts = record(loaded, 1.0)
+    assert len(set(map(tuple, counts[1:].tolist()))) == 1
+    assert loaded.state().mode is Mode.STOPPED
+
+
+def test_setpoints_are_refused_while_it_plays_and_arm_takes_over(loaded):
+    loaded.ask(Play(Program.TABLE, True))
+    loaded.run(2.5)
+    loaded.say(Setpoint(200, PARK))
+    (fault,) = loaded.faults()
+    assert (fault.code, fault.value) == (FaultCode.NOT_ARMED, Mode.PLAYING)
+    assert loaded.ask(TableBegin(2, 50)) is Result.NO_PROGRAM
+    assert loaded.ask(Arm(PARK)) is Result.OK
+    assert loaded.state().mode is Mode.ARMED
+    _, counts = record(loaded, 0.5)
+    assert len(set(map(tuple, counts.tolist()))) == 1
+
+
+def test_a_cycle_is_solved_by_the_board_itself(make_driver):
+    driver = make_driver()
+    driver.arm(HOME)
+    solve = driver.board.settings.solve
+    assert driver.ask(TURN) is Result.OK
+    assert driver.ask(CycleAxis(2, 0.003, 500, math.pi / 2)) is Result.OK
+    assert driver.ask(Play(Program.CYCLE, True)) is Result.OK
+    driver.run(6.0)
+    modes, counts = record(driver, 4.0)
+    assert set(modes) == {Mode.PLAYING}
+    angle = np.arange(200) * 0.02 * math.pi
+    wanted = np.array(
+        [solve([0, 0, 0.003 * math.cos(a), 0, 0, 0.0625 * math.sin(a)]) for a in angle]
+    )
+    shifts = [np.abs(np.roll(wanted, k, axis=0) - counts).max() for k in range(100)]
+    assert min(shifts) <= 1.0
+    driver.ask(Finish())
+    modes, counts = record(driver, 3.0)
+    assert modes[-1] is Mode.ARMED
+    assert counts[-1] == pytest.approx(solve([0] * 6), abs=0.51)
+    assert np.abs(np.diff(counts, axis=0)).max() < 60
+
+
+def test_a_cycle_once_is_one_period_and_home_again(make_driver):
+    driver = make_driver()
+    driver.arm(HOME)
+    driver.ask(TURN)
+    driver.ask(Play(Program.CYCLE, False))
+    modes, counts = record(driver, 8.0)
+    assert modes[-1] is Mode.ARMED
+    assert 2.5 < 0.02 * modes.count(Mode.PLAYING) < 4.0
+    assert counts[-1] == pytest.approx(driver.board.settings.solve([0] * 6), abs=0.51)
+
+
+@pytest.mark.parametrize(
+    ('axis', 'code'),
+    [
+        (CycleAxis(0, 0.03, 500, 0.0), FaultCode.OUT_OF_REACH),
+        (CycleAxis(2, 0.0179, 500, 0.0), FaultCode.OUT_OF_REACH),
+        (CycleAxis(5, 0.125, 12_500, 0.4), FaultCode.TOO_FAST),
+    ],
+)
+def test_a_cycle_that_cannot_be_followed_is_refused_before_anything_moves(make_driver, axis, code):
+    driver = make_driver()
+    driver.arm(HOME)
+    driver.ask(axis)
+    driver.say(Play(Program.CYCLE, True))
+    messages = driver.run(4.0)
+    assert [m.code for m in messages if isinstance(m, Fault)] == [code]
+    states = [m for m in messages if isinstance(m, State)]
+    assert {joint.count for state in states for joint in state.joints} == {3000}
+    assert states[-1].mode is Mode.ARMED
+
+
+@pytest.mark.parametrize(
+    'axis',
+    [
+        CycleAxis(6, 0.001, 500, 0.0),
+        CycleAxis(0, math.nan, 500, 0.0),
+        CycleAxis(0, 0.001, 500, math.inf),
+        CycleAxis(0, 0.001, 25_001, 0.0),
+    ],
+)
+def test_an_axis_without_sense_is_refused(armed, axis):
+    assert armed.ask(axis) is Result.OUT_OF_RANGE
+
+
+def test_a_cycle_that_repeats_only_after_more_than_a_minute_is_refused(make_driver):
+    driver = make_driver()
+    driver.arm(HOME)
+    driver.ask(CycleAxis(0, 0.001, 500, 0.0))
+    driver.ask(CycleAxis(1, 0.001, 501, 0.0))
+    assert driver.ask(Play(Program.CYCLE, True)) is Result.OUT_OF_RANGE
+
+
+def test_a_board_without_kinematics_has_no_cycle(make_driver):
+    driver = make_driver(solve=None)
+    driver.arm()
+    assert driver.ask(TURN) is Result.NO_PROGRAM

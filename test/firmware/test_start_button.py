@@ -1,0 +1,146 @@
+"""Unplugged: the start button arms and plays what is there, and ends it; the stop button stops."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from bridge.board_courses import table_crc
+from bridge.calibration import Calibration
+from bridge.messages import Arm, Mode, Result, State
+from bridge.program_messages import CycleAxis, TableBegin, TableEnd, TableRow
+from bridge.servo_config import BoardConfig
+from firmware.simulator.board import START_BUTTON, STOP_BUTTON
+from firmware.simulator.host import SETTINGS, Host
+from hexarm import machines
+from hexarm.board_solver import board_solver
+from hexarm.firmware_table import flash_header, read_table
+from hexarm.main import main
+
+PARK = (3000, 2900, 3100, 3000, 2900, 3100)
+WAVE = [tuple(round(c + 100 * math.sin(math.pi * k / 10)) for c in PARK) for k in range(20)]
+CONFIG = BoardConfig.from_machine(machines.read('robocake'))
+CALIBRATION = Calibration.from_config(CONFIG.servos)
+
+
+def press(host, button, seconds=0.1):
+    host.board.press(button)
+    host.run(seconds)
+    host.board.let_go(button)
+    host.run(0.1)
+
+
+def modes(host, seconds):
+    return [m.mode for m in host.run(seconds) if isinstance(m, State)]
+
+
+@pytest.fixture
+def csv_file(tmp_path):
+    """A table of two seconds: all cranks swing by 5° about 120°, in a loop."""
+    names = ','.join(['time', *CALIBRATION.names])
+    rows = [(0.1 * k, math.radians(120 + 5 * math.sin(0.1 * math.pi * k))) for k in range(20)]
+    lines = [','.join([f'{t:.3f}', *[f'{q:.6f}'] * 6]) for t, q in rows]
+    path = tmp_path / 'swing.csv'
+    path.write_text('\n'.join([names, *lines]) + '\n')
+    return path
+
+
+def test_it_arms_where_the_uploaded_table_begins_plays_it_and_ends_it(host):
+    host.run(0.1)
+    rows = [tuple(count + 50 for count in row) for row in WAVE]
+    host.ask(TableBegin(len(rows), 100))
+    for index, row in enumerate(rows):
+        host.ask(TableRow(index, row))
+    assert host.ask(TableEnd(table_crc(rows))) is Result.OK
+    press(host, START_BUTTON)
+    assert host.board.pulses[0] == rows[0][0]
+    seen = modes(host, 10.0)
+    assert seen[-1] is Mode.PLAYING
+    _, widths = host.pulses()
+    counts = np.rint(widths[-200:] / 8)
+    assert counts[:, 0].max() == pytest.approx(3150, abs=3)
+    assert counts[:, 0].min() == pytest.approx(2950, abs=3)
+    press(host, START_BUTTON)
+    assert modes(host, 2.0)[-1] is Mode.ARMED
+
+
+def test_a_table_in_flash_is_played_after_power_up(csv_file):
+    host = Host(table=csv_file)
+    host.run(0.5)
+    assert len(host.chip.edges()) == 0
+    press(host, START_BUTTON)
+    assert modes(host, 6.0)[-1] is Mode.PLAYING
+    counts = np.array(host.pulse_counts()[-150:])
+    low, high = (CALIBRATION.counts(np.radians([120 + s] * 6)) for s in (-5, 5))
+    assert counts[:, 0].min() == pytest.approx(min(low[0], high[0]), abs=3)
+    assert counts[:, 0].max() == pytest.approx(max(low[0], high[0]), abs=3)
+    assert np.abs(np.diff(counts, axis=0)).max() <= 12
+    press(host, STOP_BUTTON)
+    assert host.state().mode is Mode.STOPPED
+    there = host.board.pulses
+    press(host, START_BUTTON)
+    assert (host.state().mode, host.board.pulses) == (Mode.ARMED, there)
+
+
+def test_a_cycle_that_was_set_is_played(tools):
+    solve = board_solver(machines.load('robocake'), CALIBRATION)
+    host = Host(dataclasses.replace(SETTINGS, solve=solve))
+    host.run(0.1)
+    host.ask(CycleAxis(2, 0.002, 1000, 0.0))
+    press(host, START_BUTTON)
+    seen = modes(host, 6.0)
+    assert Mode.CHECKING in seen
+    assert seen[-1] is Mode.PLAYING
+
+
+def test_without_a_program_it_does_nothing(host):
+    press(host, START_BUTTON)
+    assert host.state().mode is Mode.DISARMED
+    assert len(host.chip.edges()) == 0
+
+
+def test_with_the_stop_contact_open_it_does_nothing(csv_file):
+    host = Host(table=csv_file)
+    host.board.press(STOP_BUTTON)
+    host.run(0.1)
+    press(host, START_BUTTON)
+    host.run(1.0)
+    assert host.state().mode is Mode.STOPPED
+    assert len(host.chip.edges()) == 0
+
+
+def test_a_host_that_arms_takes_over(csv_file):
+    host = Host(table=csv_file)
+    host.run(0.1)
+    press(host, START_BUTTON)
+    host.run(3.0)
+    assert host.ask(Arm((3000,) * 6)) is Result.OK
+    assert host.state().mode is Mode.ARMED
+    assert set(modes(host, 1.0)) == {Mode.ARMED}
+
+
+def test_the_header_of_a_table_holds_the_counts_of_its_positions(csv_file, capsys):
+    assert main(['firmware-header', 'robocake', '--table', str(csv_file)]) == 0
+    printed = capsys.readouterr().out
+    table = read_table(csv_file, CALIBRATION)
+    assert printed == flash_header(table, 'swing.csv')
+    assert (len(table.rows), table.step_ms) == (20, 100)
+    assert table.rows[5] == CALIBRATION.counts(np.radians([125.0] * 6))
+    assert '#define FLASH_TABLE_ROWS 20' in printed
+
+
+@pytest.mark.parametrize(
+    ('change', 'words'),
+    [
+        (('0.100,', '0.130,'), 'time steps'),
+        (('2.094395', '9.9'), 'row 0: crank_1: 9.9 rad outside'),
+        (('crank_2', 'elbow'), 'needs time, crank_1'),
+        (('2.094395', 'nan'), 'not finite'),
+        (('2.094395', 'two'), 'cannot be read'),
+    ],
+)
+def test_a_table_that_is_none_is_refused_by_name(csv_file, capsys, change, words):
+    csv_file.write_text(csv_file.read_text().replace(*change, 1))
+    assert main(['firmware-header', 'robocake', '--table', str(csv_file)]) == 1
+    assert words in capsys.readouterr().err
