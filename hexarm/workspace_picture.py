@@ -57,7 +57,7 @@ def _shape(machine: Machine, found: Survey, name: str) -> Figure:
         f'{1e3 * volume.value:.4g} ± {1e3 * volume.error:.1g} dm³ within all limits; '
         'sections through home', color=SOFT,
     )  # fmt: skip
-    _surface(figure.add_axes((-0.035, -0.06, 0.41, 1.0), projection='3d'), machine)
+    _surface(figure.add_axes((-0.025, 0.02, 0.37, 0.88), projection='3d'), machine)
     planes = [section(machine, axes, found.box.low, found.box.high, GRID) for axes in PLANES]
     rows = (
         ('sigma_min', 'singularity margin σmin', 'viridis', 1.0),
@@ -69,7 +69,7 @@ def _shape(machine: Machine, found: Survey, name: str) -> Figure:
         limits = np.quantile(inside, [0.0, 0.98])
         for column, (plane, value) in enumerate(zip(planes, values, strict=True)):
             box = (0.385 + 0.185 * column, 0.535 - 0.445 * row, 0.15, 0.32)
-            drawn = _section(figure.add_axes(box), plane, value, (colours, *limits), machine)
+            drawn = draw_section(figure.add_axes(box), plane, value, (colours, *limits), machine)
         bar = figure.add_axes((0.945, 0.55 - 0.445 * row, 0.01, 0.28))
         figure.colorbar(drawn, cax=bar)
         figure.text(0.385, 0.875 - 0.445 * row, label, color=SOFT)
@@ -88,11 +88,11 @@ def _surface(axes: Axes3D, machine: Machine) -> None:
         x, y, z, cmap='YlGnBu_r', rstride=1, cstride=1, lw=0.15, edgecolor='#ffffff90'
     )
     axes.set(xlabel='x (mm)', ylabel='y (mm)', zlabel='z (mm)')
-    axes.set_box_aspect([float(np.ptp(v)) for v in (x, y, z)], zoom=1.0)
+    axes.set_box_aspect([float(np.ptp(v)) for v in (x, y, z)], zoom=0.9)
     axes.view_init(elev=18, azim=-60)
 
 
-def _section(
+def draw_section(
     axes: Axes, plane: Section, values: Array, scale: tuple[str, float, float], machine: Machine
 ) -> QuadMesh:
     """One map, with the workspace's edge and home."""
