@@ -5,7 +5,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 NAME = 'hexarm'
-ROOMS = ['manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm']
+ROOMS = ['manipulator', 'hexapod_control', 'arm_control', 'physics', 'bridge', 'hexarm']
 
 setup(
     name=NAME,
@@ -28,6 +28,7 @@ setup(
             'ros-jazzy-rmw-fastrtps-cpp>=8.4',
         ],
         'plot': ['matplotlib>=3.8'],
+        'physics': ['mujoco>=3.2', 'matplotlib>=3.8', 'pillow>=10'],
         'terminal': ['rich>=13'],
         'test': [
             'pytest>=8',

@@ -16,6 +16,7 @@ from manipulator.frames import Frames
 from manipulator.limits.joint_range import JointRange
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionConfig
+from physics.dynamics_config import SCHEMAS
 
 T = TypeVar('T')
 ROOM = ('geometry', 'limits')
@@ -62,6 +63,8 @@ def problems_of(text: str) -> list[str]:
         for name, schema in BRIDGE.items()
         if name in there
     }
+    if 'dynamics' in there and content.get('kind') in SCHEMAS:
+        found.of(partial(build, SCHEMAS[content['kind']], there['dynamics'], 'dynamics'))
     servos = sections.get('servos')
     if isinstance(servos, ServosConfig):
         calibration = found.of(lambda: Calibration.from_config(servos))

@@ -17,6 +17,7 @@ from hexarm import (
     leg_motion,
     machine_list,
     reach,
+    mjcf,
     up,
     workspace,
 )
@@ -24,7 +25,20 @@ from hexarm.answers import REFUSED
 from manipulator.errors import ManipulatorError
 from manipulator.requirements import missing
 
-COMMANDS = (up, demo, ik, fk, reach, workspace, leg_motion, machine_list, check, firmware_header)
+COMMANDS = (
+    up,
+    demo,
+    ik,
+    fk,
+    mjcf,
+    reach,
+    workspace,
+    accuracy,
+    leg_motion,
+    machine_list,
+    check,
+    firmware_header,
+)
 EXAMPLES = """\
 examples:
   hexarm demo                                          the whole graph on a fake board

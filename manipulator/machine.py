@@ -15,7 +15,8 @@ from manipulator.teleop.jogger import Jogger
 class MachineFile:
     """The sections of a machine file; each room checks its own against its own schema.
 
-    geometry and limits belong to the kind of machine, servos, link and simulation to the bridge.
+    geometry and limits belong to the kind of machine, servos, link and simulation to the bridge,
+    dynamics to physics/.
     """
 
     kind: str
@@ -26,6 +27,7 @@ class MachineFile:
     link: dict[str, Any]
     description: str = ''
     simulation: dict[str, Any] | None = None
+    dynamics: dict[str, Any] | None = None
     frames: FramesConfig = field(default_factory=FramesConfig)
 
 

@@ -4,6 +4,8 @@ INSTALL = {
     'ruckig': 'python3 -m pip install ruckig',
     'serial': 'python3 -m pip install pyserial',
     'matplotlib': 'python3 -m pip install matplotlib',
+    'mujoco': 'python3 -m pip install mujoco',
+    'PIL': 'python3 -m pip install pillow',
     'rclpy': 'install ROS 2 Jazzy and source its setup.bash, or pip install hexarm[ros]',
 }
 

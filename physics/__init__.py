@@ -1,0 +1,1 @@
+"""Rigid bodies and drives: what the machines weigh, and what they do when pushed."""
