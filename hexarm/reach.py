@@ -13,6 +13,7 @@ from manipulator.reach.nearest import nearest_reachable
 from manipulator.reach.reach import Reach, reach
 from manipulator.reach.readings import LimitReading
 from manipulator.reach.travel import Travel, travel
+from manipulator.reach.words import pose_in_words
 
 SHOWN = 6
 FOR_PEOPLE = {'m': (1e3, 'mm'), 'rad': (math.degrees(1.0), '°')}
@@ -56,13 +57,6 @@ def answer(arguments: argparse.Namespace) -> Answer:
         }
         lines.append(_way_in_words(left))
     return for_programs, lines
-
-
-def pose_in_words(pose: Pose) -> str:
-    """As 'x 14.200  y 0.000  z 41.190 mm  roll 0.00  pitch 0.00  yaw 0.00°'."""
-    places = [f'{n} {v:.3f}' for n, v in zip('xyz', 1e3 * pose.position, strict=True)]
-    angles = zip(('roll', 'pitch', 'yaw'), np.degrees(pose.rpy), strict=True)
-    return '  '.join(places) + ' mm  ' + '  '.join(f'{n} {v:.2f}' for n, v in angles) + '°'
 
 
 def _pose(pose: Pose) -> dict[str, list[float]]:

@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from manipulator import rotation as so3
-from manipulator.arrays import Array
+from manipulator.arrays import Array, Mask
 from manipulator.frames import Frames
 from manipulator.kinematics import ForwardSolution, Kinematics
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.limit import Limit
+from manipulator.limits.limit import Limit, admitted
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
@@ -117,3 +117,7 @@ class FramedLimit:
     def values(self, pose: Pose, joints: Array) -> Array:
         """The limited values (..., k), by the platform's pose."""
         return self.inner.values(self.frames.platform(pose), joints)
+
+    def admits(self, pose: Pose, joints: Array) -> Mask:
+        """Which configurations (...) keep the limit, as quickly as it tells."""
+        return admitted(self.inner, self.frames.platform(pose), joints)

@@ -9,7 +9,6 @@ from manipulator.arrays import Array, Mask, frozen
 from manipulator.kinematics import Kinematics
 from manipulator.pose import Pose
 
-
 MANY = 64
 
 

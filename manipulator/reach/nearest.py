@@ -13,7 +13,7 @@ from manipulator.reach.metric import displaced, distance
 from manipulator.reach.way import admits, is_connected, is_joint_box, way_home_share
 
 MOST_STEPS = 60
-KICKS, KICK_POSES, KICK_RADII, KICK_GAIN = 6, 600, (3e-2, 1e-2, 1e-3, 1e-4), 1e-5
+KICKS, KICK_POSES, KICK_RADII, KICK_GAIN = 12, 1500, (3e-2, 1e-2, 1e-3, 1e-4, 1e-5), 1e-5
 
 
 @dataclass(frozen=True, eq=False)
