@@ -7,6 +7,7 @@ that silence and a node that has died look alike to the trajectory node.
 import time
 
 from geometry_msgs.msg import TwistStamped
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.task import Future
 from std_msgs.msg import Float64, String
@@ -22,6 +23,9 @@ HAND_OVER = 0.3
 
 HALF_OPEN = 0.5
 """Of a gripper that nobody has moved yet: where a machine parks it."""
+
+LAST_WORD = Duration(seconds=0.5)
+"""How long to wait for a listener that does not answer."""
 
 
 class JogTopics:
@@ -80,6 +84,10 @@ class JogTopics:
             self._is_home_asked = True
             self._ask('home')
 
+    def go_home(self) -> None:
+        """Asks the trajectory node to go home, however long that takes."""
+        self._ask('home')
+
     def stop(self) -> None:
         """Asks the trajectory node to stop whatever it does."""
         self._ask('stop')
@@ -90,9 +98,10 @@ class JogTopics:
         return self._is_moving
 
     def close(self) -> None:
-        """Lets go."""
+        """Lets go, and waits until everybody has heard it: then the publisher may vanish."""
         self.home(False)
         self.drive(NO_TWIST, '', False)
+        self._twists.wait_for_all_acked(LAST_WORD)
 
     def _ask(self, name: str) -> None:
         client = self._services[name]

@@ -65,7 +65,15 @@ class Pad:
 @pytest.fixture(scope='module')
 def connected(running, listening):
     with running('joy_teleop', NAMESPACE, topic='joy'), listening(NAMESPACE, 'joy') as listener:
-        yield listener, listener.joy_publisher(Joy, 'joy')
+        publisher = listener.joy_publisher(Joy, 'joy')
+        pad = Pad(listener, publisher)
+
+        def press_stop():
+            pad.buttons[STOP] ^= 1
+            return 'stop' in listener.asked
+
+        pad.send_until('the services', press_stop)
+        yield listener, publisher
 
 
 @pytest.fixture

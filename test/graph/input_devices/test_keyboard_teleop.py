@@ -1,0 +1,185 @@
+"""The shipped keyboard_teleop process behind a real pseudo-terminal."""
+
+import fcntl
+import os
+import pty
+import signal
+import subprocess
+import termios
+import threading
+
+import pytest
+
+pytestmark = pytest.mark.graph
+NAMESPACE = 'keyboards'
+ZERO = (0.0,) * 6
+PATIENCE = 10.0
+
+
+def own_terminal():
+    """Makes standard input the terminal whose keys interrupt the process."""
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
+class Typist:
+    """Sits at a terminal in which keyboard_teleop runs."""
+
+    def __init__(self, command, listener, root):
+        self.keys, self.screen = pty.openpty()
+        self.before = termios.tcgetattr(self.screen)
+        self.listener = listener
+        self.seen = b''
+        self.process = subprocess.Popen(
+            command,
+            cwd=root,
+            stdin=self.screen,
+            stdout=self.screen,
+            start_new_session=True,
+            preexec_fn=own_terminal,  # noqa: PLW1509 (one ioctl)
+        )
+        self.is_leaving = False
+        self._reading = threading.Thread(target=self._read, daemon=True)
+        self._reading.start()
+        listener.wait('the help', lambda: b'SPACE' in self.seen, 20.0)
+        self.type_until(b' ', lambda: 'stop' in listener.asked)
+        self.type_until(b'w', lambda: listener.twists)
+        self.await_last(ZERO)
+        listener.spin(0.2)
+        listener.twists.clear()
+        listener.asked.clear()
+
+    def _read(self):
+        while not self.is_leaving:
+            self.seen += os.read(self.keys, 4096)
+
+    def type(self, characters):
+        os.write(self.keys, characters)
+
+    def type_until(self, key, is_so):
+        """Holds a key, as long as the graph needs to connect."""
+        for _ in range(100):
+            self.type(key)
+            self.listener.spin(0.1)
+            if is_so():
+                return
+        raise AssertionError(f'{key} had no effect')
+
+    def await_last(self, twist):
+        twists = self.listener.twists
+        self.listener.wait(f'{twist}', lambda: twists and twists[-1][0] == twist, PATIENCE)
+
+    def await_end(self):
+        self.listener.wait('the end', lambda: self.process.poll() is not None, PATIENCE)
+        return self.process.returncode
+
+    def is_as_before(self):
+        return termios.tcgetattr(self.screen) == self.before
+
+    def close(self):
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait(10)
+        if not self.is_leaving:
+            self.leave(lambda: os.write(self.screen, b'the end'))
+
+    def leave(self, show_something):
+        """Closes the terminal's window."""
+        self.is_leaving = True
+        show_something()
+        self._reading.join()
+        os.close(self.screen)
+        os.close(self.keys)
+
+
+@pytest.fixture
+def typist(words, listening, request):
+    with listening(NAMESPACE, 'keyboard') as listener:
+        root = request.config.rootpath
+        typist = Typist(words('keyboard_teleop', NAMESPACE), listener, root)
+        yield typist
+        typist.close()
+
+
+def test_a_press_moves_and_ends_with_one_zero(typist):
+    typist.type(b'w')
+    typist.await_last((0.02, 0, 0, 0, 0, 0))
+    typist.await_last(ZERO)
+    typist.listener.spin(0.3)
+    twists = [twist for twist, _ in typist.listener.twists]
+    assert twists.count(ZERO) == 1
+    assert twists[-1] == ZERO
+
+
+def test_space_ends_the_motion_and_asks_for_a_stop(typist):
+    typist.type(b'jjj')
+    typist.await_last((0, 0, 0, 0, 0, 0.2))
+    typist.type(b' ')
+    typist.await_last(ZERO)
+    typist.listener.wait('stop', lambda: typist.listener.asked == ['stop'], PATIENCE)
+
+
+def test_mode_frame_gripper_and_home_reach_their_topics(typist):
+    typist.type(b'mb')
+    typist.listener.wait('mode', lambda: typist.listener.modes == ['hold_orientation'], PATIENCE)
+    typist.type(b'r')
+    typist.await_last((0, 0, 0.02, 0, 0, 0))
+    assert typist.listener.twists[-1][1] == 'tool'
+    typist.type(b'v')
+    typist.listener.wait('gripper', lambda: typist.listener.openings, PATIENCE)
+    typist.type(b'h')
+    typist.listener.wait('home', lambda: typist.listener.asked == ['home'], PATIENCE)
+    assert b'mode hold_orientation, frame tool' in typist.seen
+
+
+def test_paste_moves_nothing(typist):
+    typist.type(b'sudo apt install ros\n')
+    typist.listener.spin(0.5)
+    typist.type(b'm')
+    typist.listener.wait('mode', lambda: typist.listener.modes, PATIENCE)
+    assert typist.listener.twists == []
+
+
+@pytest.mark.parametrize('ending', ['q', 'Ctrl-C', 'SIGTERM', 'SIGINT'])
+def test_terminal_is_as_before_after_every_ending(typist, ending):
+    assert not typist.is_as_before()
+    typist.type(b'w')
+    typist.await_last((0.02, 0, 0, 0, 0, 0))
+    if ending.startswith('SIG'):
+        typist.process.send_signal(getattr(signal, ending))
+    elif ending == 'q':
+        typist.type(b'q')
+    else:
+        typist.type(b'\x03')
+    assert typist.await_end() == 0
+    assert typist.is_as_before()
+    typist.await_last(ZERO)
+
+
+def test_closed_terminal_ends_the_node(typist):
+    typist.leave(lambda: typist.type(b'b'))
+    assert typist.await_end() == 0
+
+
+def test_without_a_terminal_it_says_so_in_one_line(refusal):
+    said = 'keyboard_teleop: needs a terminal to read keys from, standard input is none'
+    assert refusal('keyboard_teleop') == (1, said)
+
+
+def test_bad_parameter_is_said_and_the_terminal_is_as_before(words, request):
+    keys, screen = pty.openpty()
+    before = termios.tcgetattr(screen)
+    command = words('keyboard_teleop', NAMESPACE, rate=1.0)
+    done = subprocess.run(
+        command,
+        cwd=request.config.rootpath,
+        stdin=screen,
+        capture_output=True,
+        text=True,
+        timeout=30,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert 'rate' in done.stderr
+    assert termios.tcgetattr(screen) == before
+    os.close(keys)
+    os.close(screen)
