@@ -47,6 +47,7 @@ class LinkMonitor:
     last_refusal: str = ''
     trouble: str = ''
     is_enabled_here: bool = False
+    is_measured: bool = False
     _seen_at: float = field(default=0.0)
 
     @property
@@ -98,6 +99,7 @@ class LinkMonitor:
     def _note_state(self, state: State, now: float) -> None:
         if state.mode is Mode.DISARMED:
             self.is_enabled_here = False
+        self.is_measured = all(joint.known is Known.MEASURED for joint in state.joints)
         counts = [j.count if j.known is not Known.UNKNOWN else np.nan for j in state.joints]
         positions = self.calibration.positions(counts)
         velocities = np.zeros_like(positions)

@@ -7,7 +7,7 @@ from concurrent.futures import TimeoutError as NoAnswer
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Bool
+from std_msgs.msg import Bool, Float64
 from std_srvs.srv import SetBool, Trigger
 
 from bridge.calibration import Calibration
@@ -20,11 +20,13 @@ from bridge.events import (
     Incompatible,
     StateReceived,
 )
+from bridge.gripper import Gripper
 from bridge.latencies import Latencies, percentiles_ms
 from bridge.link_monitor import LinkMonitor
 from bridge.link_thread import LinkThread, Ticket
 from bridge.machine_status import MachineStatus
 from bridge.messages import Arm, Clear, Command, Disarm, Stop
+from bridge.programs_node import BoardPrograms
 from bridge.serial_port import SerialPort
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
@@ -55,6 +57,7 @@ class SerialBridge(Node):
         self._baud = baud or config.link.baud
         self._calibration = Calibration.from_config(config.servos)
         self._gate = CommandGate(self._calibration, 1e-3 * config.link.setpoint_deadline_ms)
+        self._gripper = Gripper(config.servos, self._calibration)
         self._session = Session(len(self._calibration.names))
         self._monitor = LinkMonitor(self._session, self._calibration)
         # Receipt times are monotonic, but read like the system's clock at the start.
@@ -70,6 +73,7 @@ class SerialBridge(Node):
             self._on_event,
             self._on_written,
         )
+        self._programs = BoardPrograms(self, self._calibration, self._link.request)
         self._link.start()
 
     def close(self) -> None:
@@ -80,6 +84,7 @@ class SerialBridge(Node):
         self._joint_states = self.create_publisher(JointState, 'joint_states', MEASUREMENT)
         self._machine_state = self.create_publisher(DiagnosticStatus, 'machine_state', LATCHED)
         self.create_subscription(JointState, 'joint_command', self._on_command, COMMAND)
+        self.create_subscription(Float64, 'gripper', self._on_gripper, COMMAND)
         self.create_subscription(Bool, 'emergency_stop', self._on_emergency_stop, COMMAND)
         self.create_service(SetBool, '~/enable', self._on_enable)
         self.create_service(Trigger, '~/clear_fault', self._on_clear_fault)
@@ -95,13 +100,11 @@ class SerialBridge(Node):
             self.get_logger().info('joint_command without a stamp: taken as now', once=True)
         try:
             self._refuse_unless_enabled()
-            joints = self._monitor.joints
+            present = None if self._monitor.joints is None else self._monitor.joints.positions
+            command = message.name, message.position
+            names, positions = self._gripper.joined(command, now, present)
             setpoint = self._gate.admit(
-                message.name,
-                message.position,
-                stamp or None,
-                now + self._clock_start,
-                None if joints is None else joints.positions,
+                names, positions, stamp or None, now + self._clock_start, present
             )
         except ManipulatorError as error:
             self._monitor.refuse(str(error))
@@ -111,9 +114,21 @@ class SerialBridge(Node):
 
     def _refuse_unless_enabled(self) -> None:
         if not (self._monitor.is_enabled_here and self._session.accepts_setpoints):
-            self._gate.restart()
+            self._restart()
             current = self._monitor.status
             raise Refused(f'{current.word}{f" ({current.reason})" if current.reason else ""}')
+
+    def _restart(self) -> None:
+        """What comes next must start where the joints are."""
+        self._gate.restart()
+        self._gripper.restart()
+
+    def _on_gripper(self, message: Float64) -> None:
+        try:
+            self._refuse_unless_enabled()
+            self._gripper.aim(message.data)
+        except ManipulatorError as error:
+            self._warn(f'gripper refused: {error}')
 
     def _on_emergency_stop(self, message: Bool) -> None:
         if message.data:
@@ -148,7 +163,7 @@ class SerialBridge(Node):
             return False, f'{error}{f": {trouble}" if trouble else ""}'
         except NoAnswer:
             return False, f'no answer within {ANSWER_WITHIN:g} s'
-        self._gate.restart()
+        self._restart()
         return True, done
 
     # From the board (the link's thread)
@@ -192,6 +207,7 @@ class SerialBridge(Node):
             'reason': current.reason,
             'followed': 'yes' if self._is_followed else 'no',
             'port': self._port,
+            'joints': 'measured' if self._monitor.is_measured else 'commanded',
             'board': self._monitor.board,
             'joints_unknown': ' '.join(self._monitor.unknown_joints),
         }

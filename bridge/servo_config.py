@@ -26,6 +26,7 @@ class ServoConfig:
     us_per_deg: float | None = quantity(0.5, 500, default=None)
     centre_mm: float | None = quantity(-5000, 5000, default=None)
     us_per_mm: float | None = quantity(0.5, 5000, default=None)
+    is_gripper: bool = False
 
     def __post_init__(self) -> None:
         problems = []
@@ -68,6 +69,8 @@ class ServosConfig:
         names = [joint.name for joint in self.joints]
         if len(set(names)) < len(names):
             problems.append(f'joints: names stand twice in {names}')
+        if sum(joint.is_gripper for joint in self.joints) > 1:
+            problems.append('joints: more than one is the gripper')
         channels = [joint.channel for joint in self.joints]
         if sorted(channels) != list(range(len(channels))):
             problems.append(f'joints: channels {channels} are not 0 to {len(channels) - 1}')
@@ -101,12 +104,13 @@ class LinkConfig:
 
 @dataclass(frozen=True)
 class SimulationConfig:
-    """What the fake board's servos and battery do."""
+    """What the fake board's servos and battery do; joints: what the board tells of them."""
 
     hysteresis_deg: float = quantity(0, 45, default=0.0)
     hysteresis_mm: float = quantity(0, 100, default=0.0)
     dead_band_us: float = quantity(0, 200, default=5.0)
     battery_v: float = quantity(0, 60, default=7.6)
+    joints: Literal['commanded', 'measured'] = 'commanded'
 
 
 @dataclass(frozen=True)
