@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from hexarm import (
+    accuracy,
     check,
     demo,
     firmware_header,
@@ -16,8 +17,8 @@ from hexarm import (
     ik,
     leg_motion,
     machine_list,
-    reach,
     mjcf,
+    reach,
     up,
     workspace,
 )
