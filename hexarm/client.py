@@ -7,6 +7,7 @@ from typing import Any
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Path
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
@@ -15,6 +16,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.nodes.messages import pose_message, seconds
+from manipulator.nodes.path_goals import path_message
 from manipulator.nodes.qos import COMMAND, LATCHED
 from manipulator.pose import Pose
 
@@ -44,6 +46,7 @@ class Client:
         self._executor = EventsExecutor()
         self._executor.add_node(self.node)
         self._goals = self.node.create_publisher(PoseStamped, 'goal_pose', COMMAND)
+        self._paths = self.node.create_publisher(Path, 'goal_path', COMMAND)
         subscribe = self.node.create_subscription
         subscribe(DiagnosticStatus, 'machine_state', self._on_machine_state, LATCHED)
         subscribe(DiagnosticStatus, 'motion_status', self._on_motion_status, LATCHED)
@@ -117,6 +120,14 @@ class Client:
         self.wait('a listener for goals', lambda: self._goals.get_subscription_count() > 0, 10.0)
         stamp = f'{self.publish_goal(pose):.9f}'
         self._await_result(lambda: self.motion('goal_stamp') == stamp, seconds)
+
+    def follow(self, poses: Pose, seconds: float = 60.0) -> None:
+        """Goes exactly along poses (n,), n ≤ 2,000; Refused or Stopped with the reason."""
+        self.wait('a listener for paths', lambda: self._paths.get_subscription_count() > 0, 10.0)
+        stamp = self.node.get_clock().now().to_msg()
+        self._paths.publish(path_message(poses, stamp))
+        name = f'{stamp.sec + 1e-9 * stamp.nanosec:.9f}'
+        self._await_result(lambda: self.motion('goal_stamp') == name, seconds)
 
     def home(self, seconds: float = 10.0) -> None:
         """Goes home and waits until it is there; Refused or Stopped with the reason."""

@@ -24,6 +24,7 @@ from manipulator.nodes.messages import (
     seconds,
 )
 from manipulator.nodes.parameters import declare
+from manipulator.nodes.path_goals import PathGoals
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
@@ -55,10 +56,15 @@ class TrajectoryNode(Node):
         self._last_refusal = ''
         self._jitter = Jitter(self._dt)
         self._connect()
+        self._paths = PathGoals(self, self._pilot, self._dt, self._say)
         self._teleop_topics = TeleopTopics(self, self._teleop)
         self._answers = TrajectoryServices(self, self._pilot, self._teleop, self._dt)
         self._timer = self.create_timer(self._dt, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('setpoint', 'pose'))
+
+    def close(self) -> None:
+        """Ends what runs beside this node."""
+        self._paths.close()
 
     def _connect(self) -> None:
         self._goals = Intake(self, 'goal_pose', self._on_goal, self._on_bad_goal)
@@ -115,6 +121,7 @@ class TrajectoryNode(Node):
         if self._poses.age > POSE_DEADLINE:
             self._pilot.release(f'no pose for {POSE_DEADLINE} s')
         self._teleop.drive(time.monotonic())
+        self._paths.poll()
         pose = self._pilot.step()
         if pose is not None:
             self._setpoints.publish(pose_message(pose, self.get_clock().now().to_msg()))
@@ -140,6 +147,8 @@ class TrajectoryNode(Node):
             'goal_stamp': f'{new.goal_stamp:.9f}',
             'reason': new.reason,
         }
+        if new.percent is not None:
+            values['percent'] = str(new.percent)
         name = self.get_fully_qualified_name().lstrip('/')
         level = WARN if new.result == 'refused' else OK
         self._statuses.publish(status(level, name, text, values))

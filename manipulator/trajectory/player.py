@@ -90,6 +90,11 @@ class Player:
         self.expected = stamp
         self._report('planning', stamp)
 
+    def refuse(self, stamp: float, reason: str) -> None:
+        """Says that nothing came of the path that was expected."""
+        self.expected = None
+        self._report('refused', stamp, reason)
+
     def jog(self, wish: Wish | None) -> None:
         """What the source that has the machine wants from now on; None when nobody has it.
 
@@ -239,7 +244,6 @@ class Player:
             self._report(result, stamp, reason)
 
     def _follow(self, path: TimedPath, stamp: float) -> None:
-        """Begins a path at whose first pose the machine now is."""
         if np.abs(self.joints - path.joints).max() > BRANCH_JUMP:
             self._report('refused', stamp, 'the joints came to the first pose on another branch')
         else:

@@ -1,0 +1,135 @@
+"""`goal_path`: taken undecoded, worked out in a process of its own, then driven like a goal."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import radians
+
+from builtin_interfaces.msg import Time
+from nav_msgs.msg import Path
+from rclpy.node import Node
+from std_msgs.msg import Header
+
+from manipulator.errors import InvalidInput, ManipulatorError, Refused
+from manipulator.nodes.intake import Intake
+from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, check_frame, pose_message, seconds
+from manipulator.nodes.parameters import declare
+from manipulator.nodes.path_cdr import read_head
+from manipulator.nodes.path_process import PathTask
+from manipulator.nodes.path_work import PathWork
+from manipulator.nodes.qos import COMMAND
+from manipulator.pose import Pose
+from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.motion_status import MotionStatus
+from manipulator.trajectory.path import Tolerance
+from manipulator.trajectory.pilot import Pilot
+
+MOST_POSES = 2000
+OVERTAKEN = 'a newer command came while the path was worked out'
+
+
+@dataclass(frozen=True)
+class RawPath:
+    """A path of which only the beginning has been read."""
+
+    header: Header
+    count: int
+    serialized: bytes
+
+
+class PathGoals:
+    """The path that is being worked out, if any; `poll` is called at every tick."""
+
+    def __init__(
+        self, node: Node, pilot: Pilot, dt: float, say: Callable[[MotionStatus], None]
+    ) -> None:
+        self._node, self._pilot, self._dt, self._say = node, pilot, dt, say
+        self._work: PathWork | None = None
+        self._stamp = 0.0
+        fastest = pilot.machine.motion.linear.speed
+        for name, default, description, bounds in (
+            ('path_speed', fastest, 'speed along paths without stamps (m/s)', (1e-4, 10.0)),
+            ('path_tolerance', 1e-4, 'how far a path may cut its corners (m)', (1e-6, 0.1)),
+            ('path_turn_tolerance', radians(0.1), 'the same for turns (rad)', (1e-5, 0.2)),
+        ):
+            declare(node, name, default, description, bounds, is_read_only=False)
+        self._intake = Intake(node, 'goal_path', self._on_path, self._on_bad_path)
+        node.create_subscription(Path, 'goal_path', self._on_bytes, COMMAND, raw=True)
+
+    def poll(self) -> None:
+        """Takes up what has been worked out; drops it when something newer came."""
+        if self._work is None:
+            return
+        if not self._is_expected:
+            self.close()
+            self._say(MotionStatus(self._pilot.status.mode, 'stopped', self._stamp, OVERTAKEN))
+            return
+        outcome, player = self._work.outcome, self._pilot.player
+        if outcome is None:
+            return
+        self._work = None
+        if isinstance(outcome, str):
+            player.refuse(self._stamp, outcome)
+        elif isinstance(outcome, Pose):
+            player.pursue(Goal(outcome, self._stamp))
+        else:
+            player.pursue(Goal(outcome.at(0.0).pose, self._stamp, then=outcome))
+
+    def close(self) -> None:
+        """Ends the process that works a path out."""
+        if self._work is not None:
+            self._work.cancel()
+            self._work = None
+
+    @property
+    def _is_expected(self) -> bool:
+        try:
+            return self._pilot.player.expected == self._stamp
+        except Refused:
+            return False
+
+    def _on_bytes(self, serialized: bytes) -> None:
+        try:
+            head = read_head(serialized)
+        except InvalidInput as error:
+            self._node.get_logger().warning(f'goal_path: {error}', throttle_duration_sec=1.0)
+            return
+        stamp = Time(sec=head.sec, nanosec=head.nanosec)
+        self._intake(RawPath(Header(stamp=stamp, frame_id=head.frame_id), head.count, serialized))
+
+    def _on_path(self, message: RawPath) -> None:
+        if not 1 <= message.count <= MOST_POSES:
+            raise InvalidInput(f'a path of {message.count} poses, needs 1 to {MOST_POSES}')
+        check_frame(message.header.frame_id, (BASE_FRAME, WORK_FRAME))
+        frame = message.header.frame_id or BASE_FRAME
+        player, stamp = self._pilot.player, seconds(message.header.stamp)
+        task = PathTask(
+            self._pilot.machine,
+            message.serialized,
+            frame,
+            frame == BASE_FRAME,
+            self._parameter('path_speed'),
+            Tolerance(self._parameter('path_tolerance'), self._parameter('path_turn_tolerance')),
+            player.joints,
+            self._dt,
+        )
+        player.expect(stamp)
+        self.close()
+        self._stamp, self._work = stamp, PathWork(task)
+
+    def _parameter(self, name: str) -> float:
+        return float(self._node.get_parameter(name).value)
+
+    def _on_bad_path(self, message: RawPath, error: ManipulatorError) -> None:
+        mode, stamp = self._pilot.status.mode, seconds(message.header.stamp)
+        self._say(MotionStatus(mode, 'refused', stamp, str(error)))
+
+
+def path_message(
+    poses: Pose, stamp: Time, frame: str = BASE_FRAME, stamps: list[Time] | None = None
+) -> Path:
+    """Poses (n,) as a message; their stamps, if any, say when each is to be passed."""
+    count = len(poses.position)
+    times = [Time()] * count if stamps is None else stamps
+    message = Path(poses=[pose_message(poses[i], times[i], frame) for i in range(count)])
+    message.header.stamp, message.header.frame_id = stamp, frame
+    return message
