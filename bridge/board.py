@@ -4,7 +4,9 @@ What it does with a frame stands in board_modes.py; here it listens, answers and
 as docs/protocol.md says. The simulated chip has the same three methods.
 """
 
-from bridge.board_modes import PULSE_PERIOD_US, BoardModes, BoardSettings
+from bridge.board_modes import PULSE_PERIOD_US, BoardModes
+from bridge.board_programs import still_axes
+from bridge.board_settings import BoardSettings
 from bridge.frames import DELIMITER, Unreadable, code_of, encode
 from bridge.framing import FrameReader
 from bridge.messages import (
@@ -33,11 +35,16 @@ HIGHEST_U16 = 0xFFFF
 
 
 class Board:
-    """One board on a line; `battery_mv` is what its divider measures now."""
+    """One board on a line; `battery_mv` is what its divider measures now.
+
+    measured: what its encoders read, in counts by channel; None where joints have none.
+    """
 
     def __init__(self, settings: BoardSettings, battery_mv: int = 7600) -> None:
         self.settings = settings
         self.battery_mv = battery_mv
+        self.measured: tuple[int, ...] | None = None
+        self._axes = still_axes()
         self.reset(ResetCause.POWER_ON)
 
     def reset(self, cause: ResetCause) -> None:
@@ -45,7 +52,7 @@ class Board:
         self._now_us = self._next_period_us = 0
         self._cause = cause
         self._reader = FrameReader()
-        self._modes = BoardModes(self.settings)
+        self._modes = BoardModes(self.settings, self._axes)
         self._output = bytearray()
         self._sent = 0
         self._refused = 0
@@ -158,10 +165,6 @@ class Board:
 
     def _state(self, now_us: int) -> State:
         since = self._accepted_at_us
-        known = (
-            Joint(Known.UNKNOWN, 0) if pulse is None else Joint(Known.COMMANDED, round(pulse))
-            for pulse in self.pulses
-        )
         return State(
             echo=self._echo,
             echo_age_us=HIGHEST_U16 if since is None else _saturated(now_us - since),
@@ -172,7 +175,15 @@ class Board:
             bad_frames=_saturated(self._reader.bad_frames),
             overruns=_saturated(self._reader.overruns),
             refused=_saturated(self._refused),
-            joints=tuple(known),
+            joints=self._joints(),
+        )
+
+    def _joints(self) -> tuple[Joint, ...]:
+        if self.measured is not None:
+            return tuple(Joint(Known.MEASURED, count) for count in self.measured)
+        return tuple(
+            Joint(Known.UNKNOWN, 0) if pulse is None else Joint(Known.COMMANDED, round(pulse))
+            for pulse in self.pulses
         )
 
 

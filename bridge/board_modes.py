@@ -4,17 +4,12 @@ The firmware has the same state machine (docs/protocol.md draws it). Times in mi
 the start, as the board counts them.
 """
 
-from dataclasses import dataclass
-from typing import Literal
-
-from bridge.board_courses import Solver
 from bridge.board_programs import Programs, Step
-from bridge.calibration import Calibration
+from bridge.board_settings import BoardSettings
 from bridge.messages import (
     MAX_DEADLINE_MS,
     MIN_DEADLINE_MS,
     NO_JOINT,
-    PROTOCOL_VERSION,
     Arm,
     Clear,
     Command,
@@ -27,9 +22,8 @@ from bridge.messages import (
     Setpoint,
     Stop,
 )
-from bridge.program_messages import Finish, Play
+from bridge.program_messages import CycleAxis, Finish, Play
 from bridge.pulse_drive import PulseDrive
-from bridge.servo_config import BoardConfig
 
 PULSE_PERIOD_US = 20_000
 UNDERVOLTAGE_DELAY_US = 500_000
@@ -37,42 +31,14 @@ UNDERVOLTAGE_DELAY_US = 500_000
 LATCHED = {Mode.STOPPED: Result.STOPPED, Mode.FAULT: Result.FAULT}
 FOLLOWING = (Mode.ARMED, Mode.HOLDING)
 BY_ITSELF = (Mode.CHECKING, Mode.PLAYING)
-
-
-@dataclass(frozen=True)
-class BoardSettings:
-    """What the firmware has from the machine file; ranges and speeds in counts, per channel.
-
-    solve: the inverse kinematics by which the board plays cycles; None: it has none.
-    """
-
-    count_ranges: tuple[tuple[int, int], ...]
-    count_speeds: tuple[float, ...]
-    on_link_loss: Literal['hold', 'release'] = 'hold'
-    arm_interval_us: int = 150_000
-    minimum_battery_mv: int = 0
-    boot_us: int = 300_000
-    version: int = PROTOCOL_VERSION
-    solve: Solver | None = None
-
-    @classmethod
-    def from_config(cls, config: BoardConfig, boot_s: float) -> 'BoardSettings':
-        """The settings of a machine whose board takes `boot_s` to start."""
-        calibration = Calibration.from_config(config.servos)
-        return cls(
-            count_ranges=calibration.count_ranges,
-            count_speeds=calibration.count_speeds,
-            on_link_loss=config.link.on_link_loss,
-            arm_interval_us=1000 * config.servos.arm_interval_ms,
-            minimum_battery_mv=round(1000 * config.servos.minimum_battery_v),
-            boot_us=round(1e6 * boot_s),
-        )
+TROUBLES = {Step.UNREACHABLE: FaultCode.OUT_OF_REACH, Step.TOO_FAST: FaultCode.TOO_FAST}
 
 
 class BoardModes:
     """Mode, pulses and deadlines of one board; starts disarmed, with no pulse on any channel."""
 
-    def __init__(self, settings: BoardSettings) -> None:
+    def __init__(self, settings: BoardSettings, axes: list[CycleAxis]) -> None:
+        """The cycle's axes outlive a reset: the board keeps them in its EEPROM."""
         self.settings = settings
         self.drive = PulseDrive(settings.count_speeds)
         self.mode = Mode.DISARMED
@@ -83,7 +49,8 @@ class BoardModes:
         self._low_since_us: int | None = None
         self._park: tuple[int, ...] = ()
         self._energise_at_us = 0
-        self._programs = Programs(settings.count_ranges, settings.count_speeds, settings.solve)
+        ranges, speeds = settings.count_ranges, settings.count_speeds
+        self._programs = Programs(ranges, speeds, settings.solve, axes)
 
     @property
     def flags(self) -> Flag:
@@ -126,14 +93,15 @@ class BoardModes:
                 return Result.OK
             case Clear():
                 return self._clear()
-            case Play(program, is_loop):
-                return self._play(program, is_loop)
+            case Play():
+                return self._play(command)
             case Finish():
                 self._programs.finish()
                 return Result.OK
             case _:
-                is_playing = self.mode in BY_ITSELF
-                return Result.NO_PROGRAM if is_playing else self._programs.store(command)
+                if self.mode in BY_ITSELF:
+                    return Result.NO_PROGRAM
+                return self._programs.store(command)
 
     def _arm(self, park: tuple[int, ...], now_us: int) -> Result:
         if self.mode in LATCHED:
@@ -171,13 +139,12 @@ class BoardModes:
             self._hold(Mode.DISARMED)
         return Result.OK
 
-    def _play(self, program: int, is_loop: bool) -> Result:
+    def _play(self, play: Play) -> Result:
         if self.mode in LATCHED:
             return LATCHED[self.mode]
         if self.mode not in FOLLOWING:
             return Result.NOT_ARMED
-        present = tuple(pulse for pulse in self.drive.pulses if pulse is not None)
-        result = self._programs.begin(program, is_loop, present)
+        result = self._programs.begin(play.program, play.is_loop, self.drive.counts)
         if result is Result.OK:
             self._hold(Mode.CHECKING)
         return result
@@ -185,10 +152,9 @@ class BoardModes:
     def _play_on(self) -> Fault | None:
         """One period of a program; what cannot be reached ends it where the joints are."""
         step, counts = self._programs.step()
-        if step in (Step.UNREACHABLE, Step.TOO_FAST):
+        if step in TROUBLES:
             self._hold(Mode.ARMED)
-            code = FaultCode.OUT_OF_REACH if step is Step.UNREACHABLE else FaultCode.TOO_FAST
-            return Fault(code, NO_JOINT, self._programs.trouble_ms)
+            return Fault(TROUBLES[step], NO_JOINT, self._programs.trouble_ms)
         if step is not Step.CHECKING:
             self.mode = Mode.PLAYING if step is Step.MOVING else Mode.ARMED
             self.drive.aim([round(count) for count in counts])

@@ -30,18 +30,24 @@ class Step(enum.Enum):
     TOO_FAST = enum.auto()
 
 
+def still_axes() -> list[CycleAxis]:
+    """No cycle."""
+    return [CycleAxis(axis, 0.0, 0, 0.0) for axis in range(AXES)]
+
+
 class Programs:
-    """What was uploaded, and the one that is being played."""
+    """What was uploaded, and the one that is being played; `axes` outlives a reset."""
 
     def __init__(
         self,
         count_ranges: Sequence[tuple[int, int]],
         count_speeds: Sequence[float],
         solve: Solver | None,
+        axes: list[CycleAxis],
     ) -> None:
         self._ranges, self._solve = count_ranges, solve
         self._steps = [speed * PERIOD for speed in count_speeds]
-        self._axes = [CycleAxis(axis, 0.0, 0, 0.0) for axis in range(AXES)]
+        self._axes = axes
         self._rows: list[tuple[int, ...]] = []
         self._wanted = TableBegin(0, MIN_STEP_MS)
         self._is_whole = False

@@ -11,7 +11,7 @@ import numpy as np
 
 from bridge.board import Board
 from bridge.board_courses import Solver
-from bridge.board_modes import BoardSettings
+from bridge.board_settings import BoardSettings
 from bridge.calibration import COUNTS_PER_US, Calibration
 from bridge.fake_line import FakeLine
 from bridge.messages import ResetCause
@@ -24,11 +24,15 @@ STEP = 0.01
 
 @dataclass(frozen=True)
 class FakeMachine:
-    """Board and servos of one machine, before they are put on a line."""
+    """Board and servos of one machine, before they are put on a line.
+
+    is_measured: the board has encoders and tells what they read.
+    """
 
     board: Board
     servos: Servos
     calibration: Calibration
+    is_measured: bool = False
 
     @classmethod
     def from_config(
@@ -39,13 +43,16 @@ class FakeMachine:
         dead_band = COUNTS_PER_US * config.simulation.dead_band_us / np.abs(calibration.scale)
         servos = Servos.at_rest(calibration.park, calibration.speed, dead_band, hysteresis)
         settings = replace(BoardSettings.from_config(config, boot_s), solve=solve)
-        return cls(Board(settings, round(1000 * config.simulation.battery_v)), servos, calibration)
+        board = Board(settings, round(1000 * config.simulation.battery_v))
+        return cls(board, servos, calibration, config.simulation.joints == 'measured')
 
     def step(self, dt: float) -> None:
         """Board first, then the servos that it drives."""
         self.board.step(dt)
         pulses = [np.nan if pulse is None else pulse for pulse in self.board.pulses]
         self.servos.step(self.calibration.positions(pulses), dt)
+        if self.is_measured:
+            self.board.measured = self.calibration.nearest_counts(self.servos.positions)
 
 
 class BoardThread(threading.Thread):

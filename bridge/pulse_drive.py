@@ -22,6 +22,11 @@ class PulseDrive:
         return tuple(pulse if is_on else None for pulse, is_on in pairs)
 
     @property
+    def counts(self) -> tuple[float, ...]:
+        """The widths of all channels, whether they are on or not."""
+        return tuple(self._pulses)
+
+    @property
     def is_all_on(self) -> bool:
         """Every channel puts out pulses."""
         return all(self._is_on)

@@ -261,6 +261,7 @@ static void pass_period(void)
     Fault begun = safety_pass_period();
     if (begun.code != FAULT_NONE)
         fault_to_say = begun;
+    cycle_keep();
     uint32_t now_ms = clock_period_ms();
     bool is_host_silent = now_ms - heard_ms >= HOST_SILENCE_MS;
     if (is_host_silent && (int32_t)(now_ms - hello_ms) >= 0) {

@@ -4,8 +4,12 @@
 
 #include "kinematics.h"
 #include "protocol.h"
+#include "wire.h"
 
 #if HAS_KINEMATICS
+
+#include <avr/eeprom.h>
+#include <string.h>
 
 enum { AXES = 6, LONGEST_S = 60, HIGHEST_MHZ = 25000 };
 #define TURN 6.2831853f
@@ -16,13 +20,46 @@ typedef struct {
     float phase;
 } Axis;
 
-static Axis axes[AXES];
+typedef struct {
+    Axis axes[AXES];
+    uint16_t crc;
+} Kept;
+
+static Kept kept;
+static Axis *const axes = kept.axes;
+static Kept in_eeprom EEMEM;
+
+static uint16_t crc_of_axes(void)
+{
+    uint16_t crc = 0xFFFF;
+    for (uint8_t i = 0; i < sizeof kept.axes; i++)
+        crc = wire_crc(crc, ((const uint8_t *)kept.axes)[i]);
+    return crc;
+}
+
+void cycle_begin(void)
+{
+    eeprom_read_block(&kept, &in_eeprom, sizeof kept);
+    if (kept.crc != crc_of_axes())
+        memset(&kept, 0, sizeof kept);
+}
+
+/* All bytes in turn: a change is kept after at most 62 periods, and nothing ever waits. */
+void cycle_keep(void)
+{
+    static uint8_t next;
+    if (!eeprom_is_ready())
+        return;
+    eeprom_update_byte((uint8_t *)&in_eeprom + next, ((const uint8_t *)&kept)[next]);
+    next = next + 1 == sizeof kept ? 0 : next + 1;
+}
 
 uint8_t cycle_set(uint8_t axis, float amplitude, uint16_t frequency_mhz, float phase)
 {
     if (axis >= AXES || !isfinite(amplitude) || !isfinite(phase) || frequency_mhz > HIGHEST_MHZ)
         return RESULT_OUT_OF_RANGE;
     axes[axis] = (Axis){amplitude, frequency_mhz, fmodf(phase, TURN)};
+    kept.crc = crc_of_axes();
     return RESULT_OK;
 }
 
@@ -79,6 +116,14 @@ bool cycle_at(float time, float part, float counts[JOINT_COUNT])
 }
 
 #else /* a machine whose kinematics the board does not know */
+
+void cycle_begin(void)
+{
+}
+
+void cycle_keep(void)
+{
+}
 
 uint8_t cycle_set(uint8_t axis, float amplitude, uint16_t frequency_mhz, float phase)
 {

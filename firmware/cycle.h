@@ -1,12 +1,19 @@
 /* Periodic motion about home: one sine on each axis, as in the experiment of Prokopovich 2019.
  *
- * The board solves the inverse kinematics itself. Safe state: no cycle (all amplitudes 0).
+ * The board solves the inverse kinematics itself. The cycle outlives a power-down: it is kept in
+ * the EEPROM. Safe state: no cycle (all amplitudes 0), also where what is kept there is damaged.
  */
 #pragma once
 #include <stdbool.h>
 #include <stdint.h>
 
 #include "machine.h"
+
+/* Remembers the cycle that was set before the power went. */
+void cycle_begin(void);
+
+/* Keeps one byte of the cycle, where the EEPROM has another; call once a period. */
+void cycle_keep(void);
 
 /* Axis 0 to 5 (x, y, z, roll, pitch, yaw): amplitude in m or rad, frequency in thousandths of a
  * hertz, phase in rad. An enum Result. */

@@ -8,6 +8,7 @@
 #include "board.h"
 #include "buttons.h"
 #include "clock.h"
+#include "cycle.h"
 #include "link.h"
 #include "servo.h"
 
@@ -38,6 +39,7 @@ int main(void)
 {
     buttons_begin();
     battery_begin();
+    cycle_begin();
     link_begin();
     clock_begin();
     servo_begin();

@@ -4,7 +4,8 @@ import argparse
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from bridge.board_modes import PULSE_PERIOD_US, BoardSettings
+from bridge.board_modes import PULSE_PERIOD_US
+from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
 from bridge.servo_config import BoardConfig
 from hexarm import machines

@@ -6,27 +6,16 @@ numbers in radians (or metres).
 
 import csv
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from bridge.calibration import Calibration
-from manipulator.arrays import Array
+from bridge.count_table import CountTable, count_table
 from manipulator.errors import ConfigError, InvalidInput
 
 TIME = 'time'
 MOST_BYTES = 128 * 1024
-EQUAL = 1e-3
-MIN_STEP_MS, MAX_STEP_MS = 20, 65_535
-
-
-@dataclass(frozen=True)
-class CountTable:
-    """Rows of pulse counts by channel, step_ms apart."""
-
-    rows: tuple[tuple[int, ...], ...]
-    step_ms: int
 
 
 def read_table(path: Path, calibration: Calibration) -> CountTable:
@@ -47,28 +36,6 @@ def read_table(path: Path, calibration: Calibration) -> CountTable:
         return count_table(times, positions, calibration)
     except InvalidInput as error:
         raise ConfigError([str(error)], str(path)) from error
-
-
-def count_table(times: Array, positions: Array, calibration: Calibration) -> CountTable:
-    """Positions (rows, joints) at `times` (rows,) in seconds as counts.
-
-    InvalidInput where the time steps differ, or a row is beyond what a servo can reach.
-    """
-    if len(times) < 2:
-        raise InvalidInput(f'{len(times)} rows, a table has at least 2')
-    steps = np.diff(times)
-    if not (np.abs(steps - steps.mean()) <= EQUAL).all():
-        raise InvalidInput(f'time steps from {steps.min():.4g} to {steps.max():.4g} s differ')
-    step_ms = round(1e3 * float(steps.mean()))
-    if not MIN_STEP_MS <= step_ms <= MAX_STEP_MS:
-        raise InvalidInput(f'a time step of {step_ms} ms is outside [20, 65535] ms')
-    rows = []
-    for k, row in enumerate(positions):
-        try:
-            rows.append(calibration.counts(row))
-        except InvalidInput as error:
-            raise InvalidInput(f'row {k}: {error}') from error
-    return CountTable(tuple(rows), step_ms)
 
 
 def flash_header(table: CountTable, name: str) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bridge.board_modes import BoardSettings
+from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
 from bridge.messages import ResetCause
 from bridge.servo_config import BoardConfig

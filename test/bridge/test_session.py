@@ -1,7 +1,7 @@
 import pytest
 
 from bridge.board import Board
-from bridge.board_modes import BoardSettings
+from bridge.board_settings import BoardSettings
 from bridge.events import (
     Acknowledged,
     CommandFailed,

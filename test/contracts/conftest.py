@@ -6,7 +6,7 @@ import os
 import pytest
 
 from bridge.board import Board
-from bridge.board_modes import BoardSettings
+from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
 from bridge.frames import encode
 from bridge.framing import FrameReader

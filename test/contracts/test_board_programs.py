@@ -268,3 +268,15 @@ def test_a_board_without_kinematics_has_no_cycle(make_driver):
     driver = make_driver(solve=None)
     driver.arm()
     assert driver.ask(TURN) is Result.NO_PROGRAM
+
+
+def test_a_cycle_outlives_a_reset_and_a_table_does_not(make_driver):
+    driver = make_driver()
+    driver.arm(HOME)
+    driver.ask(TURN)
+    upload(driver, WAVE[:3])
+    driver.run(2.0)
+    driver.reset()
+    driver.arm(HOME)
+    assert driver.ask(Play(Program.TABLE, False)) is Result.NO_PROGRAM
+    assert driver.ask(Play(Program.CYCLE, False)) is Result.OK

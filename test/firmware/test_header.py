@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from bridge.board_modes import BoardSettings
+from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
 from bridge.servo_config import BoardConfig
 from hexarm import firmware_build, machines

@@ -1,0 +1,140 @@
+"""The part of serial_bridge that gives the board programs to play by itself."""
+
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+
+import numpy as np
+from rclpy.node import Node
+from std_msgs.msg import String
+from std_srvs.srv import SetBool, Trigger
+from trajectory_msgs.msg import JointTrajectory
+
+from bridge.calibration import Calibration
+from bridge.count_table import count_table
+from bridge.messages import Command
+from bridge.program_messages import CycleAxis, Finish, Play, Program
+from bridge.upload import Upload
+from manipulator.arrays import Array
+from manipulator.errors import InvalidInput, ManipulatorError
+from manipulator.nodes.parameters import declare
+from manipulator.nodes.qos import COMMAND, LATCHED
+
+AXES = 'x, y, z, roll, pitch, yaw'
+ANSWER_WITHIN = 5.0
+MOST_ROWS = 65_535
+
+
+class BoardPrograms:
+    """`joint_table`, `program_status`, `~/play_table`, `~/play_cycle` and `~/finish_program`."""
+
+    def __init__(
+        self,
+        node: Node,
+        calibration: Calibration,
+        request: Callable[[Command], 'Future[None]'],
+    ) -> None:
+        self._node, self._calibration, self._request = node, calibration, request
+        self._is_busy = threading.Lock()
+        for name, unit in (('amplitude', 'm, rad'), ('frequency', 'Hz'), ('phase', 'rad')):
+            description = f"of the board's cycle ({unit}) about {AXES}"
+            declare(node, f'board_cycle.{name}', [0.0] * 6, description, is_read_only=False)
+        self._status = node.create_publisher(String, 'program_status', LATCHED)
+        node.create_subscription(JointTrajectory, 'joint_table', self._on_table, COMMAND)
+        node.create_service(SetBool, '~/play_table', self._on_play_table)
+        node.create_service(SetBool, '~/play_cycle', self._on_play_cycle)
+        node.create_service(Trigger, '~/finish_program', self._on_finish)
+
+    def _on_table(self, message: JointTrajectory) -> None:
+        try:
+            table = count_table(*_columns(message, self._calibration.names), self._calibration)
+        except ManipulatorError as error:
+            self._say(f'joint_table refused: {error}')
+            return
+        rows = len(table.rows)
+        self._upload(table.upload, f'table of {rows} rows, {table.step_ms} ms apart, is on board')
+
+    def _upload(self, commands: Sequence[Command], done: str) -> None:
+        if not self._is_busy.acquire(blocking=False):
+            self._say('joint_table refused: another upload is under way')
+            return
+
+        def end(reason: str) -> None:
+            self._is_busy.release()
+            self._say(f'upload failed: {reason}' if reason else done)
+
+        Upload(self._request, commands, end).begin()
+
+    def _on_play_table(
+        self, request: SetBool.Request, response: SetBool.Response
+    ) -> SetBool.Response:
+        commands = (Play(Program.TABLE, request.data),)
+        response.success, response.message = self._ask(commands, 'the board plays its table')
+        return response
+
+    def _on_play_cycle(
+        self, request: SetBool.Request, response: SetBool.Response
+    ) -> SetBool.Response:
+        try:
+            commands: list[Command] = [*self._axes(), Play(Program.CYCLE, request.data)]
+        except InvalidInput as error:
+            response.success, response.message = False, str(error)
+            return response
+        done = 'the board checks its cycle, then plays it'
+        response.success, response.message = self._ask(commands, done)
+        return response
+
+    def _on_finish(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        done = 'the board ends its program smoothly'
+        response.success, response.message = self._ask((Finish(),), done)
+        return response
+
+    def _axes(self) -> tuple[CycleAxis, ...]:
+        """The six axes from the parameters; InvalidInput where they are not six numbers each."""
+        columns = []
+        for name in ('amplitude', 'frequency', 'phase'):
+            values = list(self._node.get_parameter(f'board_cycle.{name}').value)
+            if len(values) != 6 or not np.isfinite(values).all():
+                raise InvalidInput(f'parameter board_cycle.{name}: {values}, needs six numbers')
+            columns.append(values)
+        rows = enumerate(zip(*columns, strict=True))
+        return tuple(CycleAxis(k, a, _millihertz(f), p) for k, (a, f, p) in rows)
+
+    def _ask(self, commands: Sequence[Command], done: str) -> tuple[bool, str]:
+        """Whether the board obeyed them all, and what to say."""
+        ended = threading.Event()
+        reasons = []
+
+        def end(reason: str) -> None:
+            reasons.append(reason)
+            ended.set()
+
+        Upload(self._request, commands, end).begin()
+        if not ended.wait(ANSWER_WITHIN):
+            return False, f'no answer within {ANSWER_WITHIN:g} s'
+        return (False, reasons[0]) if reasons[0] else (True, done)
+
+    def _say(self, text: str) -> None:
+        self._node.get_logger().info(text)
+        self._status.publish(String(data=text))
+
+
+def _columns(message: JointTrajectory, names: Sequence[str]) -> tuple[Array, Array]:
+    """Times (n,) and positions (n, joints) in the order of `names`; InvalidInput otherwise."""
+    if len(message.points) > MOST_ROWS:
+        raise InvalidInput(f'{len(message.points)} points, at most {MOST_ROWS}')
+    if sorted(message.joint_names) != sorted(names):
+        raise InvalidInput(f'joints are {list(message.joint_names)}, needs {list(names)}')
+    order = [list(message.joint_names).index(name) for name in names]
+    if any(len(point.positions) != len(names) for point in message.points):
+        raise InvalidInput(f'a point has no {len(names)} positions')
+    spans = (point.time_from_start for point in message.points)
+    times = np.array([span.sec + 1e-9 * span.nanosec for span in spans])
+    positions = np.array([point.positions for point in message.points], dtype=np.float64)
+    return times, positions.reshape(-1, len(names))[:, order]
+
+
+def _millihertz(frequency: float) -> int:
+    if not 0 <= frequency <= 25:
+        raise InvalidInput(f'board_cycle.frequency: {frequency:g} Hz outside [0, 25] Hz')
+    return round(1000 * frequency)

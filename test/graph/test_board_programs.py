@@ -1,0 +1,109 @@
+"""Programs over topics and services: uploaded, played by the board alone, ended smoothly."""
+
+import math
+import os
+
+import pytest
+from builtin_interfaces.msg import Duration
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from hexarm import firmware_build
+from hexarm.client import Client
+from hexarm.graph import Executable, Graph
+from manipulator.errors import Refused
+from manipulator.nodes.qos import COMMAND, LATCHED
+
+pytestmark = pytest.mark.graph
+
+NAMES = [f'crank_{i}' for i in (2, 1, 3, 4, 5, 6)]
+SPACE = 'programs_rig'
+
+
+class Rig(Client):
+    """A user of the bridge alone."""
+
+    def __init__(self):
+        super().__init__(SPACE)
+        self.said = []
+        self._tables = self.node.create_publisher(JointTrajectory, 'joint_table', COMMAND)
+        self.node.create_subscription(String, 'program_status', self._hear, LATCHED)
+        self.wait('the bridge', lambda: self._tables.get_subscription_count() == 1, 10.0)
+
+    def _hear(self, message):
+        self.said.append(message.data)
+
+    def upload(self, table, words):
+        self.said.clear()
+        self._tables.publish(table)
+        self.wait(words, lambda: any(words in text for text in self.said), 10.0)
+
+    def ask(self, service, is_true):
+        return self._call(SetBool, service, SetBool.Request(data=is_true))
+
+    def wait_for_state(self, word):
+        self.wait(word, lambda: self.machine_state.message == word, 10.0)
+
+
+def swing(rows=20, step_ms=100):
+    points = []
+    for k in range(rows):
+        angle = math.radians(120 + 4 * math.sin(2 * math.pi * k / rows))
+        span = Duration(sec=k * step_ms // 1000, nanosec=k * step_ms % 1000 * 1_000_000)
+        points.append(JointTrajectoryPoint(positions=[angle] * 6, time_from_start=span))
+    return JointTrajectory(joint_names=NAMES, points=points)
+
+
+@pytest.fixture(scope='module', params=['fake', 'chip'])
+def rig(request, tmp_path_factory):
+    link = tmp_path_factory.mktemp('port') / 'board'
+    board = Executable('bridge', 'fake_hardware', {'machine': 'robocake', 'link': str(link)})
+    if request.param == 'chip':
+        missing = firmware_build.missing_tools()
+        if missing and os.environ.get('REQUIRE_ALL') != '1':
+            pytest.skip(f'not installed: {", ".join(missing)}')
+        command = firmware_build.chip_process('robocake', link)
+        board = Executable('firmware', 'chip', command=command)
+    parameters = {'machine': 'robocake', 'port': str(link), 'board_cycle.amplitude': AMPLITUDE}
+    parameters['board_cycle.frequency'] = '[1.0,1.0,1.0,1.0,1.0,1.0]'
+    bridge = Executable('bridge', 'serial_bridge', parameters, needs=link)
+    with Graph([board, bridge], SPACE), Rig() as rig:
+        rig.wait_for_state('disarmed')
+        yield rig
+
+
+AMPLITUDE = '[0.0,0.0,0.002,0.0,0.0,0.03]'
+
+
+@pytest.fixture
+def enabled(rig):
+    rig.ask('serial_bridge/enable', True)
+    rig.wait_for_state('enabled')
+    return rig
+
+
+def test_a_table_is_uploaded_played_in_a_loop_and_ended(enabled):
+    enabled.upload(swing(), 'table of 20 rows, 100 ms apart, is on board')
+    enabled.ask('serial_bridge/play_table', True)
+    enabled.wait_for_state('playing')
+    enabled.trigger('serial_bridge/finish_program')
+    enabled.wait_for_state('enabled')
+
+
+def test_a_cycle_is_played_once_and_ends_enabled(enabled):
+    enabled.ask('serial_bridge/play_cycle', False)
+    enabled.wait_for_state('playing')
+    enabled.wait_for_state('enabled')
+
+
+def test_refusals_say_why(enabled):
+    enabled.upload(swing(rows=600), 'the table has more rows than the board can hold')
+    enabled.upload(JointTrajectory(joint_names=['elbow']), "joints are ['elbow'], needs")
+    with pytest.raises(Refused, match='no such program'):
+        enabled.ask('serial_bridge/play_table', True)
+    enabled.ask('serial_bridge/enable', False)
+    enabled.wait_for_state('disarmed')
+    enabled.upload(swing(), 'is on board')
+    with pytest.raises(Refused, match='servos are off'):
+        enabled.ask('serial_bridge/play_table', True)
