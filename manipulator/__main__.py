@@ -2,8 +2,9 @@
 
 import sys
 
-from manipulator import executables
+from manipulator.device_executables import gamepad, keyboard_teleop
+from manipulator.executables import joy_teleop
 from manipulator.nodes.run import run_named
 
 if __name__ == '__main__':
-    sys.exit(run_named(executables.joy_teleop, executables.keyboard_teleop))
+    sys.exit(run_named(gamepad, joy_teleop, keyboard_teleop))

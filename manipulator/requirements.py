@@ -3,6 +3,7 @@
 INSTALL = {
     'ruckig': 'python3 -m pip install ruckig',
     'serial': 'python3 -m pip install pyserial',
+    'evdev': 'python3 -m pip install evdev, or apt install python3-evdev (Linux)',
     'matplotlib': 'python3 -m pip install matplotlib',
     'mujoco': 'python3 -m pip install mujoco',
     'PIL': 'python3 -m pip install pillow',
