@@ -12,6 +12,7 @@ from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
 from manipulator.pose import Pose
+from manipulator.skeleton import Stroke
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +104,12 @@ class SerialArm:
         It exists in singular postures too, where its rank falls: never raises NoSolution.
         """
         return self.chain.jacobian(self._checked(joints))
+
+    def skeleton(self, pose: Pose, joints: Array) -> tuple[Stroke, ...]:
+        """One line from the base through a point of each joint's axis to the tool point."""
+        moved = self.chain.displacements(self._checked(joints))[:-1]
+        points = np.einsum('nij,nj->ni', moved[:, :3, :3], self.chain.points) + moved[:, :3, 3]
+        return (Stroke('link', np.vstack([np.zeros(3), points, pose.position])),)
 
     def sigma_min(self, pose: Pose, joints: Array) -> Array:
         """The smallest singular value (...) of the Jacobian in characteristic lengths."""

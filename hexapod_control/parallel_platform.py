@@ -17,6 +17,7 @@ from manipulator.arrays import Array, Mask
 from manipulator.errors import ConfigError, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
 from manipulator.pose import Pose
+from manipulator.skeleton import Stroke, outline
 
 SINGULAR = 1e-6
 
@@ -161,6 +162,12 @@ class ParallelPlatform(ABC):
             raise NoSolution('forward singularity: the joints do not fix the platform here')
         gains = self.joint_gains(pose, joints)
         return np.asarray(np.linalg.solve(rows, gains[..., None] * np.eye(LEGS)))
+
+    def skeleton(self, pose: Pose, joints: Array) -> tuple[Stroke, ...]:
+        """The base points' outline, six rods, the platform's outline."""
+        base, platform = self.base_points(joints), pose.transform(self.geometry.platform_points)
+        rods = (Stroke('rod', ends) for ends in np.stack([base, platform], axis=1))
+        return outline('body', base), *rods, outline('platform', platform)
 
     def sigma_min(self, pose: Pose, joints: Array) -> Array:
         """The forward singularity margin (...), dimensionless; NaN for NaN joints."""

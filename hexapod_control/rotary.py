@@ -13,6 +13,7 @@ from hexapod_control.parallel_platform import ParallelPlatform
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput, Unreachable
 from manipulator.pose import Pose
+from manipulator.skeleton import Stroke, outline
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +87,13 @@ class RotaryHexapod(ParallelPlatform):
         turned = cosine * g.tangents + sine * g.ups
         tips: Array = g.crank_centres + g.crank_lengths[:, None] * turned
         return tips
+
+    def skeleton(self, pose: Pose, joints: Array) -> tuple[Stroke, ...]:
+        """The crank axes' outline, six cranks, six rods, the platform's outline."""
+        centres, tips = self.geometry.crank_centres, self.crank_tips(joints)
+        cranks = (Stroke('crank', ends) for ends in np.stack([centres, tips], axis=1))
+        _, *others = super().skeleton(pose, joints)
+        return outline('body', centres), *cranks, *others
 
     def base_points(self, joints: Array) -> Array:
         """The crank tips."""

@@ -16,6 +16,7 @@ from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import Limit, admitted
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.skeleton import Stroke
 
 
 def in_frames(machine: Machine, frames: Frames) -> Machine:
@@ -76,6 +77,10 @@ class FramedKinematics:
         linear = rows[..., :3, :] - so3.skew(arm) @ rows[..., 3:, :]
         to_work = self.frames.T_base_work.rotation.T
         return np.concatenate([to_work @ linear, to_work @ rows[..., 3:, :]], axis=-2)
+
+    def skeleton(self, pose: Pose, joints: Array) -> tuple[Stroke, ...]:
+        """That of the machine, in the base frame."""
+        return self.inner.skeleton(self.frames.platform(pose), joints)
 
     def sigma_min(self, pose: Pose, joints: Array) -> Array:
         """The machine's own margin: it does not depend on the user's frames."""

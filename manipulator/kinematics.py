@@ -5,6 +5,7 @@ from typing import Protocol
 
 from manipulator.arrays import Array
 from manipulator.pose import Pose
+from manipulator.skeleton import Stroke
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,10 @@ class Kinematics(Protocol):
 
     def jacobian(self, pose: Pose, joints: Array) -> Array:
         """The twist of unit joint rates, (..., 6, n); raises NoSolution where it is singular."""
+        ...
+
+    def skeleton(self, pose: Pose, joints: Array) -> tuple[Stroke, ...]:
+        """What to draw of the machine with one pose and its joints (n,)."""
         ...
 
     def sigma_min(self, pose: Pose, joints: Array) -> Array:

@@ -13,6 +13,7 @@ from manipulator.kinematics import ForwardSolution
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.intake import Intake
+from manipulator.nodes.markers import Markers
 from manipulator.nodes.messages import (
     PLATFORM_FRAME,
     WORK_FRAME,
@@ -36,6 +37,7 @@ class PoseNode(Node):
         self._solution: ForwardSolution | None = None
         self._states = Intake(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
+        self._markers = Markers(self)
         self._pivot_publisher = self.create_publisher(PoseStamped, 'pivot_pose', MEASUREMENT)
         self.create_subscription(PointStamped, 'pivot', self._on_pivot, COMMAND)
         self.create_subscription(JointState, 'joint_states', self._states, MEASUREMENT)
@@ -56,6 +58,7 @@ class PoseNode(Node):
             self._solution = self._cold(joints)
         pose, stamp = self._solution.pose, message.header.stamp
         self._publisher.publish(pose_message(pose, stamp))
+        self._markers.show(self._kinematics, pose, joints, stamp)
         if self._pivot_publisher.get_subscription_count() > 0:
             in_work = pose_message(self._frames.pivot(pose), stamp, WORK_FRAME)
             self._pivot_publisher.publish(in_work)

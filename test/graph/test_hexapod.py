@@ -9,6 +9,7 @@ import pytest
 from geometry_msgs.msg import PointStamped, PoseStamped
 from nav_msgs.srv import GetPlan
 from std_msgs.msg import Float64
+from visualization_msgs.msg import MarkerArray
 
 from manipulator.errors import Refused
 from manipulator.nodes.messages import pose_message, pose_of
@@ -157,3 +158,12 @@ def test_pivot_is_where_goals_in_the_work_frame_turn_about(enabled):
     message.point.z = 0.0
     pivots.publish(message)
     enabled.spin(0.3)
+
+
+def test_markers_draw_the_machine_for_whoever_listens(enabled):
+    heard = []
+    enabled.node.create_subscription(MarkerArray, 'markers', heard.append, MEASUREMENT)
+    enabled.wait('markers', lambda: len(heard) > 2, 10.0)
+    parts = [marker.ns for marker in heard[-1].markers]
+    assert parts == ['body', *['crank'] * 6, *['rod'] * 6, 'platform']
+    assert all(marker.header.frame_id == 'base' for marker in heard[-1].markers)
