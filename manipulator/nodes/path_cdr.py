@@ -17,6 +17,9 @@ from manipulator.pose import Pose
 
 BYTE_ORDERS = {b'\0\0': '>', b'\0\1': '<'}
 LONGEST_NAME = 256
+SHORTEST_POSE = 68
+"""Bytes of a pose without a frame_id."""
+
 NUMBERS = ('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw')
 
 
@@ -46,6 +49,8 @@ def read_poses(serialized: bytes, frame: str) -> tuple[Pose, Array | None]:
     rotation, frames that are neither empty nor `frame`, and stamps that do not all increase.
     """
     head = read_head(serialized)
+    if not 0 < SHORTEST_POSE * head.count <= len(serialized):
+        raise InvalidInput(f'{head.count} poses in {len(serialized)} bytes')
     reader = _Reader(serialized, head.offset)
     stamps, values = np.empty((head.count, 2), dtype=np.int64), np.empty((head.count, 7))
     for i in range(head.count):
