@@ -75,13 +75,20 @@ class Calibration:
         wanted = np.asarray(positions, dtype=np.float64)
         if wanted.shape != (len(self.names),):
             raise InvalidInput(f'{wanted.size} positions, needs {len(self.names)}')
-        exact = (self.centre_count + self.scale * (wanted - self.centre)).tolist()
+        exact = self._exact_counts(wanted)
         for i, count in enumerate(exact):
             if not self.lowest[i] - 0.5 <= count <= self.highest[i] + 0.5:
                 raise self._refusal(i, float(wanted[i]))
         on_wire = [0] * len(exact)
         for i, channel in enumerate(self.channels):
             on_wire[channel] = min(max(round(exact[i]), self.lowest[i]), self.highest[i])
+        return tuple(on_wire)
+
+    def nearest_counts(self, positions: Array) -> tuple[int, ...]:
+        """Counts in channel order, of positions that need not be within the pulse ranges."""
+        exact, on_wire = self._exact_counts(positions), [0] * len(positions)
+        for i, channel in enumerate(self.channels):
+            on_wire[channel] = round(exact[i])
         return tuple(on_wire)
 
     def positions(self, counts: Sequence[float]) -> Array:
@@ -108,6 +115,10 @@ class Calibration:
             for count in (self.lowest[i], self.highest[i])
         ]
         return min(ends), max(ends)
+
+    def _exact_counts(self, positions: Array) -> list[float]:
+        exact: list[float] = (self.centre_count + self.scale * (positions - self.centre)).tolist()
+        return exact
 
     def _refusal(self, i: int, value: float) -> InvalidInput:
         if not np.isfinite(value):

@@ -1,6 +1,8 @@
 """The fake board as a process: a pty that the shipped serial_bridge opens like any port."""
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from rcl_interfaces.msg import SetParametersResult
@@ -21,8 +23,17 @@ from manipulator.errors import InvalidInput, LinkError
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import MEASUREMENT
 
-PRESETS = {'normal': 1.0, 'bad_day': 6.0}
-"""How many times the machine file's hysteresis: a worn RoboCake has 3° instead of 0.5°."""
+PRESETS: dict[str, Callable[[SimulationConfig], SimulationConfig]] = {
+    'normal': lambda told: told,
+    'bad_day': lambda told: replace(
+        told, hysteresis_deg=6 * told.hysteresis_deg, hysteresis_mm=6 * told.hysteresis_mm
+    ),
+    'stepper': lambda told: replace(
+        told, hysteresis_deg=0.0, hysteresis_mm=0.0, dead_band_us=0.0, joints='measured'
+    ),
+}
+"""bad_day: six times the play, so 3° instead of 0.5° on a worn RoboCake. stepper: none, encoders."""
+PRESET = "'normal', 'bad_day' (six times the play) or 'stepper' (no play, measured joints)"
 
 
 class FakeHardware(Node):
@@ -39,7 +50,7 @@ class FakeHardware(Node):
             'silence after a reset, in seconds; a Mega: 1 to 2',
             (0.0, 10.0),
         )
-        preset = declare(self, 'preset', 'normal', "'normal' or 'bad_day' (six times the play)")
+        preset = declare(self, 'preset', 'normal', PRESET)
         own = declare(
             self,
             'hysteresis_deg',
@@ -50,7 +61,8 @@ class FakeHardware(Node):
         if preset not in PRESETS:
             raise InvalidInput(f'parameter preset: {preset!r} is not one of {list(PRESETS)}')
         config = BoardConfig.from_machine(machines.read(name), str(machines.find(name)))
-        hysteresis = math.radians(own) if own >= 0 else PRESETS[preset] * config.hysteresis
+        config = replace(config, simulation=PRESETS[preset](config.simulation))
+        hysteresis = math.radians(own) if own >= 0 else config.hysteresis
         solve = board_solver(machines.load(name), Calibration.from_config(config.servos))
         machine = FakeMachine.from_config(config, boot_s, hysteresis, solve)
         self._names = machine.calibration.names
