@@ -1,9 +1,13 @@
+from dataclasses import fields
+from pathlib import Path
+
 import pytest
 
 from hexarm.gamepads import load, shipped
 from manipulator.config import build
 from manipulator.errors import ConfigError
 from manipulator.teleop.gamepad import Gamepad
+from manipulator.teleop.stick import Stick
 
 LEAST = {
     'description': 'one stick',
@@ -58,3 +62,9 @@ def test_wrong_mapping_is_refused_by_name(wrong, said):
     with pytest.raises(ConfigError) as caught:
         build(Gamepad, LEAST | wrong)
     assert said in str(caught.value)
+
+
+def test_every_key_of_a_mapping_is_documented():
+    text = (Path(__file__).resolve().parents[3] / 'docs' / 'joystick.md').read_text()
+    keys = {field.name for schema in (Gamepad, Stick) for field in fields(schema)}
+    assert {key for key in keys - {'description'} if f'`{key}`' not in text} <= {'axis', 'moves'}
