@@ -112,14 +112,11 @@ class Simulation:
         body = self.state.body(self._moving)
         return Pose(body.xpos, body.xmat.reshape(3, 3))
 
-    def watched(self, count: int = 1) -> Reading:
-        """All sensors after `count` steps, at least one; acceleration is that of the last."""
-        if count > 1:
-            self.step(count - 1)
+    def watched(self) -> Reading:
+        """All sensors after one more step; efforts and acceleration are those during it."""
         before = self._twist()
         self.step()
         twist = self._twist()
-        mujoco.mj_forward(self.model, self.state)
         rates = self.state.qvel[self._freedoms]
         return Reading(
             float(self.state.time),
