@@ -32,7 +32,7 @@ PRESETS: dict[str, Callable[[SimulationConfig], SimulationConfig]] = {
         told, hysteresis_deg=0.0, hysteresis_mm=0.0, dead_band_us=0.0, joints='measured'
     ),
 }
-"""bad_day: six times the play, so 3° instead of 0.5° on a worn RoboCake. stepper: none, encoders."""
+"""bad_day: six times the play, so 3° on a worn RoboCake. stepper: no play, but encoders."""
 PRESET = "'normal', 'bad_day' (six times the play) or 'stepper' (no play, measured joints)"
 
 
