@@ -12,6 +12,7 @@ from manipulator.stamps import NOTABLE_OFFSET, StampGate
 
 PULSE_PERIOD = 0.02
 LONGEST_GAP = 0.05
+START = 0.005
 
 
 class CommandGate:
@@ -19,15 +20,15 @@ class CommandGate:
 
     No jump: a command must lie within what the servos slew, at their rated speed, in the time
     since the last command (at most 0.05 s) and one pulse period of 0.02 s. Where there is no
-    last command, or its deadline has passed, it must lie within one pulse period's way of where
-    the joints are.
+    last command, or its deadline has passed, it must begin where the joints are: within 0.005 s
+    of their way.
     """
 
     def __init__(self, calibration: Calibration, deadline: float) -> None:
         """The deadline that every setpoint carries, in seconds."""
         self._calibration = calibration
         self._deadline = deadline
-        self._stamps = StampGate()
+        self._stamps = StampGate(maximum_age=deadline)
         self._names: tuple[str, ...] | None = None
         self._order: list[int] = []
         self._last: Array | None = None
@@ -97,7 +98,7 @@ class CommandGate:
             start, where = self._last, 'the last command'
             time = PULSE_PERIOD + min(max(elapsed, 0.0), LONGEST_GAP)
         elif present is not None and np.all(np.isfinite(present)):
-            start, where, time = present, 'where the joint is', PULSE_PERIOD
+            start, where, time = present, 'where the joint is', START
         else:
             raise Refused('where the joints are is not known yet')
         ways = np.abs(wanted - start)

@@ -43,6 +43,15 @@ def test_clock_set_back_is_believed_with_the_second_message():
     gate.admit(103.0, 103.0)
 
 
+def test_what_piled_up_while_the_receiver_was_frozen_is_no_clock_that_was_set():
+    gate = StampGate()
+    gate.admit(100.0, 100.0)
+    for k in range(50):
+        with pytest.raises(StaleMessage):
+            gate.admit(100.01 + 0.01 * k, 101.01 + 0.0005 * k)
+    gate.admit(101.03, 101.035)
+
+
 def test_one_message_from_long_ago_is_refused_and_forgotten():
     gate = StampGate()
     gate.admit(5000.0, 5000.0)
