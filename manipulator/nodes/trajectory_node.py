@@ -33,7 +33,6 @@ from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.teleop import Teleop
 
-POSE_DEADLINE = 0.5
 DELAY = 'age of measured poses by the time that their correction moves the joints (s)'
 TOLERANCE = 'how far a joint may be from its commands of the last half second (rad or m)'
 
@@ -87,6 +86,7 @@ class TrajectoryNode(Node):
             values.get('joints') == 'measured',
         )
         self._pilot.note_machine_state(message.message, is_followed, is_measured)
+        self._say_news()
 
     def _on_joint_states(self, message: JointState) -> None:
         names = self._pilot.machine.kinematics.joint_names
@@ -118,13 +118,15 @@ class TrajectoryNode(Node):
 
     def _tick(self) -> None:
         self._jitter.tick()
-        if self._poses.age > POSE_DEADLINE:
-            self._pilot.release(f'no pose for {POSE_DEADLINE} s')
+        self._pilot.note_silence(self._poses.age)
         self._teleop.drive(time.monotonic())
         self._paths.poll()
         pose = self._pilot.step()
         if pose is not None:
             self._setpoints.publish(pose_message(pose, self.get_clock().now().to_msg()))
+        self._say_news()
+
+    def _say_news(self) -> None:
         if self._pilot.status != self._seen:
             self._seen = self._pilot.status
             self._say(self._seen)

@@ -6,6 +6,8 @@ ends that drops every goal; what comes after begins where the joints then are.
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from manipulator.arrays import Array
 from manipulator.errors import Refused
 from manipulator.framed_machine import in_frames
@@ -19,6 +21,12 @@ from manipulator.trajectory.player import Player
 HOLDING = 'holding'
 DRIVABLE = ('enabled', HOLDING)
 """States in which the board follows setpoints; it holds when they came too late."""
+
+POSE_PATIENCE, POSE_DEADLINE = 0.2, 0.5
+"""Seconds without a pose after which motion pauses, and after which it is dropped."""
+
+PRESENT = 0.1
+"""Of the tolerance of following, how far the joints may be from the pose where motion begins."""
 
 DISABLED = MotionStatus('disabled', 'idle', 0.0, 'the servos are not enabled')
 CONNECTING = MotionStatus('disabled', 'idle', 0.0, 'the board does not follow setpoints yet')
@@ -47,7 +55,8 @@ class Pilot:
     def player(self) -> Player:
         """What takes commands; Refused while nobody may drive."""
         if self._player is None:
-            raise Refused(f'the machine is {self._state or "not heard of"}: enable it first')
+            missing = 'its pose is not known' if self._state in DRIVABLE else 'enable it first'
+            raise Refused(f'the machine is {self._state or "not heard of"}: {missing}')
         if not self._is_followed:
             raise Refused(CONNECTING.reason)
         return self._player
@@ -66,11 +75,10 @@ class Pilot:
         """What the bridge says: its word, whether the board follows setpoints and measures."""
         self._is_measured = is_measured
         is_lost = state not in DRIVABLE or (state == HOLDING and state != self._state)
-        self._state = state
+        was_followed, self._state, self._is_followed = self._is_followed, state, is_followed
         if is_lost:
             self.release(f'the machine is {state}')
-        elif self._player is not None and is_followed and not self._is_followed:
-            self._is_followed = True
+        elif self._player is not None and is_followed and not was_followed:
             self.status = self._player.status
 
     def note_joints(self, joints: Array) -> None:
@@ -84,9 +92,17 @@ class Pilot:
         if self._player is not None:
             if self._is_measured:
                 self._player.note_measured(self.machine.frames.pivot(T_base_platform))
-        elif self._state in DRIVABLE and self._joints is not None:
-            self._is_followed = False
-            self._take_over(T_base_platform, self._joints)
+            return
+        joints = self._joints if self._state in DRIVABLE else None
+        if joints is not None and self._is_present(T_base_platform, joints):
+            self._take_over(T_base_platform, joints)
+
+    def note_silence(self, seconds: float) -> None:
+        """How long no pose was heard: soon the plan brakes on its way, later it is dropped."""
+        if seconds > POSE_DEADLINE:
+            self.release(f'no pose for {POSE_DEADLINE:g} s')
+        elif self._player is not None:
+            self._player.blind(seconds > POSE_PATIENCE)
 
     def release(self, reason: str) -> None:
         """Lets go of the machine: no setpoints until its pose is known again."""
@@ -129,6 +145,11 @@ class Pilot:
         names = self.machine.kinematics.joint_names
         self._following = Following(names, self._tolerance, self._dt)
         self.status = self._player.status if self._is_followed else CONNECTING
+
+    def _is_present(self, T_base_platform: Pose, joints: Array) -> bool:
+        """Whether a pose is where the joints are, or late: where they were."""
+        there = self._bare.kinematics.inverse(T_base_platform, joints)
+        return bool(np.abs(there - joints).max() < PRESENT * self._tolerance)
 
     def _take_frames(self, frames: Frames) -> None:
         old, self.machine = self.machine, in_frames(self._bare, frames)

@@ -43,6 +43,7 @@ class Player:
         self._rate = 1.0
         self._override = 1.0
         self._is_paused = False
+        self._is_blind = False
         self._is_stopping = False
         self._newest: Goal | None = None
         self._next: Goal | Cycle | TimedPath | None = None
@@ -77,7 +78,8 @@ class Player:
 
     @property
     def _wanted_rate(self) -> float:
-        return 0.0 if self._is_paused or self._is_stopping else self._override
+        is_held = self._is_paused or self._is_blind or self._is_stopping
+        return 0.0 if is_held else self._override
 
     def pursue(self, goal: Goal) -> None:
         """Takes a goal up at the next tick; of several the newest wins. Refused during a jog."""
@@ -134,6 +136,10 @@ class Player:
     def pause(self, is_paused: bool) -> None:
         """Brakes along the way and stays, or goes on."""
         self._is_paused = is_paused
+
+    def blind(self, is_blind: bool) -> None:
+        """As `pause`, apart from the user's own: nobody knows where the joints are."""
+        self._is_blind = is_blind
 
     def override(self, rate: float) -> None:
         """Runs everything at `rate` times its speed; Refused outside [0, 1]."""

@@ -45,7 +45,7 @@ def test_nothing_goes_out_before_the_machine_is_enabled_and_its_pose_known():
     assert made.step() is None
     made.note_machine_state('enabled', is_followed=False)
     assert made.step() is None
-    with pytest.raises(Refused, match='enable it first'):
+    with pytest.raises(Refused, match='its pose is not known'):
         _ = made.player
 
 
@@ -79,6 +79,40 @@ def test_leaving_enabled_drops_the_goal_and_the_next_motion_begins_where_the_joi
     made.note_machine_state('enabled', is_followed=False)
     see(made, ELSEWHERE)
     assert np.abs(run(made, 20).twist_to(ELSEWHERE)).max() < 1e-12
+
+
+def moving():
+    made = driving()
+    made.player.pursue(Goal(ELSEWHERE, 7.0))
+    run(made, 8)
+    return made
+
+
+def test_without_a_pose_motion_brakes_on_its_way_and_goes_on_when_it_is_heard_again():
+    made = moving()
+    made.note_silence(0.25)
+    run(made, 20)
+    held = made.step()
+    assert np.abs(held.twist_to(made.step())).max() < 1e-12
+    assert np.abs(held.twist_to(ELSEWHERE)).max() > 1e-4
+    assert made.status.result == 'moving'
+    made.note_silence(0.01)
+    run(made, 200)
+    assert made.status.result == 'reached'
+
+
+def test_after_a_long_silence_goals_are_dropped_and_motion_begins_at_a_pose_that_is_not_late():
+    made = moving()
+    made.note_silence(0.6)
+    assert made.step() is None
+    assert (made.status.result, made.status.reason) == ('stopped', 'no pose for 0.5 s')
+    made.note_pose(HOME)
+    with pytest.raises(Refused, match='its pose is not known'):
+        _ = made.player
+    see(made, HOME)
+    made.player.pursue(Goal(ELSEWHERE, 8.0))
+    run(made, 200)
+    assert made.status.result == 'reached'
 
 
 def test_holding_board_is_taken_up_again_without_asking():
