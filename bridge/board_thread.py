@@ -19,7 +19,8 @@ from bridge.servo import Servos
 from bridge.servo_config import BoardConfig
 from manipulator.arrays import Array
 
-STEP = 0.01
+STEP, LONGEST_STEP = 0.01, 0.05
+"""Seconds; where this process stalls for longer, the board's time stands still meanwhile."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,7 @@ class BoardThread(threading.Thread):
             while self._wishes:
                 self._wishes.popleft()()
             now = time.monotonic()
-            self._machine.step(now - last)
+            self._machine.step(min(now - last, LONGEST_STEP))
             last = now
             self._exchange(has_input)
             if now >= start + steps * STEP:

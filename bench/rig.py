@@ -1,0 +1,230 @@
+"""One machine's whole graph on a board of this process: every frame and every pulse, with times.
+
+The nodes are the shipped ones, as processes that can be killed, frozen and started again one by
+one; the line is a pty. bench/stop_times.py, test/graph and test/soak use it.
+"""
+
+import contextlib
+import os
+import signal
+import threading
+import time
+from contextlib import ExitStack
+
+import numpy as np
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
+
+from bridge.board_thread import BoardThread, FakeMachine
+from bridge.fake_line import FakeLine
+from bridge.framing import FrameReader
+from bridge.servo_config import BoardConfig
+from hexarm import machines
+from hexarm.client import Client, NotReady
+from hexarm.graph import Graph, machine_graph
+from manipulator.errors import ManipulatorError
+
+TRIES = 5
+FROZEN = 1.0
+"""Seconds for which the servo targets must be still to be called so."""
+
+CIRCLE = {  # 15 mm/s, and never a moment of rest
+    'cycle.amplitude': [0.005, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.005, 0.0, 0.0, 0.0, 0.0],
+    'cycle.frequency': [0.5] * 12,
+    'cycle.phase': [0.0] * 6 + [np.pi / 2] * 6,
+}
+
+
+class Tap:
+    """Keeps every message which the host sends, and when it came."""
+
+    def __init__(self):
+        self._heard = []
+        self._lock = threading.Lock()
+        self._reader = FrameReader()
+
+    def note(self, received):
+        with self._lock:
+            now = time.monotonic()
+            self._heard += [(now, frame.message) for frame in self._reader.feed(received)]
+
+    def heard(self, kind=object, since=float('-inf')):
+        """(time, message) of each message of a kind."""
+        with self._lock:
+            return [(t, m) for t, m in self._heard if t >= since and isinstance(m, kind)]
+
+
+class TappedLine(FakeLine):
+    """A line with a tap on what the host sends."""
+
+    def __init__(self, path, tap):
+        super().__init__(path)
+        self._tap = tap
+
+    def read(self):
+        received = super().read()
+        self._tap.note(received)
+        return received
+
+
+class Recorder:
+    """Stands in for a FakeMachine and keeps every change of its pulses, and when it was."""
+
+    def __init__(self, machine):
+        self.machine = machine
+        self.board, self.calibration = machine.board, machine.calibration
+        self._changes = [(time.monotonic(), machine.board.pulses)]
+        self._lock = threading.Lock()
+
+    @property
+    def servos(self):
+        return self.machine.servos
+
+    def step(self, dt):
+        self.machine.step(dt)
+        if self.board.pulses != self._changes[-1][1]:
+            with self._lock:
+                self._changes.append((time.monotonic(), self.board.pulses))
+
+    def changes(self, since=float('-inf')):
+        """(time, pulses in counts) after every change since then, with the one before it."""
+        with self._lock:
+            later = [k for k, (t, _) in enumerate(self._changes) if t >= since]
+            first = later[0] if later else len(self._changes)
+            return self._changes[max(first - 1, 0) :]
+
+    def largest_step(self, since=float('-inf')):
+        """The largest change of one pulse from one time to the next, in counts."""
+        pulses = [p for _, p in self.changes(since) if None not in p]
+        return float(np.abs(np.diff(np.array(pulses), axis=0)).max()) if len(pulses) > 1 else 0.0
+
+    def way(self, since):
+        """How far any pulse has been from where it was at that time, in counts."""
+        pulses = np.array([p for _, p in self.changes(since) if None not in p])
+        return float(np.abs(pulses - pulses[0]).max())
+
+    def standstill(self, since, quiet):
+        """When the pulses changed for the last time, once they have been still for `quiet` s."""
+        deadline = time.monotonic() + 10.0
+        while time.monotonic() < deadline:
+            last = self.changes(since)[-1][0]
+            if time.monotonic() - max(last, since) > quiet:
+                return max(last, since)
+            time.sleep(0.01)
+        raise TimeoutError('the servo targets never stood still')
+
+
+class Rig:
+    """A context manager: board, line, user, and the graph's processes by name."""
+
+    def __init__(self, folder, space, kind='hexapod', machine='robocake', boot_s=0.2):
+        config = BoardConfig.from_machine(machines.read(machine))
+        self._path = folder / 'board'
+        self.tap = Tap()
+        self.recorder = Recorder(FakeMachine.from_config(config, boot_s, hysteresis=0.0))
+        line = TappedLine(self._path, self.tap)
+        self.board = BoardThread(self.recorder, line, lambda positions: None)
+        self.calibration = self.recorder.calibration
+        self._space = space
+        nodes = machine_graph(kind, machine, str(self._path), self._path)
+        self._nodes = {node.entry: node for node in nodes}
+        self._graphs = {}
+        self._stack = ExitStack()
+
+    @property
+    def names(self):
+        return tuple(self._nodes)
+
+    def __enter__(self):
+        with ExitStack() as stack:
+            self.board.start()
+            stack.callback(self.board.close)
+            stack.callback(self._end_all)
+            for name in self._nodes:
+                self.start(name)
+            self.user = stack.enter_context(Client(self._space))
+            self._stack = stack.pop_all()
+        return self
+
+    def __exit__(self, *exception):
+        self._stack.close()
+
+    def start(self, name):
+        """Starts a process, after the end of the one before it."""
+        if name in self._graphs:
+            self._graphs[name].__exit__(None, None, None)
+        self._graphs[name] = Graph([self._nodes[name]], self._space).__enter__()
+
+    def pid(self, name):
+        return self._graphs[name].pids()[name]
+
+    def dead(self):
+        return [words for graph in self._graphs.values() if (words := graph.dead())]
+
+    def send(self, name, number):
+        """Sends a signal to one process and returns when."""
+        before = time.monotonic()
+        os.kill(self.pid(name), number)
+        return before
+
+    def pull(self):
+        """Pulls the cable and returns when."""
+        before = time.monotonic()
+        self.board.do(lambda: self.board.plug(None))
+        return before
+
+    def plug(self):
+        """Puts the cable back: the board starts again."""
+        line = TappedLine(self._path, self.tap)
+        self.board.do(lambda: self.board.plug(line))
+
+    def enable(self):
+        """Asks again where the question went to a bridge that is no more."""
+        for _ in range(TRIES):
+            with contextlib.suppress(NotReady):
+                self.user.enable()
+                return
+        raise NotReady(f'not enabled in {TRIES} tries: {self.user.summary}')
+
+    def circle(self, seconds):
+        """Has the platform circle about home for a while; again, where this computer stalls."""
+        self.set_parameters('trajectory', CIRCLE)
+        for _ in range(TRIES):
+            with contextlib.suppress(ManipulatorError):
+                self.user.wait('goals', lambda: self.user.motion('mode') != 'disabled', 5.0)
+                self.user.home()
+                self.user.trigger('trajectory/start_cycle')
+                self.user.wait('the circle', lambda: self.user.motion('mode') == 'cycle', 3.0)
+                self.user.spin(seconds)
+                if self.user.motion('mode') == 'cycle':
+                    return
+        raise NotReady(f'no circle in {TRIES} tries: {self.user.summary}')
+
+    def stop_time(self, name, number):
+        """Seconds from a signal to a process until the servo targets stand still."""
+        signalled = self.send(name, number)
+        # Nothing but the signal must move them afterwards: hear nothing, ask for nothing.
+        return self.recorder.standstill(signalled, FROZEN) - signalled
+
+    def set_parameters(self, node, values):
+        kind = ParameterType.PARAMETER_DOUBLE_ARRAY
+        request = SetParameters.Request(
+            parameters=[
+                Parameter(name=name, value=ParameterValue(type=kind, double_array_value=value))
+                for name, value in values.items()
+            ]
+        )
+        client = self.user.node.create_client(SetParameters, f'{node}/set_parameters')
+        self.user.wait('the parameter service', client.service_is_ready, 10.0)
+        future = client.call_async(request)
+        self.user.wait('the parameters', future.done, 10.0)
+        self.user.node.destroy_client(client)
+        assert all(result.successful for result in future.result().results)
+
+    def _end_all(self):
+        for name in self._graphs:
+            # A frozen process hears nothing else.
+            if self._graphs[name].dead() is None:
+                self.send(name, signal.SIGCONT)
+        for graph in reversed(self._graphs.values()):
+            graph.__exit__(None, None, None)

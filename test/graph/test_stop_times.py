@@ -1,0 +1,82 @@
+"""Every process killed and frozen while the platform circles: it stands still, nothing jumps."""
+
+import signal
+import time
+
+import pytest
+
+from bench.rig import Rig
+from bridge.messages import Setpoint
+from manipulator.pose import Pose
+
+pytestmark = pytest.mark.graph
+
+PROCESSES = ('serial_bridge', 'ik', 'pose', 'trajectory')
+GENEROUS = 2.0
+QUIET = 2
+"""Counts by which a pulse may change when a process comes back: roundings, not motion."""
+
+
+@pytest.fixture(scope='module')
+def module_rig(tmp_path_factory):
+    with Rig(tmp_path_factory.mktemp('stops'), 'stop_times') as rig:
+        assert set(rig.names) == set(PROCESSES)
+        rig.enable()
+        rig.circle(1.0)
+        yield rig
+
+
+@pytest.fixture
+def circling(module_rig):
+    """The platform on its circle, and the largest step of a pulse there, in counts."""
+    module_rig.circle(0.7)
+    largest = module_rig.recorder.largest_step(module_rig.tap.heard(Setpoint)[-60][0])
+    assert largest > 5
+    return module_rig, largest
+
+
+def drives_again(rig, largest):
+    """A new goal is reached, with steps as small as before."""
+    since = rig.tap.heard()[-1][0]
+    rig.user.wait('goals', lambda: rig.user.motion('mode') == 'hold', 10.0)
+    rig.user.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.0422)))
+    rig.user.home()
+    return 0 < rig.recorder.largest_step(since) <= max(201, largest)
+
+
+@pytest.mark.parametrize('name', PROCESSES)
+def test_a_frozen_process_stops_the_machine_and_nothing_jumps_when_it_goes_on(circling, name):
+    rig, largest = circling
+    assert rig.stop_time(name, signal.SIGSTOP) < GENEROUS
+    resumed = rig.send(name, signal.SIGCONT)
+    rig.user.spin(1.0)
+    assert rig.recorder.way(resumed) <= QUIET
+    assert rig.user.machine_state.message == 'enabled'
+    assert drives_again(rig, largest)
+
+
+@pytest.mark.parametrize('name', PROCESSES)
+def test_a_killed_process_stops_the_machine_and_nothing_jumps_when_it_is_started_again(
+    circling, name
+):
+    rig, largest = circling
+    assert rig.stop_time(name, signal.SIGKILL) < GENEROUS
+    before = time.monotonic()
+    rig.start(name)
+    rig.user.spin(1.5)
+    if name == 'serial_bridge':
+        rig.user.wait('word', lambda: rig.user.machine_state.message == 'unclaimed', 10.0)
+        assert not rig.tap.heard(Setpoint, before)
+        rig.enable()
+    assert rig.recorder.way(before) <= QUIET
+    assert drives_again(rig, largest)
+
+
+def test_a_short_stall_only_pauses_the_motion(circling):
+    rig, largest = circling
+    rig.send('pose', signal.SIGSTOP)
+    rig.user.spin(0.35)
+    resumed = rig.send('pose', signal.SIGCONT)
+    rig.user.spin(1.0)
+    assert rig.user.motion('mode') == 'cycle'
+    assert 0 < rig.recorder.largest_step(resumed) <= 2 * largest
