@@ -10,7 +10,7 @@ from manipulator.pose import Pose
 from manipulator.reach.descent import descended
 from manipulator.reach.joint_descent import nearest_by_joints
 from manipulator.reach.metric import displaced, distance
-from manipulator.reach.way import admits, is_connected, is_joint_box, way_home_share
+from manipulator.reach.way import admits, are_linked, is_connected, is_joint_box, way_home_share
 
 MOST_STEPS = 60
 KICKS, KICK_POSES, KICK_RADII, KICK_GAIN = 12, 1500, (3e-2, 1e-2, 1e-3, 1e-4, 1e-5), 1e-5
@@ -38,7 +38,7 @@ def nearest_reachable(machine: Machine, target: Pose, most_steps: int = MOST_STE
     ends = [_settled(machine, target, start, most_steps) for start in starts]
     found = [(float(distance(machine, pose, target)), k) for k, pose in enumerate(ends)]
     for metres, k in sorted(found):
-        if is_connected(machine, ends[k]):
+        if is_connected(machine, ends[k]) or are_linked(machine, starts[k], ends[k]):
             return Nearest(ends[k], metres)
     return Nearest(starts[0], float(distance(machine, starts[0], target)))
 

@@ -68,18 +68,22 @@ def is_connected(machine: Machine, pose: Pose) -> bool:
         return True
     if not admits(machine, pose[None])[0]:
         return False
-    return _are_linked(machine, machine.kinematics.home, pose, MOST_BENDS)
+    home = machine.kinematics.home
+    if are_linked(machine, home, pose):
+        return True
+    last = home.moved(way_home_share(machine, pose) * home.twist_to(pose))
+    return are_linked(machine, last, pose)
 
 
-def _are_linked(machine: Machine, start: Pose, end: Pose, bends: int) -> bool:
+def are_linked(machine: Machine, start: Pose, end: Pose, bends: int = MOST_BENDS) -> bool:
     """Whether a way is free that is straight, or bent at middles which are put inside."""
     if is_free(machine, start, end):
         return True
     middle = put_inside(machine, start.moved(0.5 * start.twist_to(end))) if bends else None
     return (
         middle is not None
-        and _are_linked(machine, start, middle, bends - 1)
-        and _are_linked(machine, middle, end, bends - 1)
+        and are_linked(machine, start, middle, bends - 1)
+        and are_linked(machine, middle, end, bends - 1)
     )
 
 
