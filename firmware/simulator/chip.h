@@ -49,4 +49,3 @@ void chip_hang(Chip *chip, bool with_interrupts);
 /* One byte of the chip's memory. */
 uint8_t chip_peek(const Chip *chip, uint16_t address);
 void chip_poke(Chip *chip, uint16_t address, uint8_t value);
-uint16_t chip_stack_pointer(const Chip *chip);

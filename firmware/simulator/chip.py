@@ -63,11 +63,6 @@ class Chip:
         """Bytes that a real chip would have lost, because they were not taken in time."""
         return int(self._call.chip_lost_bytes(self._chip))
 
-    @property
-    def stack_pointer(self) -> int:
-        """The top of the stack: the lower, the more is in use."""
-        return int(self._call.chip_stack_pointer(self._chip))
-
     def reset(self, cause: int) -> None:
         """Starts again, with these bits in MCUSR."""
         self._call.chip_reset(self._chip, cause)
@@ -141,7 +136,6 @@ def _functions(library: Path) -> ctypes.CDLL:
         ('chip_hang', None, (chip, flag)),
         ('chip_peek', u8, (chip, u16)),
         ('chip_poke', None, (chip, u16, u8)),
-        ('chip_stack_pointer', u16, (chip,)),
     ):
         function = getattr(functions, name)
         function.restype, function.argtypes = result, arguments

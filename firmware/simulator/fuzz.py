@@ -11,11 +11,13 @@ from collections.abc import Iterator
 from bridge import cobs
 from bridge.frames import DELIMITER, checksum, encode
 from bridge.messages import Arm, Clear, Disarm, Mode, Setpoint, Stop
+from bridge.program_messages import Play, Program, TableRow
 from firmware.simulator.host import PARK, Host
 
 FAR = (4800, 1200, 4800, 1200, 4800, 1200)
 SEQUENCE = 40_000
-HONEST = [encode(m, SEQUENCE) for m in (Setpoint(200, FAR), Arm(FAR), Disarm(), Stop(), Clear())]
+COMMANDS = (Arm(FAR), Disarm(), Stop(), Clear(), TableRow(0, FAR), Play(Program.TABLE, True))
+HONEST = [encode(m, SEQUENCE) for m in (Setpoint(200, FAR), *COMMANDS)]
 FIRST_UNUSED_TYPE = 0x20
 MUTANTS_A_ROUND = 400
 STEP = 0.02

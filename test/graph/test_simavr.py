@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 
 import pytest
 
@@ -10,16 +11,26 @@ from hexarm import firmware_build
 pytestmark = pytest.mark.graph
 
 
-def test_the_graph_enables_moves_parks_and_leaves_no_chip_behind(hexarm, processes_left):
+def require_tools():
     missing = firmware_build.missing_tools()
     if missing and os.environ.get('REQUIRE_ALL') != '1':
         pytest.skip(f'not installed: {", ".join(missing)}')
+
+
+def up(hexarm):
+    """`hexarm up` against the chip, enabled."""
     process = hexarm('up', 'hexapod', '--port', 'simavr')
     said = ''
     while 'is up on simavr and enabled' not in said:
         line = process.stdout.readline()
         assert line, said
         said += line
+    return process
+
+
+def test_the_graph_enables_parks_and_leaves_no_chip_behind(hexarm, processes_left):
+    require_tools()
+    process = up(hexarm)
     (chip,) = [pid for pid, words in processes_left().items() if 'pty_chip' in words]
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()
@@ -27,3 +38,14 @@ def test_the_graph_enables_moves_parks_and_leaves_no_chip_behind(hexarm, process
     assert 'parking' in rest
     assert 'not parked' not in rest
     assert chip not in processes_left()
+
+
+def test_the_chip_ends_when_up_itself_is_killed(hexarm, processes_left):
+    require_tools()
+    process = up(hexarm)
+    process.kill()
+    process.wait()
+    deadline = time.monotonic() + 10.0
+    while processes_left() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert processes_left() == {}

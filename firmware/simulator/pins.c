@@ -1,0 +1,89 @@
+/* The pins of the simulated chip: servo pulses edge by edge, buttons, battery. */
+#include <avr_adc.h>
+#include <avr_ioport.h>
+#include <sim_irq.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "chip_parts.h"
+
+enum { GPIOR0_ADDRESS = 0x3E, MARKS = 255 };
+
+/* The pins of servo.c's channels. */
+static const struct {
+    char port;
+    uint8_t bit;
+} PINS[CHANNELS] = {{'H', 3}, {'H', 4}, {'H', 5}, {'L', 3}, {'L', 4}, {'L', 5}, {'B', 5}, {'B', 6}};
+
+static void on_pin(Chip *chip, uint8_t channel, uint8_t level)
+{
+    if (level == chip->level[channel])
+        return;
+    chip->level[channel] = level;
+    if (chip->edge_count < LOG)
+        chip->edges[chip->edge_count++] = (Edge){chip->avr->cycle, channel, level};
+}
+
+static void on_servo_pin(avr_irq_t *irq, uint32_t value, void *param)
+{
+    (void)irq;
+    const Tap *tap = param;
+    on_pin(tap->chip, tap->channel, value & 1);
+}
+
+/* A program marks a moment by writing to GPIOR0: an edge of channel MARKS. */
+static void on_mark(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    Chip *chip = param;
+    avr->data[address] = value;
+    if (chip->edge_count < LOG)
+        chip->edges[chip->edge_count++] = (Edge){avr->cycle, MARKS, value};
+}
+
+void pins_connect(Chip *chip)
+{
+    chip->edges = malloc(LOG * sizeof *chip->edges);
+    chip->is_open[1] = true;
+    avr_register_io_write(chip->avr, GPIOR0_ADDRESS, on_mark, chip);
+    for (uint8_t channel = 0; channel < CHANNELS; channel++) {
+        uint32_t port = AVR_IOCTL_IOPORT_GETIRQ(PINS[channel].port);
+        avr_irq_t *irq = avr_io_getirq(chip->avr, port, PINS[channel].bit);
+        chip->taps[channel] = (Tap){chip, channel};
+        avr_irq_register_notify(irq, on_servo_pin, &chip->taps[channel]);
+    }
+}
+
+void pins_reset(Chip *chip)
+{
+    chip_set_battery_pin(chip, chip->battery_pin_mv);
+    for (uint8_t pin = 0; pin < 2; pin++)
+        chip_set_button(chip, pin, chip->is_open[pin]);
+}
+
+uint32_t chip_edges(Chip *chip, Edge *edges, uint32_t room)
+{
+    uint32_t count = chip->edge_count < room ? chip->edge_count : room;
+    memcpy(edges, chip->edges, count * sizeof *edges);
+    memmove(chip->edges, chip->edges + count, (chip->edge_count - count) * sizeof *edges);
+    chip->edge_count -= count;
+    return count;
+}
+
+void chip_set_battery_pin(Chip *chip, uint32_t millivolts)
+{
+    chip->battery_pin_mv = millivolts;
+    avr_raise_irq(avr_io_getirq(chip->avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0), millivolts);
+}
+
+void chip_set_button(Chip *chip, uint8_t pin, bool is_open)
+{
+    chip->is_open[pin] = is_open;
+    avr_ioport_external_t external = {.name = 'A', .mask = 3};
+    for (uint8_t i = 0; i < 2; i++)
+        external.value |= (unsigned)chip->is_open[i] << i;
+    avr_ioctl(chip->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('A'), &external);
+    /* There and back: a reset clears the pin, but a value that is no news is not passed on. */
+    avr_irq_t *irq = avr_io_getirq(chip->avr, AVR_IOCTL_IOPORT_GETIRQ('A'), pin);
+    avr_raise_irq(irq, !is_open);
+    avr_raise_irq(irq, is_open);
+}
