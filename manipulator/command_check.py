@@ -1,0 +1,78 @@
+"""From the poses to be at to joint commands: checks and refuses, never bends, never retimes."""
+
+import numpy as np
+
+from manipulator.arrays import Array
+from manipulator.errors import LimitViolated
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+
+FORGET_AFTER = 0.25
+"""Seconds after which the last command no longer says where the joints are."""
+
+SHORTEST_STEP, LONGEST_STEP = 0.02, 0.1
+"""A joint may step as far as its speed allows within this time (messages may bunch up)."""
+
+
+class CommandCheck:
+    """One machine's last word on what may be commanded; times are monotonic, in seconds.
+
+    A setpoint must keep the machine's constraints (from beyond a limit, only the way back is
+    allowed), and no joint may jump away from the last command, or from where the joints are.
+    """
+
+    def __init__(self, machine: Machine) -> None:
+        self._machine = machine
+        self._names = machine.kinematics.joint_names
+        self._commanded: Array | None = None
+        self._commanded_at = float('-inf')
+        self._measured: Array | None = None
+
+    def note_joints(self, joints: Array | None) -> None:
+        """Where the joints are (n,), in rad or m; None when that is not known of all of them."""
+        self._measured = joints
+        if joints is None:
+            self._commanded = None
+
+    def admit(self, T_base_platform: Pose, now: float) -> Array:
+        """The joints (n,) to command; Unreachable or LimitViolated says why there are none."""
+        age = now - self._commanded_at
+        is_fresh = self._commanded is not None and age < FORGET_AFTER
+        near = self._commanded if is_fresh else self._measured
+        joints = self._machine.kinematics.inverse(T_base_platform, near)
+        self._check_limits(T_base_platform, joints, near)
+        if near is not None:
+            self._check_step(joints, near, age if is_fresh else 0.0)
+        self._commanded, self._commanded_at = joints, now
+        return joints
+
+    def _check_limits(self, pose: Pose, joints: Array, near: Array | None) -> None:
+        constraints = self._machine.constraints
+        if near is not None and not constraints.admits(pose, joints):
+            start = self._machine.kinematics.forward(near, pose).pose
+            constraints = constraints.stretched_to(start, near)
+        constraints.check(pose, joints)
+
+    def _check_step(self, joints: Array, near: Array, age: float) -> None:
+        """Refuses a jump away from the last command, unless it leads to where the joints are."""
+        time = min(max(age, SHORTEST_STEP), LONGEST_STEP)
+        bounds = np.broadcast_to(self._machine.motion.joint.speed * time, joints.shape)
+        steps = np.abs(joints - near)
+        worst = int(np.argmax(steps / bounds))
+        allowed = float(bounds[worst])
+        if steps[worst] <= allowed or self._is_present(joints, bounds):
+            return
+        unit = self._machine.kinematics.joint_unit
+        raise LimitViolated(
+            f'{self._names[worst]} would jump by {steps[worst]:.4g} {unit}, at most '
+            f'{allowed:.4g} {unit} in {time:.3g} s: begin at the present pose',
+            'joint step',
+            float(steps[worst]),
+            (0.0, allowed),
+            worst + 1,
+        )
+
+    def _is_present(self, joints: Array, tolerance: Array) -> bool:
+        return self._measured is not None and bool(
+            (np.abs(joints - self._measured) <= tolerance).all()
+        )
