@@ -7,6 +7,7 @@ import signal
 import subprocess
 import termios
 import threading
+from contextlib import contextmanager
 
 import pytest
 
@@ -91,13 +92,36 @@ class Typist:
         os.close(self.keys)
 
 
-@pytest.fixture
-def typist(words, listening, request):
+@contextmanager
+def sitting(words, listening, root):
     with listening(NAMESPACE, 'keyboard') as listener:
-        root = request.config.rootpath
         typist = Typist(words('keyboard_teleop', NAMESPACE), listener, root)
+        try:
+            yield typist
+        finally:
+            typist.close()
+
+
+@pytest.fixture(scope='module')
+def shared(words, listening, request):
+    with sitting(words, listening, request.config.rootpath) as typist:
         yield typist
-        typist.close()
+
+
+@pytest.fixture
+def typist(shared):
+    """One who types on after the last test, in a process that goes on."""
+    shared.listener.spin(0.5)
+    for heard in (shared.listener.twists, shared.listener.modes, shared.listener.asked):
+        heard.clear()
+    return shared
+
+
+@pytest.fixture
+def leaving(words, listening, request):
+    """One whose process ends with the test."""
+    with sitting(words, listening, request.config.rootpath) as typist:
+        yield typist
 
 
 def test_a_press_moves_and_ends_with_one_zero(typist):
@@ -140,24 +164,24 @@ def test_paste_moves_nothing(typist):
 
 
 @pytest.mark.parametrize('ending', ['q', 'Ctrl-C', 'SIGTERM', 'SIGINT'])
-def test_terminal_is_as_before_after_every_ending(typist, ending):
-    assert not typist.is_as_before()
-    typist.type(b'w')
-    typist.await_last((0.02, 0, 0, 0, 0, 0))
+def test_terminal_is_as_before_after_every_ending(leaving, ending):
+    assert not leaving.is_as_before()
+    leaving.type(b'w')
+    leaving.await_last((0.02, 0, 0, 0, 0, 0))
     if ending.startswith('SIG'):
-        typist.process.send_signal(getattr(signal, ending))
+        leaving.process.send_signal(getattr(signal, ending))
     elif ending == 'q':
-        typist.type(b'q')
+        leaving.type(b'q')
     else:
-        typist.type(b'\x03')
-    assert typist.await_end() == 0
-    assert typist.is_as_before()
-    typist.await_last(ZERO)
+        leaving.type(b'\x03')
+    assert leaving.await_end() == 0
+    assert leaving.is_as_before()
+    leaving.await_last(ZERO)
 
 
-def test_closed_terminal_ends_the_node(typist):
-    typist.leave(lambda: typist.type(b'b'))
-    assert typist.await_end() == 0
+def test_closed_terminal_ends_the_node(leaving):
+    leaving.leave(lambda: leaving.type(b'b'))
+    assert leaving.await_end() == 0
 
 
 def test_without_a_terminal_it_says_so_in_one_line(refusal):
