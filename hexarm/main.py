@@ -19,6 +19,7 @@ from hexarm import (
     machine_list,
     mjcf,
     reach,
+    simulate,
     up,
     workspace,
 )
@@ -32,6 +33,7 @@ COMMANDS = (
     ik,
     fk,
     mjcf,
+    simulate,
     reach,
     workspace,
     accuracy,

@@ -55,4 +55,5 @@ def arm_model(name: str, arm: SerialArm, config: ArmDynamicsConfig, drives: Driv
     def seat(pose: Pose, joints: Array) -> Array:
         return joints
 
-    return Mechanism(name, written(root), arm.joint_names, TOOL, {}, drives, seat)
+    names, unit = arm.joint_names, arm.joint_unit
+    return Mechanism(name, written(root), names, unit, TOOL, {}, drives, seat)

@@ -1,30 +1,28 @@
 """A periodic motion in simulation, with ideal sensors: Prokopovich 2019, figs 12 and 13."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput
 from manipulator.kinematics import Kinematics
-from manipulator.limits.constraints import Constraints
-from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
 from physics.simulation import Reading, Simulation
 
-PAPER_AMPLITUDE = (6e-3, 6e-3, 3e-3, 0.1, 0.1, 0.08)
-"""x, y, z in m; about x (ψ), y (θ), z (φ) in rad: Prokopovich 2019, fig. 12."""
 SHOWN_STEPS = 4
-CHECKED = 400
 Shift = Callable[[Pose, Array], Array]
 """What is added to the joints (N, n) that poses (N) ask for, before drives get them."""
 
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """What the sensors showed, one row every 2 ms; wanted are the poses asked for."""
+    """What the sensors showed, one row every 2 ms; wanted are the poses asked for.
+
+    closure is how far the worst loop's ends are apart, metres.
+    """
 
     times: Array
     joints: Array
@@ -33,6 +31,7 @@ class Recording:
     poses: Pose
     twists: Array
     accelerations: Array
+    closure: Array
     wanted: Pose
 
     @property
@@ -41,47 +40,13 @@ class Recording:
         return self.poses.twist_to(self.wanted)
 
 
-def in_phase(home: Pose, amplitude: Array, frequency: float) -> Cycle:
-    """All six axes as the same sine of `frequency` hertz."""
-    return Cycle(home, np.asarray(amplitude), np.full(6, frequency), np.zeros(6))
-
-
-def poses_of(cycle: Cycle) -> Pose:
-    """A period of the cycle, evenly in time."""
-    return cycle.at(np.linspace(0.0, cycle.checked_duration, CHECKED)).pose
-
-
-def is_in_reach(kinematics: Kinematics, constraints: Constraints, poses: Pose) -> bool:
-    """Whether all poses (N) close and keep every limit."""
-    joints = kinematics.inverse_or_nan(poses)
-    if not np.isfinite(joints).all():
-        return False
-    return bool(constraints.admits(poses, joints).all())
-
-
-def share_in_reach(machine: Machine, cycle: Cycle) -> float:
-    """The largest part of a cycle's amplitudes that stays in reach, to a thousandth; at most 1."""
-
-    def holds(part: float) -> bool:
-        smaller = replace(cycle, amplitude=part * cycle.amplitude)
-        return is_in_reach(machine.kinematics, machine.constraints, poses_of(smaller))
-
-    if holds(1.0):
-        return 1.0
-    low, high = 0.0, 1.0
-    while high - low > 1e-3:
-        middle = (low + high) / 2
-        low, high = (middle, high) if holds(middle) else (low, middle)
-    return low
-
-
 def run(
     simulation: Simulation, kinematics: Kinematics, cycle: Cycle, periods: float, shift: Shift
 ) -> Recording:
     """Drives the cycle with a new target at every step, after one period in which it swells.
 
-    Raises InvalidInput for a cycle that does not repeat or periods ≤ 0, DoesNotAssemble where
-    the mechanism comes apart.
+    Raises InvalidInput for a cycle that does not repeat or periods ≤ 0, Unreachable for one that
+    leaves the reach.
     """
     period = cycle.checked_duration
     if not period > 0 or not periods > 0:
@@ -92,7 +57,7 @@ def run(
     poses = _swelling(cycle, times, period)
     joints = kinematics.inverse(poses, simulation.joints)
     targets = joints + shift(poses, joints)
-    readings, shown = [], []
+    readings, closure, shown = [], [], []
     for k, target in enumerate(targets):
         simulation.aim(target)
         if k < swelling or (k - swelling + 1) % SHOWN_STEPS:
@@ -100,8 +65,8 @@ def run(
             continue
         readings.append(simulation.watched())
         shown.append(k)
-        simulation.check_closed()
-    return _recording(readings, poses[shown])
+        closure.append(simulation.closure_errors().max(initial=0.0))
+    return _recording(readings, frozen(closure), poses[shown])
 
 
 def unshifted(pose: Pose, joints: Array) -> Array:
@@ -116,7 +81,7 @@ def _swelling(cycle: Cycle, times: Array, period: float) -> Pose:
     return cycle.centre.moved(part[:, None] * cycle.centre.twist_to(cycle.at(times).pose))
 
 
-def _recording(readings: list[Reading], wanted: Pose) -> Recording:
+def _recording(readings: list[Reading], closure: Array, wanted: Pose) -> Recording:
     def stacked(name: str) -> Array:
         return frozen(np.array([getattr(reading, name) for reading in readings]))
 
@@ -131,5 +96,6 @@ def _recording(readings: list[Reading], wanted: Pose) -> Recording:
         Pose(positions, rotations),
         stacked('twist'),
         stacked('acceleration'),
+        closure,
         wanted,
     )

@@ -50,7 +50,8 @@ def linear_model(
         closures[f'leg {leg + 1}'] = add_closure(root, leg + 1)
     add_drives(root, joints, drives)
     seat = _seat(kinematics, universals)
-    return Mechanism(name, written(root), joints, PLATFORM, closures, drives, seat)
+    unit = kinematics.joint_unit
+    return Mechanism(name, written(root), joints, unit, PLATFORM, closures, drives, seat)
 
 
 def _add_leg(

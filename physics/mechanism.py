@@ -25,6 +25,7 @@ class Mechanism:
     name: str
     xml: str
     joints: tuple[str, ...]
+    joint_unit: str
     moving: str
     closures: dict[str, tuple[str, str]]
     drives: Drives

@@ -7,7 +7,8 @@ import pytest
 
 from manipulator.errors import InvalidInput
 from manipulator.trajectory.plan import MotionState
-from physics.experiment import PAPER_AMPLITUDE, in_phase, run, share_in_reach, unshifted
+from physics.cycle_reach import PAPER_AMPLITUDE, corners_out, in_phase, share_in_reach
+from physics.experiment import run, unshifted
 from physics.holding import Stalls, check_holds
 from physics.inverse_dynamics import InverseDynamics
 from physics.limit_search import Demand, LimitSearch, along, largest, lines
@@ -64,6 +65,11 @@ def test_share_in_reach_is_the_largest(robocake):
     assert share_in_reach(robocake.machine, replace(cycle, amplitude=part * cycle.amplitude)) == 1
     beyond = replace(cycle, amplitude=(part + 0.003) * cycle.amplitude)
     assert share_in_reach(robocake.machine, beyond) < 1
+
+
+def test_about_half_of_the_papers_corners_are_out_of_reach(robocake):
+    assert 20 <= corners_out(robocake.machine, np.array(PAPER_AMPLITUDE)) <= 44
+    assert corners_out(robocake.machine, 0.1 * np.array(PAPER_AMPLITUDE)) == 0
 
 
 def test_a_motion_that_never_repeats_is_refused(robocake):
