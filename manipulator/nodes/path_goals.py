@@ -1,4 +1,4 @@
-"""`goal_path`: taken undecoded, worked out in a process of its own, then driven like a goal."""
+"""`goal_path`: heard and worked out in processes of their own, then driven like a goal."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,17 +13,16 @@ from manipulator.errors import InvalidInput, ManipulatorError, Refused
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, check_frame, pose_message, seconds
 from manipulator.nodes.parameters import declare
-from manipulator.nodes.path_cdr import read_head
+from manipulator.nodes.path_ear import PathEar
+from manipulator.nodes.path_listener import MOST_POSES, HeardPath
 from manipulator.nodes.path_process import PathTask
 from manipulator.nodes.path_work import PathWork
-from manipulator.nodes.qos import COMMAND
 from manipulator.pose import Pose
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.pilot import Pilot
 
-MOST_POSES = 2000
 OVERTAKEN = 'a newer command came while the path was worked out'
 
 
@@ -53,14 +52,17 @@ class PathGoals:
         ):
             declare(node, name, default, description, bounds, is_read_only=False)
         self._intake = Intake(node, 'goal_path', self._on_path, self._on_bad_path)
-        node.create_subscription(Path, 'goal_path', self._on_bytes, COMMAND, raw=True)
+        self._ear = PathEar(node.get_namespace(), node.resolve_topic_name('goal_path'))
 
     def poll(self) -> None:
-        """Takes up what has been worked out; drops it when something newer came."""
+        """Takes up what was heard or has been worked out; drops it when something newer came."""
+        message = self._ear.take()
+        if message is not None:
+            self._intake(_raw_path(message))
         if self._work is None:
             return
         if not self._is_expected:
-            self.close()
+            self._cancel()
             self._say(MotionStatus(self._pilot.status.mode, 'stopped', self._stamp, OVERTAKEN))
             return
         outcome, player = self._work.outcome, self._pilot.player
@@ -75,7 +77,11 @@ class PathGoals:
             player.pursue(Goal(outcome.at(0.0).pose, self._stamp, then=outcome))
 
     def close(self) -> None:
-        """Ends the process that works a path out."""
+        """Ends both processes."""
+        self._cancel()
+        self._ear.close()
+
+    def _cancel(self) -> None:
         if self._work is not None:
             self._work.cancel()
             self._work = None
@@ -87,18 +93,11 @@ class PathGoals:
         except Refused:
             return False
 
-    def _on_bytes(self, serialized: bytes) -> None:
-        try:
-            head = read_head(serialized)
-        except InvalidInput as error:
-            self._node.get_logger().warning(f'goal_path: {error}', throttle_duration_sec=1.0)
-            return
-        stamp = Time(sec=head.sec, nanosec=head.nanosec)
-        self._intake(RawPath(Header(stamp=stamp, frame_id=head.frame_id), head.count, serialized))
-
     def _on_path(self, message: RawPath) -> None:
         if not 1 <= message.count <= MOST_POSES:
             raise InvalidInput(f'a path of {message.count} poses, needs 1 to {MOST_POSES}')
+        if not message.serialized:
+            raise InvalidInput(f'a path of {message.count} poses, and yet of too many bytes')
         check_frame(message.header.frame_id, (BASE_FRAME, WORK_FRAME))
         frame = message.header.frame_id or BASE_FRAME
         player, stamp = self._pilot.player, seconds(message.header.stamp)
@@ -113,7 +112,7 @@ class PathGoals:
             self._dt,
         )
         player.expect(stamp)
-        self.close()
+        self._cancel()
         self._stamp, self._work = stamp, PathWork(task)
 
     def _parameter(self, name: str) -> float:
@@ -122,6 +121,12 @@ class PathGoals:
     def _on_bad_path(self, message: RawPath, error: ManipulatorError) -> None:
         mode, stamp = self._pilot.status.mode, seconds(message.header.stamp)
         self._say(MotionStatus(mode, 'refused', stamp, str(error)))
+
+
+def _raw_path(message: HeardPath) -> RawPath:
+    stamp = Time(sec=message.head.sec, nanosec=message.head.nanosec)
+    header = Header(stamp=stamp, frame_id=message.head.frame_id)
+    return RawPath(header, message.head.count, message.serialized)
 
 
 def path_message(
