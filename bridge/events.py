@@ -1,9 +1,20 @@
-"""What the host's side of the line has to tell: plain values, in the order they happened."""
+"""What the host's side of the line has to tell: how far it is, and what happened, in order."""
 
+import enum
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from bridge.messages import Command, Fault, Hello, State
+
+
+class Phase(enum.Enum):
+    """How far the host has come with the board."""
+
+    CLOSED = 'no port'
+    WAITING = 'waiting for HELLO'
+    GREETED = 'waiting for the first STATE'
+    READY = 'ready'
+    INCOMPATIBLE = 'another board'
 
 
 @dataclass(frozen=True)

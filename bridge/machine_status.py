@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 
+from bridge.events import Phase
 from bridge.messages import FaultCode, Mode
-from bridge.session import Phase, Session
+from bridge.session import Session
 
 OK, WARN, ERROR = 0, 1, 2
 

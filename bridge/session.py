@@ -4,9 +4,9 @@ It stays silent until the board's HELLO: bytes sent during a Mega's boot would k
 waiting for ever. `now` is monotonic time in seconds, given by the caller.
 """
 
-import enum
 from dataclasses import dataclass, replace
 
+from bridge import greeting
 from bridge.events import (
     Acknowledged,
     CommandFailed,
@@ -16,14 +16,15 @@ from bridge.events import (
     FaultReported,
     Incompatible,
     Opened,
+    Phase,
     StateReceived,
 )
 from bridge.frames import DELIMITER, encode
 from bridge.framing import FrameReader
 from bridge.messages import (
-    PROTOCOL_VERSION,
     REASONS,
     Ack,
+    Clear,
     Command,
     Disarm,
     Fault,
@@ -47,16 +48,6 @@ MODE_AFTER: dict[type, Mode] = {Disarm: Mode.DISARMED, Stop: Mode.STOPPED}
 SHORTEST_ADVANCE_MS = 125
 
 
-class Phase(enum.Enum):
-    """How far the host has come with the board."""
-
-    CLOSED = 'no port'
-    WAITING = 'waiting for HELLO'
-    GREETED = 'waiting for the first STATE'
-    READY = 'ready'
-    INCOMPATIBLE = 'another board'
-
-
 @dataclass
 class _Pending:
     """A command on its way; every try carries the same sequence."""
@@ -69,7 +60,11 @@ class _Pending:
 
 
 class Session:
-    """One host talking to one board with `joint_count` joints."""
+    """One host talking to one board with `joint_count` joints.
+
+    A STOP is never given up: it is said again until the board stands, also to a board that was
+    away or started again, and until the board has obeyed a CLEAR no setpoint goes out.
+    """
 
     def __init__(self, joint_count: int) -> None:
         self.joint_count = joint_count
@@ -77,6 +72,7 @@ class Session:
         self.hello: Hello | None = None
         self.state: State | None = None
         self.setpoints_sent = 0
+        self.is_stop_wanted = False
         self.reader = FrameReader()
         self.round_trips = RoundTrips()
         self._output = bytearray()
@@ -90,6 +86,7 @@ class Session:
         return (
             self.phase is Phase.READY
             and self._pending is None
+            and not self.is_stop_wanted
             and self.state is not None
             and self.state.mode in (Mode.ARMED, Mode.HOLDING)
         )
@@ -134,12 +131,14 @@ class Session:
         pending = self._pending
         if pending is None or now - pending.sent_at < RETRY_AFTER:
             return []
-        if pending.tries == MAX_TRIES:
-            return self._fail_pending(f'no answer from the board after {MAX_TRIES} tries')
+        is_too_often = pending.tries == MAX_TRIES
+        reason = f'no answer from the board after {MAX_TRIES} tries'
+        if is_too_often and not isinstance(pending.command, Stop):
+            return self._fail_pending(reason)
         pending.tries += 1
         pending.sent_at = now
         self._output += pending.wire
-        return []
+        return [CommandFailed(pending.command, f'{reason} yet')] if is_too_often else []
 
     def send_setpoint(self, setpoint: Setpoint, now: float) -> None:
         """Newest wins, never repeated; Refused where the board would not follow it."""
@@ -153,8 +152,10 @@ class Session:
     def send_command(self, command: Command, now: float) -> list[Event]:
         """Repeated until acknowledged; it takes the place of one that is under way.
 
-        Refused where there is no board, or where a STOP is still under way.
+        Refused where there is no board (a STOP is said as soon as there is one), or where a STOP
+        is still under way.
         """
+        self.is_stop_wanted = self.is_stop_wanted or isinstance(command, Stop)
         if self.phase is not Phase.READY:
             raise Refused(f'no board to talk to: {self.phase.value}')
         pending = self._pending
@@ -163,15 +164,18 @@ class Session:
                 return []
             raise Refused('a STOP is under way')
         failed = self._fail_pending(f'{type(command).__name__.upper()} came after it')
-        # The delimiter ahead ends whatever half a frame the board may have got before.
-        wire = self._send(command, ahead=DELIMITER)
-        self._pending = _Pending(command, self._sequence, wire, now, tries=1)
+        self._begin(command, now)
         return failed
 
     def take_output(self) -> bytes:
         """The bytes for the board since the last call."""
         output, self._output = bytes(self._output), bytearray()
         return output
+
+    def _begin(self, command: Command, now: float) -> None:
+        # The delimiter ahead ends whatever half a frame the board may have got before.
+        wire = self._send(command, ahead=DELIMITER)
+        self._pending = _Pending(command, self._sequence, wire, now, tries=1)
 
     def _send(self, message: Setpoint | Command, ahead: bytes = b'') -> bytes:
         self._sequence = self._sequence + 1 & 0xFFFF
@@ -187,13 +191,15 @@ class Session:
         self._output.clear()
 
     def _greet(self, hello: Hello, now: float) -> list[Event]:
-        misfit = self._misfit(hello)
+        misfit = greeting.misfit(hello, self.joint_count)
         if misfit:
             is_news = self.phase is not Phase.INCOMPATIBLE
             self._forget(Phase.INCOMPATIBLE, now)
             return [Incompatible(misfit)] if is_news else []
         events: list[Event] = []
-        has_restarted = self._has_restarted(hello, now)
+        has_restarted = self.hello is not None and greeting.has_restarted(
+            self.hello, hello, now - self._greeted_at
+        )
         if self.phase is not Phase.READY or has_restarted:
             if has_restarted:
                 cause = hello.reset_cause.name or hello.reset_cause
@@ -202,26 +208,6 @@ class Session:
             self._forget(Phase.GREETED, now)
         self.hello, self._greeted_at = hello, now
         return events
-
-    def _has_restarted(self, hello: Hello, now: float) -> bool:
-        """Whether the board's clock (it wraps) ran less than half as long as ours since its HELLO.
-
-        A board's resonator is off by a percent, and a simulated board may stall: neither counts.
-        Two HELLOs of one run are 250 ms apart on that clock, so less is a restart as well.
-        """
-        if self.hello is None:
-            return False
-        advance = hello.uptime_ms - self.hello.uptime_ms & 0xFFFF_FFFF
-        elapsed_ms = 1000 * (now - self._greeted_at)
-        is_too_slow = advance + UPTIME_SLACK_MS < elapsed_ms / 2
-        return is_too_slow or advance < SHORTEST_ADVANCE_MS or advance >= 0x8000_0000
-
-    def _misfit(self, hello: Hello) -> str:
-        if hello.version != PROTOCOL_VERSION:
-            return f'the board speaks protocol {hello.version}, this host {PROTOCOL_VERSION}'
-        if hello.joint_count != self.joint_count:
-            return f'the board has {hello.joint_count} joints, the machine {self.joint_count}'
-        return ''
 
     def _note_state(self, state: State, now: float) -> list[Event]:
         if self.phase not in (Phase.GREETED, Phase.READY) or self.hello is None:
@@ -235,6 +221,8 @@ class Session:
         self.round_trips.note_state(state, now)
         self.state = state
         self.phase = Phase.READY
+        if self.is_stop_wanted and self._pending is None and state.mode is not Mode.STOPPED:
+            self._begin(Stop(), now)
         connected: list[Event] = [Connected(self.hello)] if is_first else []
         return [*connected, StateReceived(state)]
 
@@ -245,6 +233,8 @@ class Session:
         if ack.result is not Result.OK:
             return self._fail_pending(REASONS[ack.result])
         self._pending = None
+        if isinstance(pending.command, Clear):
+            self.is_stop_wanted = False
         mode = MODE_AFTER.get(type(pending.command))
         if mode is not None and self.state is not None:
             # Known before the next STATE tells it: no setpoint may follow.

@@ -10,6 +10,7 @@ from bridge.events import (
     Disconnected,
     FaultReported,
     Opened,
+    Phase,
     StateReceived,
 )
 from bridge.link_monitor import LinkMonitor
@@ -26,7 +27,7 @@ from bridge.messages import (
     State,
 )
 from bridge.servo_config import BoardConfig
-from bridge.session import Phase, Session
+from bridge.session import Session
 from hexarm import machines
 
 HELLO = Hello(1, ResetCause.POWER_ON, 6, 300)
