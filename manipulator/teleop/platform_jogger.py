@@ -61,7 +61,7 @@ class PlatformJogger:
         return JogMotion(pose, frozen(joints), frozen(twist), rates, scale, held_by)
 
     def _ways(self, motion: JogMotion, twists: Array, dt: float) -> '_Ways':
-        """One tick at each of the twists (k, 6), then braking straight ahead until all is still."""
+        """One tick at each of the twists (k, 6), then braking straight ahead to rest."""
         ticks = _braking_ticks(twists, self.machine, dt)
         steps = np.arange(int(ticks.max()) + 1)
         parts = np.maximum(1.0 - steps / ticks[:, None], 0.0)
