@@ -13,7 +13,8 @@ from manipulator.arrays import Array, Mask
 from manipulator.frames import Frames
 from manipulator.kinematics import ForwardSolution, Kinematics
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.limit import Limit, admitted
+from manipulator.limits.limit import admitted
+from manipulator.limits.limit_of import LimitOf
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke
@@ -87,27 +88,11 @@ class FramedKinematics:
         return self.inner.sigma_min(self.frames.platform(pose), joints)
 
 
-@dataclass(frozen=True)
-class FramedLimit:
+@dataclass(frozen=True, eq=False)
+class FramedLimit(LimitOf):
     """A limit of the machine, asked with poses of the pivot in the work frame."""
 
-    inner: Limit
     frames: Frames
-
-    @property
-    def quantity(self) -> str:
-        """That of the limit."""
-        return self.inner.quantity
-
-    @property
-    def unit(self) -> str:
-        """That of the limit."""
-        return self.inner.unit
-
-    @property
-    def owners(self) -> tuple[str, ...]:
-        """Those of the limit."""
-        return self.inner.owners
 
     @property
     def low(self) -> Array:

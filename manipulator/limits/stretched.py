@@ -6,6 +6,7 @@ import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.limits.limit import Limit
+from manipulator.limits.limit_of import LimitOf
 from manipulator.pose import Pose
 
 ROUNDING = 1e-9
@@ -13,10 +14,9 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class StretchedLimit:
+class StretchedLimit(LimitOf):
     """`inner` with bounds [low, high] (k,) that take in where the machine stands."""
 
-    inner: Limit
     low: Array
     high: Array
 
@@ -27,21 +27,6 @@ class StretchedLimit:
         low = np.where(values < limit.low, values - ROUNDING, limit.low)
         high = np.where(values > limit.high, values + ROUNDING, limit.high)
         return cls(limit, frozen(low), frozen(high))
-
-    @property
-    def quantity(self) -> str:
-        """That of the limit."""
-        return self.inner.quantity
-
-    @property
-    def unit(self) -> str:
-        """That of the limit."""
-        return self.inner.unit
-
-    @property
-    def owners(self) -> tuple[str, ...]:
-        """Those of the limit."""
-        return self.inner.owners
 
     def values(self, pose: Pose, joints: Array) -> Array:
         """Those of the limit."""
