@@ -139,7 +139,10 @@ class SerialBridge(Node):
             self.get_logger().error(f'STOP did not reach the board: {done.exception()}')
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        if request.data:
+        if request.data and self._monitor.status.word == 'enabled':
+            # An ARM would hold up the setpoints of a machine that is moving.
+            response.success, response.message = True, 'enabled already'
+        elif request.data:
             park = self._calibration.counts(self._calibration.park)
             done = 'arming: the servos go to park one by one'
             response.success, response.message = self._ask(Arm(park), done)

@@ -36,6 +36,7 @@ class Sent:
     pivot: Pose
     frames: Frames
     is_first: bool
+    mode: str
     joints: np.ndarray
     counts: np.ndarray
     pulses: np.ndarray
@@ -82,9 +83,13 @@ class Loop:
 
     def enable(self):
         self.until('disarmed')
-        self.ask(Arm(self.park))
+        self.arm()
         self.until('enabled')
         self.run(5)
+
+    def arm(self):
+        if self.monitor.status.word != 'enabled':
+            self.ask(Arm(self.park))
 
     def ask(self, command):
         """As the bridge's services do; Refused where there is nothing to ask of."""
@@ -128,9 +133,18 @@ class Loop:
         self._is_followed = True
         frames = self.pilot.machine.frames
         counts = np.array(setpoint.counts, dtype=float)
-        is_first = self.pilot.status.mode == 'disabled'
+        mode = self.pilot.status.mode
         self.sent.append(
-            Sent(self.tick, frames.pivot(pose), frames, is_first, joints, counts, pulses)
+            Sent(
+                self.tick,
+                frames.pivot(pose),
+                frames,
+                mode == 'disabled',
+                mode,
+                joints,
+                counts,
+                pulses,
+            )
         )
 
     def _of_all(self, joints):
