@@ -34,7 +34,7 @@ def node_of(words, processes_left):
 def test_up_enables_runs_and_parks_on_ctrl_c(hexarm, processes_left):
     process = hexarm('up', 'hexapod')
     read_until(process, 'is up on fake and enabled')
-    assert len(processes_left()) == 6
+    assert len(processes_left()) == 7  # up, five nodes, the trajectory node's path_listener
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()
     assert process.wait(20) == 0
