@@ -29,6 +29,7 @@ from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
 from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.lag import lag_of
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.teleop import Teleop
@@ -162,6 +163,7 @@ class TrajectoryNode(Node):
             'result': now.result,
             'goals_refused': self._refusals,
             'last_refusal': self._last_refusal,
+            **lag_of(self._pilot),
             **self._teleop_topics.report(),
             'last_pose_age_s': self._poses.age,
             'tick_jitter_p50_ms': self._jitter.quantile(0.5) * 1e3,

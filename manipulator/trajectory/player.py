@@ -66,6 +66,15 @@ class Player:
         return self._newest.stamp if self._newest is not None else self.status.goal_stamp
 
     @property
+    def pursued(self) -> Pose | None:
+        """The newest goal that is driven to or waits; None for other motion and at rest."""
+        for waiting in (self._newest, self._next):
+            if isinstance(waiting, Goal):
+                return waiting.pose
+        is_move = MODES[type(self._plan)] == 'move'
+        return self._plan.at(self._plan.duration).pose if is_move else None
+
+    @property
     def is_at_rest(self) -> bool:
         """Whether nothing moves and nothing is about to."""
         is_jogged = self._jogging is not None or self._wish is not None

@@ -1,0 +1,59 @@
+import numpy as np
+import pytest
+
+from hexarm.machines import load
+from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.lag import lag_of
+from manipulator.trajectory.pilot import Pilot
+
+MACHINE = load('robocake')
+HOME = MACHINE.kinematics.home
+DT = 0.01
+
+
+@pytest.fixture
+def pilot():
+    """One that drives, at home."""
+    made = Pilot(MACHINE, DT, 0.2)
+    made.note_machine_state('enabled', is_followed=True)
+    made.note_joints(MACHINE.kinematics.inverse(HOME))
+    made.note_pose(HOME)
+    return made
+
+
+def step(pilot):
+    pose = pilot.step()
+    pilot.note_joints(MACHINE.kinematics.inverse(pose))
+    return pose
+
+
+def stream(pilot, speed, seconds):
+    """A goal each tick, away along x at `speed`; lags and poses."""
+    lags, poses = [], []
+    for k in range(round(seconds / DT)):
+        pilot.player.pursue(Goal(HOME.moved([speed * k * DT, 0, 0, 0, 0, 0]), 0.0))
+        poses.append(step(pilot))
+        lags.append(lag_of(pilot)['lag_mm'])
+    return lags, poses
+
+
+def test_stream_within_the_limits_is_followed_closely(pilot):
+    lags, _ = stream(pilot, 0.02, 0.4)
+    assert 0.0 < max(lags) < 2.0
+
+
+def test_stream_beyond_the_limits_is_pursued_within_them_and_its_lag_grows_and_ends(pilot):
+    lags, poses = stream(pilot, 0.1, 0.12)
+    speeds = np.diff([p.position[0] for p in poses]) / DT
+    assert max(speeds) <= 0.05 * 1.005
+    assert lags[-1] > 1.5 * lags[len(lags) // 2] > 2.0
+    newest = 0.1 * 0.11
+    assert lags[-1] == pytest.approx(1e3 * (newest - poses[-1].position[0]))
+    for _ in range(100):
+        last = step(pilot)
+    assert last.position[0] == pytest.approx(newest)
+    assert lag_of(pilot) == {'lag_mm': 0.0, 'lag_deg': 0.0}
+
+
+def test_machine_that_nobody_drives_has_no_lag():
+    assert lag_of(Pilot(MACHINE, DT, 0.2)) == {'lag_mm': 0.0, 'lag_deg': 0.0}
