@@ -3,7 +3,7 @@ SHELL := /bin/bash
 ENV := .venv
 BIN := $(ENV)/bin
 
-.PHONY: demo test lint bench clean
+.PHONY: demo test lint bench soak clean
 
 demo: $(ENV)/ready
 	@$(BIN)/hexarm demo
@@ -16,6 +16,9 @@ lint: $(ENV)/ready
 
 bench: $(ENV)/ready
 	@$(BIN)/python -m bench
+
+soak: $(ENV)/ready
+	@SOAK_SECONDS=600 $(BIN)/python -m pytest -s test/graph/test_soak.py
 
 $(ENV)/ready: setup.py pyproject.toml environment.sh
 	@./environment.sh $(ENV)

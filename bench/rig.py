@@ -61,6 +61,9 @@ class TappedLine(FakeLine):
         super().__init__(path)
         self._tap = tap
 
+    def another(self):
+        return TappedLine(self.path, self._tap)
+
     def read(self):
         received = super().read()
         self._tap.note(received)
@@ -80,8 +83,8 @@ class Recorder:
     def servos(self):
         return self.machine.servos
 
-    def step(self, dt):
-        self.machine.step(dt)
+    def step(self, dt, stuck_channel=None):
+        self.machine.step(dt, stuck_channel)
         if self.board.pulses != self._changes[-1][1]:
             with self._lock:
                 self._changes.append((time.monotonic(), self.board.pulses))
@@ -117,13 +120,13 @@ class Recorder:
 class Rig:
     """A context manager: board, line, user, and the graph's processes by name."""
 
-    def __init__(self, folder, space, kind='hexapod', machine='robocake', boot_s=0.2):
+    def __init__(self, folder, space, kind='hexapod', machine='robocake', boot_s=0.2, faults=None):
         config = BoardConfig.from_machine(machines.read(machine))
         self._path = folder / 'board'
         self.tap = Tap()
         self.recorder = Recorder(FakeMachine.from_config(config, boot_s, hysteresis=0.0))
         line = TappedLine(self._path, self.tap)
-        self.board = BoardThread(self.recorder, line, lambda positions: None)
+        self.board = BoardThread(self.recorder, line, lambda positions: None, faults)
         self.calibration = self.recorder.calibration
         self._space = space
         nodes = machine_graph(kind, machine, str(self._path), self._path)
@@ -189,8 +192,9 @@ class Rig:
     def circle(self, seconds):
         """Has the platform circle about home for a while; again, where this computer stalls."""
         self.set_parameters('trajectory', CIRCLE)
+        last = None
         for _ in range(TRIES):
-            with contextlib.suppress(ManipulatorError):
+            try:
                 self.user.wait('goals', lambda: self.user.motion('mode') != 'disabled', 5.0)
                 self.user.home()
                 self.user.trigger('trajectory/start_cycle')
@@ -198,7 +202,9 @@ class Rig:
                 self.user.spin(seconds)
                 if self.user.motion('mode') == 'cycle':
                     return
-        raise NotReady(f'no circle in {TRIES} tries: {self.user.summary}')
+            except ManipulatorError as error:
+                last = error
+        raise NotReady(f'no circle in {TRIES} tries ({last}): {self.user.summary}')
 
     def stop_time(self, name, number):
         """Seconds from a signal to a process until the servo targets stand still."""

@@ -12,6 +12,7 @@ from bridge.framing import FrameReader
 from bridge.messages import (
     NO_JOINT,
     Ack,
+    Clear,
     Command,
     Fault,
     FaultCode,
@@ -38,12 +39,14 @@ class Board:
     """One board on a line; `battery_mv` is what its divider measures now.
 
     measured: what its encoders read, in counts by channel; None where joints have none.
+    is_stop_open: the stop button's contact, which stops while it is open.
     """
 
     def __init__(self, settings: BoardSettings, battery_mv: int = 7600) -> None:
         self.settings = settings
         self.battery_mv = battery_mv
         self.measured: tuple[int, ...] | None = None
+        self.is_stop_open = False
         self._axes = still_axes()
         self.reset(ResetCause.POWER_ON)
 
@@ -104,6 +107,8 @@ class Board:
         return output
 
     def _pass_period(self, now_us: int) -> None:
+        if self.is_stop_open and self._modes.mode is not Mode.STOPPED:
+            self._modes.obey(Stop(), now_us)
         self._fault_to_say = self._modes.pass_period(now_us, self.battery_mv) or self._fault_to_say
         is_host_silent = now_us - self._heard_at_us >= HOST_SILENCE_US
         if now_us >= self._hello_at_us and (is_host_silent or not self._has_said_hello):
@@ -133,7 +138,7 @@ class Board:
         if self._last_command is not None and self._last_command[:2] == (kind, sequence):
             result = self._last_command[2]
         elif self._is_new(sequence):
-            result = self._modes.obey(command, self._now_us)
+            result = self._obey(command)
             self._accept(sequence)
             self._last_command = kind, sequence, result
         elif kind is Stop:
@@ -144,6 +149,11 @@ class Board:
         if result is not Result.OK:
             self._refused += 1
         self._say(Ack(sequence, result))
+
+    def _obey(self, command: Command) -> Result:
+        if self.is_stop_open and isinstance(command, Clear) and self.mode is Mode.STOPPED:
+            return Result.STOPPED
+        return self._modes.obey(command, self._now_us)
 
     def _is_new(self, sequence: int) -> bool:
         return self._accepted_at_us is None or is_newer(sequence, self._echo)

@@ -11,9 +11,11 @@ import numpy as np
 
 from bridge.board import Board
 from bridge.board_courses import Solver
+from bridge.board_faults import BoardFaults
 from bridge.board_settings import BoardSettings
 from bridge.calibration import COUNTS_PER_US, Calibration
 from bridge.fake_line import FakeLine
+from bridge.faults import Faults
 from bridge.messages import ResetCause
 from bridge.servo import Servos
 from bridge.servo_config import BoardConfig
@@ -47,10 +49,12 @@ class FakeMachine:
         board = Board(settings, round(1000 * config.simulation.battery_v))
         return cls(board, servos, calibration, config.simulation.joints == 'measured')
 
-    def step(self, dt: float) -> None:
-        """Board first, then the servos that it drives."""
+    def step(self, dt: float, stuck_channel: int | None = None) -> None:
+        """Board first, then the servos that it drives, but for one that is stuck."""
         self.board.step(dt)
         pulses = [np.nan if pulse is None else pulse for pulse in self.board.pulses]
+        if stuck_channel is not None:
+            pulses[stuck_channel] = np.nan
         self.servos.step(self.calibration.positions(pulses), dt)
         if self.is_measured:
             self.board.measured = self.calibration.nearest_counts(self.servos.positions)
@@ -64,10 +68,17 @@ class BoardThread(threading.Thread):
     """
 
     def __init__(
-        self, machine: FakeMachine, line: FakeLine, on_positions: Callable[[Array], None]
+        self,
+        machine: FakeMachine,
+        line: FakeLine,
+        on_positions: Callable[[Array], None],
+        faults: Faults | None = None,
     ) -> None:
+        """`faults` is what goes wrong; nothing, where there are none."""
         super().__init__(name='board', daemon=True)
         self.is_mute = False
+        self._faults = BoardFaults(machine.board, faults or Faults(), self._replug)
+        self._make_line = line.another
         self._machine = machine
         self._line: FakeLine | None = line
         self._on_positions = on_positions
@@ -101,9 +112,10 @@ class BoardThread(threading.Thread):
             while self._wishes:
                 self._wishes.popleft()()
             now = time.monotonic()
-            self._machine.step(min(now - last, LONGEST_STEP))
+            self._faults.advance(now)
+            self._machine.step(min(now - last, LONGEST_STEP), self._faults.stuck_channel)
             last = now
-            self._exchange(has_input)
+            self._exchange(has_input, now)
             if now >= start + steps * STEP:
                 # Steps that were missed are not made up for.
                 steps = int((now - start) / STEP) + 1
@@ -116,12 +128,16 @@ class BoardThread(threading.Thread):
         timeout = max(until - time.monotonic(), 0.0)
         return bool(select.select(lines, [], [], timeout)[0])
 
-    def _exchange(self, has_input: bool) -> None:
-        output = self._machine.board.take_output()
+    def _replug(self, is_in: bool) -> None:
+        self.plug(self._make_line() if is_in else None)
+
+    def _exchange(self, has_input: bool, now: float) -> None:
+        board = self._machine.board
+        output = board.take_output()
         if self._line is None:
             return
-        if has_input:
-            self._machine.board.feed(self._line.read())
-            output += self._machine.board.take_output()
+        received = self._line.read() if has_input else b''
+        board.feed(self._faults.heard(received, now))
+        output = self._faults.said(output + board.take_output(), now)
         if output and not self.is_mute:
             self._line.write(output)

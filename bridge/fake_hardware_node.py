@@ -14,6 +14,7 @@ from std_srvs.srv import SetBool, Trigger
 from bridge.board_thread import BoardThread, FakeMachine
 from bridge.calibration import Calibration
 from bridge.fake_line import FakeLine
+from bridge.faults import FaultKind, Faults
 from bridge.messages import ResetCause
 from bridge.servo_config import BoardConfig, SimulationConfig
 from hexarm import machines
@@ -34,6 +35,11 @@ PRESETS: dict[str, Callable[[SimulationConfig], SimulationConfig]] = {
 }
 """bad_day: six times the play, so 3° on a worn RoboCake. stepper: no play, but encoders."""
 PRESET = "'normal', 'bad_day' (six times the play) or 'stepper' (no play, measured joints)"
+
+
+KINDS = [kind.value for kind in FaultKind]
+SEED = 'of the random faults: the same seed brings the same ones after the same seconds'
+PER_MINUTE = 'random faults in 60 s, on average'
 
 
 class FakeHardware(Node):
@@ -73,7 +79,10 @@ class FakeHardware(Node):
         self.create_service(Trigger, '~/reset', self._on_reset)
         self.create_service(SetBool, '~/plug', self._on_plug)
         self.create_service(SetBool, '~/mute', self._on_mute)
-        self._thread = BoardThread(machine, FakeLine(self._path), self._publish)
+        self.create_service(SetBool, '~/stop_pin', self._on_stop_pin)
+        self._faults = self._declare_faults()
+        line = FakeLine(self._path)
+        self._thread = BoardThread(machine, line, self._publish, self._faults)
         self._thread.start()
         self.get_logger().info(f'board on {self._path}')
 
@@ -86,10 +95,23 @@ class FakeHardware(Node):
         declare(self, 'battery_v', simulation.battery_v, description, (0.0, 60.0), False)
         self.add_on_set_parameters_callback(self._on_parameters)
 
+    def _declare_faults(self) -> Faults:
+        seed = declare(self, 'faults_seed', 0, SEED, (0, 2**31 - 1))
+        per_minute = declare(self, 'faults_per_minute', 0.0, PER_MINUTE, (0.0, 600.0))
+        declare(
+            self, 'fault', '', f'set to one of {", ".join(KINDS)}: it happens once', None, False
+        )
+        return Faults(seed, per_minute)
+
     def _on_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
         for parameter in parameters:
             if parameter.name == 'battery_v':
                 self._board.battery_mv = round(1000 * float(parameter.value))
+            elif parameter.name == 'fault' and parameter.value:
+                if parameter.value not in KINDS:
+                    reason = f'fault: {parameter.value!r} is not one of {", ".join(KINDS)}'
+                    return SetParametersResult(successful=False, reason=reason)
+                self._faults.inject(FaultKind(parameter.value))
         return SetParametersResult(successful=True)
 
     def _publish(self, positions: Array) -> None:
@@ -118,4 +140,12 @@ class FakeHardware(Node):
     def _on_mute(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         self._thread.is_mute = request.data
         response.success, response.message = True, 'mute' if request.data else 'talks again'
+        return response
+
+    def _on_stop_pin(
+        self, request: SetBool.Request, response: SetBool.Response
+    ) -> SetBool.Response:
+        self._board.is_stop_open = request.data
+        response.success = True
+        response.message = 'the stop contact is open' if request.data else 'closed'
         return response

@@ -35,6 +35,10 @@ class FakeLine:
             self._close_ends()
             raise LinkError(f'{path} cannot be made: {error.strerror}') from error
 
+    def another(self) -> 'FakeLine':
+        """A new pty at the same path, once this one is closed."""
+        return FakeLine(self.path)
+
     def fileno(self) -> int:
         """For select."""
         return self._end
