@@ -63,8 +63,9 @@ def problems_of(text: str) -> list[str]:
         for name, schema in BRIDGE.items()
         if name in there
     }
-    if 'dynamics' in there and content.get('kind') in SCHEMAS:
-        found.of(partial(build, SCHEMAS[content['kind']], there['dynamics'], 'dynamics'))
+    kind = content.get('kind')
+    if 'dynamics' in there and isinstance(kind, str) and kind in SCHEMAS:
+        found.of(partial(build, SCHEMAS[kind], there['dynamics'], 'dynamics'))
     servos = sections.get('servos')
     if isinstance(servos, ServosConfig):
         calibration = found.of(lambda: Calibration.from_config(servos))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from manipulator.config import build, parse_yaml
+from manipulator.config import MAX_CHARACTERS, build, parse_yaml
 from manipulator.errors import ConfigError
 from manipulator.frames import Frames
 from manipulator.machine import Machine, MachineFile
@@ -67,8 +67,11 @@ def read(name_or_path: str) -> MachineFile:
 
 
 def text_of(path: Path) -> str:
-    """What a file holds; ConfigError where it cannot be read as text."""
+    """What a file holds; ConfigError where it cannot be read as text, or is huge."""
     try:
+        size = path.stat().st_size
+        if size > 4 * MAX_CHARACTERS:
+            raise ConfigError([f'{size} bytes, a file may have {MAX_CHARACTERS} characters'])
         return path.read_text(encoding='utf-8')
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigError([f'cannot be read: {error}'], str(path)) from error

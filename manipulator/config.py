@@ -18,7 +18,7 @@ from manipulator.errors import ConfigError
 
 T = TypeVar('T')
 U = TypeVar('U')
-MAX_CHARACTERS = 1_000_000
+MAX_CHARACTERS = 100_000
 
 
 def quantity(low: float, high: float, **options: Any) -> Any:
@@ -36,6 +36,9 @@ def parse_yaml(text: str, source: str = '') -> dict[str, Any]:
         content = yaml.load(text, Loader=_StrictLoader)
     except yaml.YAMLError as error:
         raise ConfigError([' '.join(str(error).split())], source) from error
+    except (ValueError, TypeError, OverflowError) as error:
+        # PyYAML lets through what dates, numbers and keys raise that cannot be made.
+        raise ConfigError([f'holds a value that cannot be read: {error}'], source) from error
     except RecursionError as error:
         raise ConfigError(['nested too deeply'], source) from error
     if not isinstance(content, dict):
@@ -158,9 +161,10 @@ def _convert_list(arguments: Any, value: object, where: str, problems: list[str]
 
 def _convert_scalar(wanted: Any, value: object, where: str, problems: list[str]) -> Any:
     if wanted is float and isinstance(value, int | float) and not isinstance(value, bool):
-        if math.isfinite(value):
-            return float(value)
-        problems.append(f'{where}: {value} is not finite')
+        number = _as_float(value)
+        if math.isfinite(number):
+            return number
+        problems.append(f'{where}: {number} is not finite')
         return None
     if type(value) is wanted:
         return value
@@ -176,10 +180,18 @@ def _check_range(field: Any, value: object, where: str, problems: list[str]) -> 
         for i, entry in enumerate(value):
             _check_range(field, entry, f'{where}[{i}]', problems)
     elif isinstance(value, int | float) and not bounds[0] <= value <= bounds[1]:
-        unit_hint = ''
-        if any(value and bounds[0] <= value * k <= bounds[1] for k in (1e3, 1e-3)):
+        unit_hint, number = '', _as_float(value)
+        if any(number and bounds[0] <= number * k <= bounds[1] for k in (1e3, 1e-3)):
             unit_hint = ' (a factor of 1000: is it in another unit?)'
-        problems.append(f'{where}: {value:g} outside [{bounds[0]:g}, {bounds[1]:g}]{unit_hint}')
+        problems.append(f'{where}: {number:g} outside [{bounds[0]:g}, {bounds[1]:g}]{unit_hint}')
+
+
+def _as_float(value: float) -> float:
+    """Infinite for whole numbers that no float can hold."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
 
 
 _NAMES = {float: 'a number', int: 'a whole number', str: 'a text', bool: 'true or false'}

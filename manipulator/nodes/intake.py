@@ -10,6 +10,12 @@ from manipulator.errors import ManipulatorError
 from manipulator.nodes.messages import seconds
 from manipulator.stamps import NOTABLE_OFFSET, StampGate
 
+CLOCK_START = time.time() - time.monotonic()
+"""Receipt times are monotonic, but read like the system's clock at the start: it may be set."""
+
+LONGEST_REASON = 400
+"""Characters of a refusal that are logged and kept: a message's own words may be megabytes."""
+
 
 class Intake:
     """The messages of one topic: counts, the last refusal, the time of the last good one.
@@ -43,8 +49,8 @@ class Intake:
             self._accept(message)
         except ManipulatorError as error:
             self.refused += 1
-            self.last_refusal = str(error)
-            text = f'{self.topic}: {error}'
+            self.last_refusal = str(error)[:LONGEST_REASON]
+            text = f'{self.topic}: {self.last_refusal}'
             self._node.get_logger().warning(text, throttle_duration_sec=1.0)
             if self._refuse is not None:
                 self._refuse(message, error)
@@ -63,7 +69,7 @@ class Intake:
                 f'{self.topic}: a stamp of zero is taken as now', once=True
             )
             return
-        self._gate.admit(stamp, time.time())
+        self._gate.admit(stamp, time.monotonic() + CLOCK_START)
         offset = self._gate.offset or 0.0
         if abs(offset) > NOTABLE_OFFSET and not self._was_offset_reported:
             self._was_offset_reported = True

@@ -52,7 +52,7 @@ def check_frame(frame_id: str, frames: tuple[str, ...]) -> None:
     """Raises InvalidInput unless the frame is one of `frames`, or empty."""
     if frame_id and frame_id not in frames:
         known = ' or '.join(repr(frame) for frame in frames)
-        raise InvalidInput(f'frame_id {frame_id!r} is unknown, needs {known}, or nothing')
+        raise InvalidInput(f'frame_id {frame_id[:80]!r} is unknown, needs {known}, or nothing')
 
 
 def twist_of(message: TwistStamped) -> Array:
@@ -83,7 +83,9 @@ def joints_of(message: JointState, names: tuple[str, ...]) -> Array:
         raise InvalidInput(f'{len(message.name)} names but {len(message.position)} positions')
     positions = dict(zip(message.name, message.position, strict=True))
     if len(positions) != len(message.name):
-        raise InvalidInput(f'a joint is named twice in {list(message.name)[:20]}')
+        raise InvalidInput(
+            f'a joint is named twice in {[name[:80] for name in message.name[:20]]}'
+        )
     missing = [name for name in names if name not in positions]
     if missing:
         raise InvalidInput(f'joints {missing} are missing')

@@ -86,7 +86,7 @@ class TrajectoryNode(Node):
             values.get('followed') == 'yes',
             values.get('joints') == 'measured',
         )
-        self._pilot.note_machine_state(message.message, is_followed, is_measured)
+        self._pilot.note_machine_state(message.message[:80], is_followed, is_measured)
         self._say_news()
 
     def _on_joint_states(self, message: JointState) -> None:

@@ -26,7 +26,7 @@ def jog_mode(name: str, feedback: Feedback, point: Array | None = None) -> JogMo
 def check_name(name: str) -> None:
     """Raises Refused for an unknown name, with the nearest known one."""
     if name not in MODES:
-        near = difflib.get_close_matches(name, MODES, n=1)
+        near = difflib.get_close_matches(name[:80], MODES, n=1)
         hint = f', did you mean {near[0]!r}?' if near else ''
         raise Refused(f'jog mode {name[:80]!r} is not one of {list(MODES)}{hint}')
 
