@@ -72,6 +72,7 @@ class SerialBridge(Node):
             self._session,
             self._on_event,
             self._on_written,
+            bytes_per_second=self._baud / 5,  # twice what the line carries
         )
         self._programs = BoardPrograms(self, self._calibration, self._link.request)
         self._link.start()
