@@ -18,6 +18,7 @@ from hexarm import (
     leg_motion,
     machine_list,
     mjcf,
+    monitor,
     reach,
     reproduce,
     simulate,
@@ -31,6 +32,7 @@ from manipulator.requirements import missing
 COMMANDS = (
     up,
     demo,
+    monitor,
     ik,
     fk,
     mjcf,

@@ -6,6 +6,7 @@ INSTALL = {
     'evdev': 'python3 -m pip install evdev, or apt install python3-evdev (Linux)',
     'matplotlib': 'python3 -m pip install matplotlib',
     'mujoco': 'python3 -m pip install mujoco',
+    'rich': 'python3 -m pip install rich',
     'PIL': 'python3 -m pip install pillow',
     'rclpy': 'install ROS 2 Jazzy and source its setup.bash, or pip install hexarm[ros]',
 }
