@@ -17,6 +17,7 @@ from bridge.calibration import COUNTS_PER_US, Calibration
 from bridge.fake_line import FakeLine
 from bridge.faults import Faults
 from bridge.messages import ResetCause
+from bridge.plant import Plant
 from bridge.servo import Servos
 from bridge.servo_config import BoardConfig
 from manipulator.arrays import Array
@@ -33,7 +34,7 @@ class FakeMachine:
     """
 
     board: Board
-    servos: Servos
+    servos: Plant
     calibration: Calibration
     is_measured: bool = False
 

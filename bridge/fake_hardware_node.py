@@ -19,6 +19,7 @@ from bridge.messages import ResetCause
 from bridge.servo_config import BoardConfig, SimulationConfig
 from hexarm import machines
 from hexarm.board_solver import board_solver
+from hexarm.fake_plant import plant
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, LinkError
 from manipulator.nodes.parameters import declare
@@ -64,6 +65,7 @@ class FakeHardware(Node):
             'play of each servo in degrees; -1: as machine file and preset say',
             (-1.0, 45.0),
         )
+        moved = declare(self, 'plant', 'servo', "'servo', or 'mujoco': loads, torque limits")
         if preset not in PRESETS:
             raise InvalidInput(f'parameter preset: {preset!r} is not one of {list(PRESETS)}')
         config = BoardConfig.from_machine(machines.read(name), str(machines.find(name)))
@@ -71,6 +73,7 @@ class FakeHardware(Node):
         hysteresis = math.radians(own) if own >= 0 else config.hysteresis
         solve = board_solver(machines.load(name), Calibration.from_config(config.servos))
         machine = FakeMachine.from_config(config, boot_s, hysteresis, solve)
+        machine = plant(moved, name, machine, self.get_logger().info)
         self._names = machine.calibration.names
         self._path = Path(link)
         self._board = machine.board
