@@ -34,7 +34,7 @@ from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.teleop import Teleop
 
-DELAY = 'age of measured poses by the time that their correction moves the joints (s)'
+DELAY = 'age in seconds of a measured pose by the time that its correction moves the joints'
 TOLERANCE = 'how far a joint may be from its commands of the last half second (rad or m)'
 
 

@@ -18,6 +18,8 @@ NODES = re.findall(r"'(\w+) = (\w+)\.executables:(\w+)'", (ROOT / 'setup.py').re
 NAMESPACE = 'described'
 FOREIGN = ('use_sim_time', 'start_type_description_service', 'qos_overrides')
 """rclpy's own."""
+COMPANION = 'path_listener'
+"""A second node that a trajectory node starts for itself, with no parameters of its own."""
 
 
 @pytest.fixture(scope='module')
@@ -47,7 +49,8 @@ def descriptors(client, tmp_path_factory):
 def describe(client, executable):
     def nodes():
         found = client.node.get_node_names_and_namespaces()
-        return [n for n, space in found if space == f'/{NAMESPACE}/{executable}']
+        own = [n for n, space in found if space == f'/{NAMESPACE}/{executable}']
+        return [name for name in own if name != COMPANION]
 
     client.wait(f'{executable} in the graph', nodes, 20.0)
     node = f'/{NAMESPACE}/{executable}/{nodes()[0]}'
