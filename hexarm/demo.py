@@ -1,24 +1,26 @@
-"""`hexarm demo`: the whole graph on the fake board, a tour of goals, a table and a picture."""
+"""`hexarm demo`: both machines' graphs on fake boards, goals, a gamepad, a table and a picture."""
 
 import argparse
 import math
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from hexarm.demo_report import Curve, Observation, measure
-from hexarm.graph import Graph, link_folder, machine_graph
+from hexarm.demo_report import Curve, Observation, Result, measure
+from hexarm.graph import Executable, Graph, link_folder, machine_graph
 from hexarm.machines import load
 from hexarm.up import Interrupted, StopSignal, check_alive, park
 from manipulator.errors import Refused
+from manipulator.machine import Machine
 from manipulator.pose import Pose
 
 if TYPE_CHECKING:
     from hexarm.client import Client
+    from hexarm.demo_arm_report import ArmResult
     from hexarm.demo_recording import Recorder
 
 MACHINE = 'robocake'
@@ -26,12 +28,13 @@ CENTRE = np.array([0.0, 0.0, 0.045])
 RADIUS, TILT, PERIOD, TURNS = 0.008, math.radians(4.0), 4.0, 2
 STREAM_PERIOD = 0.02
 PAUSE = 0.4
+Observed = TypeVar('Observed')
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
     parser = commands.add_parser(
-        'demo', help='drive the RoboCake on a fake board, within a minute'
+        'demo', help='drive the RoboCake and an arm on fake boards, within a minute'
     )
     parser.add_argument('--picture', type=Path, default=Path('demo.png'), help='where to save it')
     parser.set_defaults(run=run)
@@ -39,28 +42,52 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs the demonstration; status 0 when it went through, 130 after Ctrl-C."""
-    from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
+    from hexarm import demo_arm, demo_arm_report  # noqa: PLC0415 (need ROS)
 
+    picture: Path = arguments.picture
     os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
     stop = StopSignal()
-    say('starting the graph: fake_hardware, serial_bridge, ik, trajectory, pose')
+    try:
+        say('starting the graph: fake_hardware, serial_bridge, ik, trajectory, pose')
+        observation = on_graph('hexapod', MACHINE, [], stop, tour)
+        arm = load(demo_arm.MACHINE)
+        say('starting the same graph for the arm, and joy_teleop')
+        arm_observation = on_graph(
+            'arm',
+            demo_arm.MACHINE,
+            [demo_arm.teleop()],
+            stop,
+            lambda client: demo_arm.arm_tour(client, arm, say),
+        )
+    except Interrupted:
+        say('interrupted: stopping the graph')
+        return 130
+    result = measure(observation, load(MACHINE).kinematics)
+    report(result, demo_arm_report.measure_arm(arm_observation, arm.kinematics), arm, picture)
+    return 0
+
+
+def on_graph(
+    kind: str,
+    machine: str,
+    others: list[Executable],
+    stop: StopSignal,
+    tour: 'Callable[[Client], Observed]',
+) -> Observed:
+    """Runs a machine's graph and a tour on it; Interrupted after Ctrl-C."""
+    from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
+
     with link_folder() as folder:
-        nodes = machine_graph('hexapod', MACHINE, 'fake', Path(folder) / 'board')
-        with Graph(nodes, 'hexapod', log_level='error') as graph:
+        nodes = machine_graph(kind, machine, 'fake', Path(folder) / 'board')
+        with Graph([*nodes, *others], kind, log_level='error') as graph:
 
             def interrupt() -> None:
                 stop.check()
                 check_alive(graph)
 
-            with Client('hexapod', interrupt) as client:
-                try:
-                    observation = tour(client)
-                except Interrupted:
-                    say('interrupted: stopping the graph')
-                    return 130
-    report(observation, arguments.picture)
-    return 0
+            with Client(kind, interrupt) as client:
+                return tour(client)
 
 
 def tour(client: 'Client') -> Observation:
@@ -114,15 +141,15 @@ def stream(client: 'Client', recorder: 'Recorder') -> None:
     client.spin(0.5)
 
 
-def report(observation: Observation, picture: Path) -> None:
+def report(result: Result, arm_result: 'ArmResult', arm: Machine, picture: Path) -> None:
     """Prints the table and saves the picture."""
     from hexarm.demo_picture import draw  # noqa: PLC0415 (needs matplotlib)
 
-    result = measure(observation, load(MACHINE).kinematics)
-    print()
-    for name, value in result.rows():
-        print(f'  {name:<46} {value}')
-    draw(result, picture)
+    for title, rows in (('RoboCake', result.rows()), ('six-axis arm', arm_result.rows())):
+        print(f'\n{title}')
+        for name, value in rows:
+            print(f'  {name:<52} {value}')
+    draw(result, arm_result, arm, picture)
     print(f'\nThe picture is in {picture}.')
 
 

@@ -1,4 +1,4 @@
-"""The picture of the demonstration: the path, the six crank angles, the error over time."""
+"""The picture of the demonstration: for both machines path, joint angles, errors over time."""
 
 from pathlib import Path
 
@@ -11,25 +11,39 @@ import numpy as np
 from matplotlib.axes import Axes
 from mpl_toolkits.mplot3d import Axes3D
 
+from hexarm.demo_arm_picture import draw_arm, draw_held
+from hexarm.demo_arm_report import ArmResult
 from hexarm.demo_report import Result
+from manipulator.arrays import Array
+from manipulator.machine import Machine
 
 ASKED, DONE = '#9aa5b1', '#0b6e99'
 CRANKS = ('#0b6e99', '#3aa6b9', '#6a994e', '#d4a017', '#d1603d', '#8e4162')
 
 
-def draw(result: Result, picture: Path) -> None:
+def draw(result: Result, arm_result: ArmResult, arm: Machine, picture: Path) -> None:
     """Saves the picture."""
     plt.rcParams.update({'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False})
-    figure = plt.figure(figsize=(12, 6.4), dpi=130)
-    _path(figure.add_axes((-0.02, 0.02, 0.5, 0.88), projection='3d'), result)
-    _cranks(figure.add_axes((0.53, 0.55, 0.4, 0.31)), result)
-    _errors(figure.add_axes((0.53, 0.09, 0.4, 0.33)), result)
-    figure.text(0.02, 0.95, 'RoboCake: goal moves and a tilted circle', size=14, weight='bold')
-    figure.text(
-        0.02, 0.915, "from the true crank angles of the fake board's servos", color='#4a5a6a'
-    )
+    figure = plt.figure(figsize=(12, 12.8), dpi=110)
+    _path(figure.add_axes((0.01, 0.51, 0.46, 0.43), projection='3d'), result)
+    _joints(figure.add_axes((0.56, 0.775, 0.37, 0.155)), 'crank of leg', *_angles(result))
+    _errors(figure.add_axes((0.56, 0.545, 0.37, 0.165)), result)
+    draw_arm(figure.add_axes((0.01, 0.01, 0.46, 0.43), projection='3d'), arm_result, arm)
+    _joints(figure.add_axes((0.56, 0.275, 0.37, 0.155)), 'joint', *_angles(arm_result))
+    draw_held(figure.add_axes((0.56, 0.045, 0.37, 0.165)), arm_result)
+    for y, title, source in (
+        (0.975, 'RoboCake: goal moves and a tilted circle', "the fake board's servos"),
+        (0.475, 'Six-axis arm: driven by a gamepad through joy_teleop', 'its stepper drives'),
+    ):
+        figure.text(0.02, y, title, size=14, weight='bold')
+        figure.text(0.02, y - 0.0175, f'from the true joint angles of {source}', color='#4a5a6a')
     figure.savefig(picture)
     plt.close(figure)
+
+
+def _angles(result: Result | ArmResult) -> tuple[Array, Array]:
+    seen = result.observation
+    return seen.times - seen.times[0], np.degrees(seen.joints)
 
 
 def _path(axes: Axes3D, result: Result) -> None:
@@ -49,20 +63,16 @@ def _path(axes: Axes3D, result: Result) -> None:
         zlabel='z (mm)',
     )
     axes.set_aspect('equal', adjustable='box')
-    axes.set_box_aspect(None, zoom=1.0)
+    axes.set_box_aspect(None, zoom=0.95)
     axes.view_init(elev=28, azim=-55)
     axes.legend(loc='upper left', frameon=False)
 
 
-def _cranks(axes: Axes, result: Result) -> None:
-    t = result.observation.times - result.observation.times[0]
+def _joints(axes: Axes, title: str, t: Array, angles: Array) -> None:
     for k, colour in enumerate(CRANKS):
-        angles = np.degrees(result.observation.joints[:, k])
-        axes.plot(t, angles, color=colour, lw=1.1, label=f'{k + 1}')
-    axes.set(ylabel='crank angle (°)', xlim=(0, t[-1]))
-    axes.legend(
-        title='crank of leg', ncols=6, frameon=False, loc='lower left', bbox_to_anchor=(0, 1.0)
-    )
+        axes.plot(t, angles[:, k], color=colour, lw=1.1, label=f'{k + 1}')
+    axes.set(ylabel='angle (°)', xlim=(0, t[-1]))
+    axes.legend(title=title, ncols=6, frameon=False, loc='lower left', bbox_to_anchor=(0, 1.0))
     axes.grid(alpha=0.25)
 
 

@@ -1,0 +1,51 @@
+"""One jog tick through the player, modes and all, against one 6×6 linear solve in the same run."""
+
+import time
+
+import numpy as np
+
+from bench.row import Row, interleaved_medians
+from hexarm.machines import load
+from manipulator.teleop.feedback import Feedback
+from manipulator.teleop.modes import jog_mode
+from manipulator.trajectory.jogging import Wish
+from manipulator.trajectory.player import Player
+
+TICK, ROUNDS, PERIOD = 0.01, 3000, 200
+MACHINES = ('robocake', 'stewart_6_3', 'arm_6r')
+
+
+def rows() -> list[Row]:
+    return [row for name in MACHINES for row in tick_rows(name)]
+
+
+def tick_rows(name: str) -> list[Row]:
+    """To and fro about home, with the orientation held; CPU time of the same ticks at p99."""
+    player, wish = jogged(name)
+    rng = np.random.default_rng(1)
+    matrices, right = rng.normal(size=(ROUNDS, 6, 6)), rng.normal(size=6)
+    taken = []
+
+    def tick(k: int) -> None:
+        before = time.thread_time_ns()
+        player.jog(wish[k % PERIOD])
+        player.step()
+        taken.append(time.thread_time_ns() - before)
+
+    solve, one = interleaved_medians([lambda k: np.linalg.solve(matrices[k], right), tick], ROUNDS)
+    p99 = float(np.percentile(taken, 99)) * 1e-6
+    return [
+        Row(f'{name}: one jog tick of the player', f'{one / solve:.0f} × a 6×6 solve'),
+        Row(f'{name}: the same, CPU at p99', f'{p99:.3f} ms', '≤ 10', p99 <= 10),
+    ]
+
+
+def jogged(name: str) -> tuple[Player, list[Wish]]:
+    machine = load(name)
+    home = machine.kinematics.home
+    player = Player(machine, home, machine.kinematics.inverse(home), TICK)
+    mode = jog_mode('hold_orientation', Feedback.for_delay(0.0))
+    speed = 0.3 * machine.motion.linear.speed
+    angles = 2 * np.pi * np.arange(PERIOD) / PERIOD
+    twists = np.stack([speed * np.cos(angles), speed * np.sin(angles)] + [0 * angles] * 4, axis=1)
+    return player, [Wish('cmd_vel/joy', twist, '', mode) for twist in twists]
