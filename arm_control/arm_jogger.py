@@ -7,6 +7,7 @@ import numpy as np
 from arm_control.resolved_rate import JogState, ResolvedRate
 from manipulator.arrays import Array, frozen
 from manipulator.frames import Frames
+from manipulator.pose import Pose
 from manipulator.teleop.jogger import JogMotion
 from manipulator.teleop.speed_limits import towards
 
@@ -25,21 +26,19 @@ class ArmJogger:
     def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
         """See `Jogger`; in a corner of the joint ranges the direction bends, so as to get out."""
         wanted = towards(motion.twist, twist, self.jog.motion, dt)
-        tool = self.jog.arm.chain.forward(motion.joints)
-        step = self.jog.step(
-            JogState(motion.joints, motion.rates), self._of_tool(wanted, tool.rotation), dt
-        )
+        state = JogState(motion.joints, motion.rates)
+        step = self.jog.step(state, self._of_tool(wanted, motion.pose), dt)
         pose = self.frames.pivot(self.jog.arm.chain.forward(step.state.joints))
         driven = frozen(step.scale * wanted)
         return JogMotion(
             pose, step.state.joints, driven, step.state.rates, step.scale, step.held_by
         )
 
-    def _of_tool(self, twist: Array, rotation: Array) -> Array:
+    def _of_tool(self, twist: Array, T_work_pivot: Pose) -> Array:
         """The tool's twist in base axes, for the pivot's in work axes: v − ω × r."""
         if self.frames.are_plain:
             return twist
         to_base = self.frames.T_base_work.rotation
         turn = to_base @ twist[3:]
-        arm = rotation @ self.frames.T_platform_pivot.position
+        arm = to_base @ T_work_pivot.rotation @ self.frames.T_platform_pivot.position
         return np.concatenate([to_base @ twist[:3] - np.cross(turn, arm), turn])
