@@ -137,7 +137,7 @@ class SerialBridge(Node):
 
     def _say_stop_failed(self, done: 'Future[None]') -> None:
         if done.exception() is not None:
-            self.get_logger().error(f'STOP did not reach the board: {done.exception()}')
+            self.get_logger().error(f'STOP not obeyed yet, it is said again: {done.exception()}')
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         if request.data and self._monitor.status.word == 'enabled':

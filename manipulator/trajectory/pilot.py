@@ -137,14 +137,15 @@ class Pilot:
             self.status = self._player.status
         return self.machine.frames.platform(pose)
 
-    def _take_over(self, T_base_platform: Pose, near: Array) -> None:
+    def _take_over(self, T_base_platform: Pose, near: Array) -> Player:
         pose = self.machine.frames.pivot(T_base_platform)
         joints = self.machine.kinematics.inverse(pose, near)
-        self._player = Player(self.machine, pose, joints, self._dt)
-        self._player.override(self._override)
+        player = self._player = Player(self.machine, pose, joints, self._dt)
+        player.override(self._override)
         names = self.machine.kinematics.joint_names
         self._following = Following(names, self._tolerance, self._dt)
-        self.status = self._player.status if self._is_followed else CONNECTING
+        self.status = player.status if self._is_followed else CONNECTING
+        return player
 
     def _is_present(self, T_base_platform: Pose, joints: Array) -> bool:
         """Whether a pose is where the joints are, or late: where they were."""
@@ -154,6 +155,7 @@ class Pilot:
     def _take_frames(self, frames: Frames) -> None:
         old, self.machine = self.machine, in_frames(self._bare, frames)
         self._next_frames = None
-        if self._player is not None:
-            pose, joints = old.frames.platform(self._player.state.pose), self._player.joints
-            self._take_over(pose, joints)
+        before = self._player
+        if before is not None:
+            pose = old.frames.platform(before.state.pose)
+            self._take_over(pose, before.joints).pause(before.is_paused)

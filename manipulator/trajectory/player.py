@@ -42,7 +42,7 @@ class Player:
         self._stamp = 0.0
         self._rate = 1.0
         self._override = 1.0
-        self._is_paused = False
+        self.is_paused = False
         self._is_blind = False
         self._is_stopping = False
         self._newest: Goal | None = None
@@ -87,7 +87,7 @@ class Player:
 
     @property
     def _wanted_rate(self) -> float:
-        is_held = self._is_paused or self._is_blind or self._is_stopping
+        is_held = self.is_paused or self._is_blind or self._is_stopping
         return 0.0 if is_held else self._override
 
     def pursue(self, goal: Goal) -> None:
@@ -144,7 +144,7 @@ class Player:
 
     def pause(self, is_paused: bool) -> None:
         """Brakes along the way and stays, or goes on."""
-        self._is_paused = is_paused
+        self.is_paused = is_paused
 
     def blind(self, is_blind: bool) -> None:
         """As `pause`, apart from the user's own: nobody knows where the joints are."""

@@ -168,3 +168,17 @@ def test_goal_that_still_waited_when_the_machine_was_lost_is_named():
     made.player.pursue(Goal(ELSEWHERE, 9.0))
     made.note_machine_state('disarmed', is_followed=False)
     assert (made.status.result, made.status.goal_stamp) == ('stopped', 9.0)
+
+
+def test_a_new_pivot_does_not_end_a_pause():
+    made = driving()
+    made.player.pause(True)
+    made.set_pivot((0.0, 0.0, 0.03))
+    made.step()
+    assert made.machine.frames.pivot(HOME).position[2] > HOME.position[2] + 0.02
+    made.player.pursue(Goal(made.machine.frames.pivot(ELSEWHERE), 9.0))
+    run(made, 100)
+    assert np.abs(made.step().twist_to(HOME)).max() < 1e-9
+    made.player.pause(False)
+    run(made, 300)
+    assert np.abs(made.step().twist_to(ELSEWHERE)).max() < 1e-9
