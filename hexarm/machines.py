@@ -9,7 +9,9 @@ from pathlib import Path
 from manipulator.config import MAX_CHARACTERS, build, parse_yaml
 from manipulator.errors import ConfigError
 from manipulator.frames import Frames
+from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
+from manipulator.sag import Sag
 
 
 def _hexapod(machine_file: MachineFile) -> Machine:
@@ -91,6 +93,16 @@ def load(name_or_path: str) -> Machine:
     machine_file = read(name_or_path)
     try:
         machine = loader(machine_file.kind)(machine_file)
+        machine = replace(machine, sag=_sag(machine_file, machine.kinematics))
     except ConfigError as error:
         raise ConfigError(error.problems, str(find(name_or_path))) from error
     return replace(machine, frames=Frames.from_config(machine_file.frames))
+
+
+def _sag(machine_file: MachineFile, kinematics: Kinematics) -> Sag | None:
+    """What the machine's nodes compensate, where its file asks for it."""
+    if (machine_file.dynamics or {}).get('compensation') is not True:
+        return None
+    from physics.compensation import sag_of  # noqa: PLC0415 (most machines need no masses)
+
+    return sag_of(machine_file, kinematics)

@@ -14,6 +14,7 @@ from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.machine import Machine
 from manipulator.trajectory.cycle import Cycle
+from physics.compensation import Compensation
 from physics.cycle_reach import (
     PAPER_AMPLITUDE,
     corners_out,
@@ -45,6 +46,8 @@ class Experiment:
     cycle: Cycle
     part: float
     corners_out: int
+    compensation: Compensation
+    is_compensated: bool
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -61,6 +64,10 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument('--periods', type=float, default=2.0, metavar='N', help='default 2')
     parser.add_argument('--payload', type=float, metavar='G', help="grams, for the machine file's")
     parser.add_argument('--torque', type=float, metavar='NM', help='of each drive, N·m or N')
+    parser.add_argument(
+        '--compensate', action=argparse.BooleanOptionalAction, default=None,
+        help='add what the drives sag by under gravity (default: as the machine file says)',
+    )  # fmt: skip
     parser.add_argument('--picture', type=Path, metavar='FILE', help='plots of the sensors')
     parser.add_argument('--animation', type=Path, metavar='FILE.gif', help='the machine moving')
     parser.set_defaults(run=answering(answer))
@@ -81,7 +88,8 @@ def answer(arguments: argparse.Namespace) -> Answer:
     this = prepared(arguments)
     kinematics = this.machine.kinematics
     simulation = Simulation(this.mechanism, kinematics.home, kinematics.inverse(kinematics.home))
-    recording = run(simulation, kinematics, this.cycle, arguments.periods, unshifted)
+    shift = this.compensation if this.is_compensated else unshifted
+    recording = run(simulation, kinematics, this.cycle, arguments.periods, shift)
     numbers = summary(this, recording)
     lines = in_words(this, numbers)
     if arguments.picture is not None:
@@ -107,10 +115,14 @@ def prepared(arguments: argparse.Namespace) -> Experiment:
     part = share_in_reach(machine, cycle)
     cycle = replace(cycle, amplitude=part * cycle.amplitude)
     poses = poses_of(cycle)
-    load = static_load(machine.kinematics, dynamics_of(file, arguments.payload))
+    dynamics = dynamics_of(file, arguments.payload)
+    load = static_load(machine.kinematics, dynamics)
     joints = machine.kinematics.inverse(poses)
     check_holds(load, mechanism.drives, mechanism.joints, poses, joints)
-    return Experiment(machine, mechanism, cycle, part, corners_out(machine, amplitude))
+    told = dynamics.compensation if arguments.compensate is None else arguments.compensate
+    out = corners_out(machine, amplitude)
+    compensation = Compensation(load, mechanism.drives)
+    return Experiment(machine, mechanism, cycle, part, out, compensation, told)
 
 
 def summary(this: Experiment, recording: Any) -> dict[str, Any]:
@@ -125,6 +137,7 @@ def summary(this: Experiment, recording: Any) -> dict[str, Any]:
         'platform_acceleration': float(acceleration.max()),
         'joint_speed': np.abs(recording.rates).max(axis=0).tolist(),
         'joint_effort': np.abs(recording.efforts).max(axis=0).tolist(),
+        'is_compensated': this.is_compensated,
         'position_error': float(np.linalg.norm(errors[:, :3], axis=1).max()),
         'angle_error': float(np.linalg.norm(errors[:, 3:], axis=1).max()),
         'closure_error': float(recording.closure.max()),

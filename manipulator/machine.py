@@ -8,6 +8,7 @@ from manipulator.frames import Frames, FramesConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.motion_limits import MotionConfig, MotionLimits
+from manipulator.sag import Sag
 from manipulator.teleop.jogger import Jogger
 
 
@@ -37,7 +38,8 @@ class Machine:
 
     frames are those that its user works in; kinematics and constraints are in the base frame,
     unless the machine was made by `in_frames`. make_jogger makes what follows twists with this
-    machine, or with the same in other frames.
+    machine, or with the same in other frames. sag is what the drives stay behind by, where that is
+    to be compensated.
     """
 
     kinematics: Kinematics
@@ -45,3 +47,4 @@ class Machine:
     motion: MotionLimits
     make_jogger: 'Callable[[Machine], Jogger]'
     frames: Frames = field(default_factory=Frames)
+    sag: Sag | None = None

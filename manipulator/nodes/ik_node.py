@@ -15,6 +15,7 @@ from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import joint_message, joints_of, pose_of
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
+from manipulator.sag import commanded
 
 
 class IkNode(Node):
@@ -26,6 +27,7 @@ class IkNode(Node):
         machine = load(name)
         self._names = machine.kinematics.joint_names
         self._check = CommandCheck(machine)
+        self._sag = machine.sag
         self._setpoint = Intake(self, 'setpoint', self._on_setpoint)
         self._states = Intake(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(JointState, 'joint_command', COMMAND)
@@ -36,7 +38,8 @@ class IkNode(Node):
         )
 
     def _on_setpoint(self, message: PoseStamped) -> None:
-        joints = self._check.admit(pose_of(message), time.monotonic())
+        pose = pose_of(message)
+        joints = commanded(self._sag, pose, self._check.admit(pose, time.monotonic()))
         self._publisher.publish(joint_message(joints, self._names, message.header.stamp))
 
     def _on_joint_states(self, message: JointState) -> None:

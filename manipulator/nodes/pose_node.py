@@ -23,6 +23,7 @@ from manipulator.nodes.messages import (
 )
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
+from manipulator.sag import settled
 
 
 class PoseNode(Node):
@@ -33,7 +34,7 @@ class PoseNode(Node):
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         machine = load(name)
         self._kinematics, self._constraints = machine.kinematics, machine.constraints
-        self._frames = machine.frames
+        self._frames, self._sag = machine.frames, machine.sag
         self._solution: ForwardSolution | None = None
         self._states = Intake(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
@@ -56,6 +57,7 @@ class PoseNode(Node):
                 self.get_logger().info('the last pose does not lead to the present one: afresh')
         if self._solution is None:
             self._solution = self._cold(joints)
+        self._solution = settled(self._sag, self._kinematics, joints, self._solution)
         pose, stamp = self._solution.pose, message.header.stamp
         self._publisher.publish(pose_message(pose, stamp))
         self._markers.show(self._kinematics, pose, joints, stamp)
