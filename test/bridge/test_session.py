@@ -17,6 +17,7 @@ from bridge.events import (
 from bridge.frames import encode
 from bridge.framing import FrameReader
 from bridge.messages import (
+    Ack,
     Arm,
     Clear,
     Disarm,
@@ -24,6 +25,7 @@ from bridge.messages import (
     Hello,
     Mode,
     ResetCause,
+    Result,
     Setpoint,
     Stop,
 )
@@ -329,3 +331,12 @@ def test_hammering_stop_and_clear_ends_as_the_last_one_says(armed):
     armed.command(Clear())
     assert armed.board.mode is Mode.ARMED
     assert armed.session.accepts_setpoints
+
+
+def test_a_stop_that_is_refused_lets_no_setpoint_out_either(armed):
+    armed.session.send_command(Stop(), armed.now)
+    (frame,) = FrameReader().feed(armed.session.take_output())
+    armed.session.receive(encode(Ack(frame.sequence, Result.STALE), 1), armed.now)
+    assert not armed.session.accepts_setpoints
+    armed.run(0.1)
+    assert armed.board.mode is Mode.STOPPED
