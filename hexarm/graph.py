@@ -23,7 +23,8 @@ PR_SET_PDEATHSIG = 1
 class Executable:
     """One node as a process: its module and entry, its own parameters, the file it waits for.
 
-    `command` is what runs it when it is no node of ours.
+    `command` is what runs it when it is no node of ours; `prefix` stands before the command, as in
+    `ip netns exec far`.
     """
 
     module: str
@@ -31,6 +32,7 @@ class Executable:
     parameters: dict[str, str] = field(default_factory=dict)
     needs: Path | None = None
     command: tuple[str, ...] = ()
+    prefix: tuple[str, ...] = ()
 
 
 def machine_graph(kind: str, machine: str, port: str, link: Path) -> list[Executable]:
@@ -67,7 +69,7 @@ class Graph:
         for node in self._nodes:
             _wait_for(node.needs)
             self._processes[node.entry] = subprocess.Popen(
-                _command(node, self._namespace, self._log_level),
+                [*node.prefix, *_command(node, self._namespace, self._log_level)],
                 start_new_session=True,
                 stdin=subprocess.DEVNULL,
                 preexec_fn=_die_with_parent,  # noqa: PLW1509 (one prctl call, no threads yet)

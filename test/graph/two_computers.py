@@ -1,0 +1,161 @@
+"""Drives a RoboCake whose bridge runs on another computer, and tells what happened, as JSON.
+
+Run in the network namespace of the first computer, with the name of the other's and its interface,
+and what to put before its processes. The board is in this process: its pulses cannot lie.
+"""
+
+import dataclasses
+import json
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+
+from bridge.board_thread import BoardThread, FakeMachine
+from bridge.calibration import Calibration
+from bridge.fake_line import FakeLine
+from bridge.framing import FrameReader
+from bridge.messages import Setpoint
+from bridge.servo_config import BoardConfig
+from hexarm import machines
+from hexarm.client import Client
+from hexarm.graph import Graph, machine_graph
+from hexarm.up import check_alive
+from manipulator.errors import ManipulatorError
+from manipulator.pose import Pose
+
+MACHINE = 'robocake'
+SPACE = 'split'
+HOME = machines.load(MACHINE).kinematics.home
+GOAL = Pose.from_xyz_rpy((0.006, 0.0, 0.045), (0.0, 0.05, 0.0))
+
+
+class TappedLine(FakeLine):
+    """A line that keeps every setpoint that the host sends."""
+
+    def __init__(self, path):
+        super().__init__(path)
+        self.setpoints = []
+        self._reader = FrameReader()
+
+    def read(self):
+        received = super().read()
+        messages = [frame.message for frame in self._reader.feed(received)]
+        self.setpoints += [np.array(m.counts) for m in messages if isinstance(m, Setpoint)]
+        return received
+
+
+class Pulses(threading.Thread):
+    """Notes when the board's pulses last changed."""
+
+    def __init__(self, board):
+        super().__init__(daemon=True)
+        self._board = board
+        self.now = board.pulses
+        self.changed_at = time.monotonic()
+
+    def run(self):
+        while True:
+            if self._board.pulses != self.now:
+                self.now, self.changed_at = self._board.pulses, time.monotonic()
+            time.sleep(0.005)
+
+
+def ip(*words):
+    subprocess.run(['ip', *words], check=True, timeout=5)
+
+
+def ready(user):
+    """Waits until the machine takes goals; enables it where a stall of this computer lost it."""
+    for _ in range(3):
+        try:
+            if user.machine_state.message not in ('enabled', 'holding'):
+                user.enable()
+            user.wait('a machine', lambda: user.motion('mode') == 'hold', 10.0)
+        except ManipulatorError:
+            user.spin(1.0)
+        else:
+            return
+
+
+def reach(user, goal):
+    """Goes there; a computer that stalls for longer than the deadlines gets another try."""
+    for _ in range(3):
+        ready(user)
+        try:
+            user.go_to(goal)
+        except ManipulatorError:
+            user.spin(1.0)
+        else:
+            return
+
+
+def set_moving(user, pulses):
+    """Starts a motion without an end, and says whether it is under way."""
+    for _ in range(3):
+        reach(user, HOME)
+        user.trigger('trajectory/start_cycle')
+        user.spin(1.0)
+        if time.monotonic() - pulses.changed_at < 0.1:
+            return True
+    return False
+
+
+def cut_and_mend(user, line, pulses, namespace, interface):
+    """What the board did while the link was cut, and with the first frames after it."""
+    told = {}
+
+    def link(state):
+        ip('-n', namespace, 'link', 'set', interface, state)
+
+    told['is_moving'] = set_moving(user, pulses)
+    cut_at = time.monotonic()
+    link('down')
+    user.spin(2.0)
+    told['stopped_after_s'] = pulses.changed_at - cut_at
+    told['mode_while_cut'] = user.motion('mode')
+    before, count = np.array(pulses.now), len(line.setpoints)
+    link('up')
+    ip('-n', namespace, 'route', 'add', '224.0.0.0/4', 'dev', interface)  # went with the link
+    user.wait('setpoints', lambda: len(line.setpoints) > count + 20, 30.0)
+    again = np.array(line.setpoints[count:])
+    told['jump_in_counts'] = float(np.abs(again[:20] - before).max())
+    return told
+
+
+def main(namespace, interface, *prefix):
+    config = BoardConfig.from_machine(machines.read(MACHINE))
+    machine = FakeMachine.from_config(config, boot_s=0.2, hysteresis=0.0)
+    with tempfile.TemporaryDirectory() as folder:
+        line = TappedLine(Path(folder) / 'board')
+        board = BoardThread(machine, line, lambda positions: None)
+        board.start()
+        pulses = Pulses(machine.board)
+        pulses.start()
+        bridge, *nodes = machine_graph('hexapod', MACHINE, str(line.path), line.path)
+        far = dataclasses.replace(bridge, prefix=prefix)
+        graph = Graph([*nodes, far], SPACE)
+        with graph, Client(SPACE, lambda: check_alive(graph)) as user:
+            told = drive(user, line, pulses, namespace, interface, config)
+        board.close()
+    print(json.dumps(told))
+
+
+def drive(user, line, pulses, namespace, interface, config):
+    """All that the test wants to know."""
+    reach(user, GOAL)
+    told = cut_and_mend(user, line, pulses, namespace, interface)
+    reach(user, GOAL)
+    user.spin(0.3)
+    joints = machines.load(MACHINE).kinematics.inverse(GOAL)
+    wanted = Calibration.from_config(config.servos).counts(joints)
+    told['away_from_goal_in_counts'] = float(np.abs(np.array(pulses.now) - wanted).max())
+    return told
+
+
+if __name__ == '__main__':
+    main(*sys.argv[1:])
