@@ -1,0 +1,44 @@
+import time
+from unittest.mock import MagicMock
+
+import pytest
+from geometry_msgs.msg import PoseStamped
+
+from manipulator.errors import InvalidInput
+from manipulator.nodes.intake import LONGEST_REASON, Intake
+
+
+def stamped(clock):
+    message = PoseStamped()
+    message.header.stamp.sec, message.header.stamp.nanosec = int(clock), int(clock % 1 * 1e9)
+    return message
+
+
+@pytest.mark.parametrize('step', [-3600.0, -5.0, 3600.0])
+def test_clock_of_this_computer_that_is_set_costs_a_tenth_of_a_second(monkeypatch, step):
+    monotonic = [time.monotonic()]
+    clock = [time.time()]
+    monkeypatch.setattr(time, 'monotonic', lambda: monotonic[0])
+    monkeypatch.setattr(time, 'time', lambda: clock[0])
+    taken = []
+    intake = Intake(MagicMock(), 'goal_pose', taken.append)
+    for k in range(60):
+        if k == 30:
+            clock[0] += step
+        intake(stamped(clock[0]))
+        monotonic[0] += 0.01
+        clock[0] += 0.01
+    assert len(taken) >= 50
+    assert intake.refused == 60 - len(taken)
+
+
+def test_endless_reason_is_cut_in_log_and_diagnostics():
+    def refuse(message):
+        raise InvalidInput('x' * 1_000_000)
+
+    node = MagicMock()
+    intake = Intake(node, 'goal_pose', refuse)
+    intake(stamped(time.time()))
+    assert len(intake.last_refusal) == LONGEST_REASON
+    (said,) = node.get_logger().warning.call_args.args
+    assert len(said) < 2 * LONGEST_REASON
