@@ -24,7 +24,7 @@ from hexarm.client import Client, NotReady
 from hexarm.graph import Graph, machine_graph
 from manipulator.errors import ManipulatorError
 
-TRIES = 5
+TRIES = 10
 FROZEN = 1.0
 """Seconds for which the servo targets must be still to be called so."""
 

@@ -62,8 +62,18 @@ def hexarm():
 @pytest.fixture(scope='session')
 def patient_robocake(tmp_path_factory):
     """A RoboCake whose board waits longer for setpoints than a busy test machine may stall."""
+    return robocake_with_deadline(1000, tmp_path_factory)
+
+
+@pytest.fixture(scope='session')
+def tolerant_robocake(tmp_path_factory):
+    """A RoboCake whose board waits twice as long for setpoints, and less than tests freeze."""
+    return robocake_with_deadline(400, tmp_path_factory)
+
+
+def robocake_with_deadline(ms, tmp_path_factory):
     text = (ROOT / 'config' / 'robocake.yaml').read_text()
-    patient = re.sub('setpoint_deadline_ms: .*', 'setpoint_deadline_ms: 1000', text)
+    patient = re.sub('setpoint_deadline_ms: .*', f'setpoint_deadline_ms: {ms}', text)
     path = tmp_path_factory.mktemp('machine') / 'robocake.yaml'
     path.write_text(patient)
     return str(path)

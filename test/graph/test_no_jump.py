@@ -12,18 +12,17 @@ from std_srvs.srv import SetBool
 from bench.rig import Rig
 from bridge.messages import Clear, Setpoint, Stop
 from manipulator.nodes.qos import COMMAND
-from manipulator.pose import Pose
 
 pytestmark = pytest.mark.graph
 
 QUIET = 2
 """Counts: roundings, not motion."""
-AWAY = Pose.from_xyz_rpy((0.006, 0.0, 0.0422))
 
 
 @pytest.fixture(scope='module')
-def module_rig(tmp_path_factory):
-    with Rig(tmp_path_factory.mktemp('jumps'), 'no_jump') as rig:
+def module_rig(tmp_path_factory, tolerant_robocake):
+    folder = tmp_path_factory.mktemp('jumps')
+    with Rig(folder, 'no_jump', machine=tolerant_robocake) as rig:
         rig.enable()
         yield rig
 
@@ -57,7 +56,7 @@ def test_after_stop_and_clear_nothing_moves_until_a_new_command(rig):
     stopped = rig.tap.heard(Stop)[-1][0]
     still = rig.recorder.standstill(stopped, 0.5)
     assert not rig.tap.heard(Setpoint, stopped)
-    assert rig.user.motion('result') == 'stopped'
+    rig.user.wait('the drop', lambda: rig.user.motion('result') == 'stopped', 5.0)
     rig.user.trigger('serial_bridge/clear_fault')
     rig.user.wait('goals', lambda: rig.user.motion('mode') == 'hold', 10.0)
     rig.user.spin(0.5)
@@ -123,4 +122,4 @@ def test_after_holding_in_motion_the_machine_stands_until_a_new_goal(rig):
     park = np.array(rig.calibration.counts(rig.calibration.park))
     frames = [np.array(m.counts) for _, m in rig.tap.heard(Setpoint, still)]
     assert np.abs(frames - park).max() <= QUIET
-    rig.user.go_to(AWAY)
+    rig.circle(0.3)
