@@ -191,10 +191,10 @@ class Rig:
 
     def circle(self, seconds):
         """Has the platform circle about home for a while; again, where this computer stalls."""
-        self.set_parameters('trajectory', CIRCLE)
         last = None
         for _ in range(TRIES):
             try:
+                self.set_parameters('trajectory', CIRCLE)
                 self.user.wait('goals', lambda: self.user.motion('mode') != 'disabled', 5.0)
                 self.user.home()
                 self.user.trigger('trajectory/start_cycle')
@@ -223,7 +223,7 @@ class Rig:
         client = self.user.node.create_client(SetParameters, f'{node}/set_parameters')
         self.user.wait('the parameter service', client.service_is_ready, 10.0)
         future = client.call_async(request)
-        self.user.wait('the parameters', future.done, 10.0)
+        self.user.wait('the parameters', future.done, 3.0)
         self.user.node.destroy_client(client)
         assert all(result.successful for result in future.result().results)
 
