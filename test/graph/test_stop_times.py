@@ -68,13 +68,3 @@ def test_a_killed_process_stops_the_machine_and_nothing_jumps_when_it_is_started
         rig.enable()
     assert rig.recorder.way(before) <= QUIET
     assert drives_again(rig, largest)
-
-
-def test_a_short_stall_only_pauses_the_motion(circling):
-    rig, largest = circling
-    rig.send('pose', signal.SIGSTOP)
-    rig.user.spin(0.27)
-    resumed = rig.send('pose', signal.SIGCONT)
-    rig.user.spin(1.0)
-    assert rig.user.motion('mode') == 'cycle'
-    assert 0 < rig.recorder.largest_step(resumed) <= 2 * largest
