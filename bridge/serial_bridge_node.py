@@ -88,6 +88,7 @@ class SerialBridge(Node):
         self.create_subscription(Float64, 'gripper', self._on_gripper, COMMAND)
         self.create_subscription(Bool, 'emergency_stop', self._on_emergency_stop, COMMAND)
         self.create_service(SetBool, '~/enable', self._on_enable)
+        self.create_service(Trigger, '~/stop', self._on_stop)
         self.create_service(Trigger, '~/clear_fault', self._on_clear_fault)
         self._diagnostics = Diagnostics(self, self._report, ('joint_command',))
 
@@ -149,6 +150,11 @@ class SerialBridge(Node):
             response.success, response.message = self._ask(Arm(park), done)
         else:
             response.success, response.message = self._ask(Disarm(), 'disarmed: no more pulses')
+        return response
+
+    def _on_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        done = 'stopped: ~/clear_fault ends it'
+        response.success, response.message = self._ask(Stop(), done)
         return response
 
     def _on_clear_fault(

@@ -4,7 +4,6 @@ import argparse
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from bridge.servo_config import BoardConfig
 from hexapod_control.geometry_errors import GeometryErrors
 from hexapod_control.parallel_platform import ParallelPlatform
-from hexarm.answers import Answer, add_machine, answering
+from hexarm.answers import Answer, add_machine, answering, picture_file
 from hexarm.machines import load, read
 from manipulator.accuracy.joint_errors import JointErrors
 from manipulator.accuracy.spread import Spread, drawn_spread, linear_spread
@@ -59,7 +58,12 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument(
         '--draws', type=int, default=DRAWS, metavar='N', help=f'for each cause (default {DRAWS})'
     )
-    parser.add_argument('--picture', metavar='FILE', help='a map of the error over the workspace')
+    parser.add_argument(
+        '--picture',
+        type=picture_file,
+        metavar='FILE',
+        help='a map of the error over the workspace',
+    )
     parser.set_defaults(run=answering(answer))
 
 
@@ -85,8 +89,8 @@ def answer(arguments: argparse.Namespace) -> Answer:
     if arguments.picture is not None:
         from hexarm.accuracy_picture import draw  # noqa: PLC0415 (matplotlib is an extra)
 
-        draw(machine, errors, Path(arguments.picture), arguments.machine)
-        lines.append(arguments.picture)
+        draw(machine, errors, arguments.picture, arguments.machine)
+        lines.append(str(arguments.picture))
     return for_programs, lines
 
 

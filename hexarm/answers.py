@@ -5,11 +5,13 @@ import json
 import re
 import sys
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 from manipulator.errors import ManipulatorError
 
 REFUSED = 2
+PICTURES = ('.png', '.svg', '.pdf', '.jpg')
 
 Lines = list[str]
 Answer = tuple[Mapping[str, Any], Lines]
@@ -34,6 +36,15 @@ def add_pose(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def picture_file(word: str) -> Path:
+    """A path that matplotlib can save to: a picture's ending, or none for a folder."""
+    path = Path(word)
+    if path.suffix.lower() not in ('', *PICTURES):
+        known = ', '.join(PICTURES)
+        raise argparse.ArgumentTypeError(f'{word}: a picture ends in one of {known}')
+    return path
+
+
 def answering(answer: Callable[[argparse.Namespace], Answer]) -> Callable[..., int]:
     """A subcommand's `run`: prints the answer, or why there is none."""
 
@@ -41,11 +52,9 @@ def answering(answer: Callable[[argparse.Namespace], Answer]) -> Callable[..., i
         try:
             for_programs, for_people = answer(arguments)
         except ManipulatorError as error:
-            if arguments.json:
-                print(json.dumps({'error': str(error)}, ensure_ascii=False))
-            else:
-                print(f'hexarm: {error}', file=sys.stderr)
-            return REFUSED
+            return _refuse(str(error), arguments.json)
+        except OSError as error:
+            return _refuse(f'{error.filename}: {error.strerror}', arguments.json)
         if arguments.json:
             print(json.dumps(for_programs, ensure_ascii=False))
         else:
@@ -53,3 +62,11 @@ def answering(answer: Callable[[argparse.Namespace], Answer]) -> Callable[..., i
         return 0
 
     return run
+
+
+def _refuse(reason: str, is_for_programs: bool) -> int:
+    if is_for_programs:
+        print(json.dumps({'error': reason}, ensure_ascii=False))
+    else:
+        print(f'hexarm: {reason}', file=sys.stderr)
+    return REFUSED

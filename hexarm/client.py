@@ -1,5 +1,6 @@
 """A user of one machine's graph: enables it, asks for poses, hears what became of them."""
 
+import contextlib
 import time
 from collections.abc import Callable
 from typing import Any
@@ -19,6 +20,8 @@ from manipulator.nodes.messages import pose_message, seconds
 from manipulator.nodes.path_goals import path_message
 from manipulator.nodes.qos import COMMAND, LATCHED
 from manipulator.pose import Pose
+
+ASKED_AT_MOST, ANSWERED_WITHIN = 4, 4.0
 
 
 class NotReady(ManipulatorError, TimeoutError):
@@ -78,7 +81,7 @@ class Client:
         end = time.monotonic() + seconds
         while not is_so():
             if time.monotonic() > end:
-                raise NotReady(f'{what} did not happen within {seconds:g} s ({self.summary})')
+                raise NotReady(f'waited {seconds:g} s in vain for {what} ({self.summary})')
             self.spin(0.005)
 
     @property
@@ -148,14 +151,21 @@ class Client:
         client = self.node.create_client(kind, name)
         try:
             self.wait(f'service {name}', client.service_is_ready, seconds=10.0)
-            future = client.call_async(request)
-            self.wait(f'an answer of {name}', future.done, seconds=15.0)
-            response = future.result()
+            response = self.ask(client, request, f'an answer of {name}')
         finally:
             self.node.destroy_client(client)
         if not response.success:
             raise Refused(f'{name}: {response.message}')
         return str(response.message)
+
+    def ask(self, client: Any, request: Any, what: str) -> Any:
+        """The service's response; asked again where it is lost, as just after discovery."""
+        for _ in range(ASKED_AT_MOST):
+            future = client.call_async(request)
+            with contextlib.suppress(NotReady):
+                self.wait(what, future.done, ANSWERED_WITHIN)
+                return future.result()
+        raise NotReady(f'no answer: {what} was asked for {ASKED_AT_MOST} times ({self.summary})')
 
     def _on_machine_state(self, message: DiagnosticStatus) -> None:
         self.machine_state = message

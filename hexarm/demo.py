@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from hexarm.answers import picture_file
 from hexarm.demo_report import Curve, Observation, Result, measure
 from hexarm.graph import Executable, Graph, link_folder, machine_graph
 from hexarm.machines import load
@@ -36,7 +37,9 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser = commands.add_parser(
         'demo', help='drive the RoboCake and an arm on fake boards, within a minute'
     )
-    parser.add_argument('--picture', type=Path, default=Path('demo.png'), help='where to save it')
+    parser.add_argument(
+        '--picture', type=picture_file, default=Path('demo.png'), help='where to save it'
+    )
     parser.set_defaults(run=run)
 
 

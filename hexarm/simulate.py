@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hexarm import machines
-from hexarm.answers import Answer, add_machine, answering
+from hexarm.answers import Answer, add_machine, answering, picture_file
 from hexarm.mjcf import modelled
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
@@ -68,7 +68,9 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
         '--compensate', action=argparse.BooleanOptionalAction, default=None,
         help='add what the drives sag by under gravity (default: as the machine file says)',
     )  # fmt: skip
-    parser.add_argument('--picture', type=Path, metavar='FILE', help='plots of the sensors')
+    parser.add_argument(
+        '--picture', type=picture_file, metavar='FILE', help='plots of the sensors'
+    )
     parser.add_argument('--animation', type=Path, metavar='FILE.gif', help='the machine moving')
     parser.set_defaults(run=answering(answer))
 

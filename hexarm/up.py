@@ -1,16 +1,20 @@
 """`hexarm up hexapod`: a whole graph, servos enabled, until Ctrl-C; then it parks."""
 
 import argparse
+import re
 import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hexarm.graph import Graph, link_folder, machine_graph
-from manipulator.errors import ManipulatorError
+from hexarm.machines import load, read
+from manipulator.errors import ManipulatorError, Refused
 
 if TYPE_CHECKING:
     from hexarm.client import Client
 
+ARM_KIND = 'serial_arm'
+SERVOS_OFF = ('not heard of', 'disconnected', 'booting', 'disarmed')
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
 
 
@@ -38,6 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     machine = arguments.machine or MACHINES[arguments.kind]
     namespace = arguments.namespace or arguments.kind
+    check(arguments.kind, machine, namespace)
     stop = StopSignal()
     with link_folder() as folder:
         nodes = machine_graph(arguments.kind, machine, arguments.port, Path(folder) / 'board')
@@ -56,6 +61,17 @@ def run(arguments: argparse.Namespace) -> int:
                     stop.is_set = False
                     park(client)
     return 0
+
+
+def check(kind: str, machine: str, namespace: str) -> None:
+    """Raises Refused or ConfigError for what would only fail once the nodes have started."""
+    if re.fullmatch(r'/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*', namespace) is None:
+        raise Refused(f'namespace {namespace!r} is no ROS name: letters, digits, _ and /')
+    load(machine)
+    its_kind = read(machine).kind
+    if (its_kind == ARM_KIND) != (kind == 'arm'):
+        other = 'arm' if kind == 'hexapod' else 'hexapod'
+        raise Refused(f'{machine} is a {its_kind}: hexarm up {other} --machine {machine}')
 
 
 class StopSignal:
@@ -83,17 +99,21 @@ def check_alive(graph: Graph) -> None:
 
 
 def park(client: 'Client') -> None:
-    """Goes home and switches the servos off, as far as the machine still can."""
-    if client.machine_state.message != 'enabled':
+    """Goes home if it still can, and switches the servos off in any case."""
+    if client.machine_state.message in SERVOS_OFF:
         return
-    print('parking', flush=True)
     try:
-        client.home()
-        client.disable()
+        if client.machine_state.message == 'enabled':
+            print('parking', flush=True)
+            client.home()
     except Interrupted:
         print('interrupted again: not parked')
     except ManipulatorError as error:
         print(f'not parked: {error}')
+    try:
+        client.disable()
+    except ManipulatorError as error:
+        print(f'the servos are still on: {error}')
 
 
 def _watch(client: 'Client') -> None:

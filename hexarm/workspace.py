@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hexarm.answers import Answer, add_machine, answering
+from hexarm.answers import Answer, add_machine, answering, picture_file
 from hexarm.machines import load
 from hexarm.progress import progress
 from manipulator.arrays import Array
@@ -37,7 +37,9 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
         '--tilt', type=float, default=TILT, metavar='RAD',
         help='largest roll, pitch and yaw of the volume with some orientation (default 0.5)',
     )  # fmt: skip
-    parser.add_argument('--picture', metavar='PATH', help='a PNG, SVG or PDF file, or a folder')
+    parser.add_argument(
+        '--picture', type=picture_file, metavar='PATH', help='a PNG, SVG or PDF file, or a folder'
+    )
     parser.add_argument('--data', metavar='FILE', help='sampled positions: FILE.npz or FILE.csv')
     parser.set_defaults(run=answering(answer))
 
@@ -59,7 +61,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
         if arguments.picture is not None:
             from hexarm.workspace_picture import draw  # noqa: PLC0415 (matplotlib is an extra)
 
-            written += draw(machine, found, Path(arguments.picture), arguments.machine)
+            written += draw(machine, found, arguments.picture, arguments.machine)
             on_progress('pictures', 1.0)
     files = [str(path) for path in written]
     return {**_for_programs(found), 'files': files}, [*_in_words(found), *files]

@@ -138,7 +138,7 @@ def _speeds(machine: Machine, found: Survey, name: str) -> Figure:
         left.plot(1e3 * x, joints[:, k], color=colour, lw=1.3, label=joint)
         right.plot(1e3 * x, rates[:, k], color=colour, lw=1.3)
     left.set(xlabel='x from home (mm)', ylabel=f'joint position ({unit})')
-    fastest = float(factor * machine.motion.joint.speed)
+    fastest = float(factor * np.max(machine.motion.joint.speed))
     bound = 1.15 * float(np.quantile(np.abs(rates), 0.985))
     if np.isfinite(fastest) and fastest < bound * 1.5:
         for side in (-1.0, 1.0):

@@ -32,9 +32,10 @@ class KeyboardTeleop(Node):
         self._show()
 
     def close(self) -> None:
-        """Lets go of the machine."""
+        """Lets go of the machine, and of the terminal."""
         self._topics.close()
         self._terminal.show('\n')
+        self._terminal.restore()
 
     def _tick(self) -> None:
         characters = self._terminal.read()

@@ -38,10 +38,12 @@ class Terminal:
         trace: TracebackType | None,
     ) -> None:
         """The terminal as it was."""
-        try:
+        self.restore()
+
+    def restore(self) -> None:
+        """Lines and echo as they were, where the terminal is still there."""
+        with contextlib.suppress(termios.error):
             termios.tcsetattr(self._file, termios.TCSAFLUSH, self._before)
-        except termios.error:
-            return  # the terminal itself has gone
 
     def read(self) -> bytes | None:
         """What was typed since the last call; None once the terminal has gone."""

@@ -65,7 +65,7 @@ class TrajectoryServices:
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:
-            self._pilot.player.pause(request.data)
+            self._pilot.pause(request.data)
             response.success, response.message = True, 'paused' if request.data else 'going on'
         except ManipulatorError as error:
             response.message = str(error)

@@ -49,6 +49,7 @@ class Pilot:
         self._is_measured = False
         self._joints: Array | None = None
         self._override = 1.0
+        self._is_paused = False
         self._next_frames: Frames | None = None
 
     @property
@@ -119,6 +120,14 @@ class Pilot:
         if self._player is not None:
             self._player.override(rate)
 
+    def pause(self, is_paused: bool) -> None:
+        """Holds all motion up, or lets it go on; Refused while nobody may drive.
+
+        A machine that is lost while paused is paused when it is taken over again.
+        """
+        self.player.pause(is_paused)
+        self._is_paused = is_paused
+
     def set_pivot(self, point: Sequence[float]) -> None:
         """Another pivot (platform frame, m), taken once the machine stands still."""
         self._next_frames = self.machine.frames.with_pivot(point)
@@ -137,15 +146,15 @@ class Pilot:
             self.status = self._player.status
         return self.machine.frames.platform(pose)
 
-    def _take_over(self, T_base_platform: Pose, near: Array) -> Player:
+    def _take_over(self, T_base_platform: Pose, near: Array) -> None:
         pose = self.machine.frames.pivot(T_base_platform)
         joints = self.machine.kinematics.inverse(pose, near)
         player = self._player = Player(self.machine, pose, joints, self._dt)
         player.override(self._override)
+        player.pause(self._is_paused)
         names = self.machine.kinematics.joint_names
         self._following = Following(names, self._tolerance, self._dt)
         self.status = player.status if self._is_followed else CONNECTING
-        return player
 
     def _is_present(self, T_base_platform: Pose, joints: Array) -> bool:
         """Whether a pose is where the joints are, or late: where they were."""
@@ -158,4 +167,4 @@ class Pilot:
         before = self._player
         if before is not None:
             pose = old.frames.platform(before.state.pose)
-            self._take_over(pose, before.joints).pause(before.is_paused)
+            self._take_over(pose, before.joints)

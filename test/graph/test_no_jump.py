@@ -29,7 +29,10 @@ def module_rig(tmp_path_factory, tolerant_robocake):
 
 @pytest.fixture
 def rig(module_rig):
-    """At home, at rest, at full speed."""
+    """At home, at rest, at full speed, whatever the last test left."""
+    if module_rig.user.machine_state.message != 'enabled':
+        module_rig.user.trigger('serial_bridge/clear_fault')
+        module_rig.enable()
     module_rig.user.wait('goals', lambda: module_rig.user.motion('mode') == 'hold', 10.0)
     module_rig.user.home()
     module_rig.user.spin(0.2)

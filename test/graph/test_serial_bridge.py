@@ -44,14 +44,14 @@ class Rig(Client):
         publishers = (self._commands, self._stops)
         return all(publisher.get_subscription_count() == 1 for publisher in publishers)
 
-    def ask(self, service, is_true=True):
+    def switch(self, service, is_true=True):
         return self._call(SetBool, service, SetBool.Request(data=is_true))
 
     def wait_for_state(self, word, seconds=10.0):
         self.wait(word, lambda: self.machine_state.message == word, seconds)
 
     def enable(self):
-        self.ask('serial_bridge/enable')
+        self.switch('serial_bridge/enable')
         self.wait_for_state('enabled')
 
     def go_back_to_disarmed(self):
@@ -59,7 +59,7 @@ class Rig(Client):
         away = ('not heard of', 'disconnected', 'booting')
         self.wait('the board', lambda: self.machine_state.message not in away, 10.0)
         self.trigger('serial_bridge/clear_fault')
-        self.ask('serial_bridge/enable', False)
+        self.switch('serial_bridge/enable', False)
         self.wait_for_state('disarmed')
 
     def stop(self, is_stop=True):
@@ -103,9 +103,7 @@ class Rig(Client):
         request = SetParameters.Request(parameters=[Parameter(name='battery_v', value=value)])
         client = self.node.create_client(SetParameters, 'fake_hardware/set_parameters')
         self.wait('parameters', client.service_is_ready, 10.0)
-        future = client.call_async(request)
-        self.wait('the battery', future.done, 10.0)
-        assert future.result().results[0].successful
+        assert self.ask(client, request, 'the battery').results[0].successful
 
 
 @pytest.fixture(scope='module')
@@ -219,7 +217,7 @@ def test_emergency_stop_latches_until_it_is_cleared(enabled):
     before = enabled.true_angle()
     enabled.refuses('stopped', positions=[PARK + 0.15] * 6)
     with pytest.raises(Refused, match='clear the stop first'):
-        enabled.ask('serial_bridge/enable')
+        enabled.switch('serial_bridge/enable')
     enabled.trigger('serial_bridge/clear_fault')
     enabled.wait_for_state('enabled')
     assert enabled.true_angle() == before
@@ -228,7 +226,7 @@ def test_emergency_stop_latches_until_it_is_cleared(enabled):
 
 
 def test_disabling_ends_all_pulses(enabled):
-    enabled.ask('serial_bridge/enable', False)
+    enabled.switch('serial_bridge/enable', False)
     enabled.wait_for_state('disarmed')
     enabled.spin(0.1)
     enabled.joints.clear()
@@ -237,12 +235,12 @@ def test_disabling_ends_all_pulses(enabled):
 
 
 def test_an_unplugged_board_comes_back_disarmed(enabled, port):
-    enabled.ask('fake_hardware/plug', False)
+    enabled.switch('fake_hardware/plug', False)
     enabled.wait_for_state('disconnected')
     with pytest.raises(Refused, match='no board'):
-        enabled.ask('serial_bridge/enable')
+        enabled.switch('serial_bridge/enable')
     assert not port.exists()
-    enabled.ask('fake_hardware/plug')
+    enabled.switch('fake_hardware/plug')
     enabled.wait_for_state('disarmed')
     before = enabled.true_angle()
     enabled.command([PARK + 0.1] * 6)
@@ -252,9 +250,9 @@ def test_an_unplugged_board_comes_back_disarmed(enabled, port):
 
 
 def test_a_mute_board_is_disconnected_and_must_be_enabled_again(enabled):
-    enabled.ask('fake_hardware/mute')
+    enabled.switch('fake_hardware/mute')
     enabled.wait_for_state('disconnected')
-    enabled.ask('fake_hardware/mute', False)
+    enabled.switch('fake_hardware/mute', False)
     enabled.wait_for_state('unclaimed')
     enabled.refuses('call ~/enable', positions=[PARK] * 6)
     before = enabled.true_angle()

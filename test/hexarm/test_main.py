@@ -50,3 +50,24 @@ def test_command_without_ros_says_what_it_needs(tmp_path):
     assert done.returncode == 1
     assert done.stderr.startswith('hexarm: needs the Python module rclpy: install ROS 2 Jazzy')
     assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize('command', ['accuracy', 'workspace'])
+def test_picture_of_an_unknown_ending_is_refused_before_anything_is_worked_out(command, capsys):
+    with pytest.raises(SystemExit) as refusal:
+        main([command, 'robocake', '--picture', 'map.foo'])
+    assert refusal.value.code == 2
+    assert 'a picture ends in one of .png' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ('words', 'said'),
+    [
+        (('--namespace', 'bad name'), 'is no ROS name'),
+        (('--machine', 'ur5'), 'hexarm up arm --machine ur5'),
+        (('--machine', 'robocaek'), "did you mean 'robocake'"),
+    ],
+)
+def test_up_refuses_in_words_before_a_node_is_started(words, said, capsys):
+    assert main(['up', 'hexapod', *words]) == 1
+    assert said in capsys.readouterr().err

@@ -172,13 +172,26 @@ def test_goal_that_still_waited_when_the_machine_was_lost_is_named():
 
 def test_a_new_pivot_does_not_end_a_pause():
     made = driving()
-    made.player.pause(True)
+    made.pause(True)
     made.set_pivot((0.0, 0.0, 0.03))
     made.step()
     assert made.machine.frames.pivot(HOME).position[2] > HOME.position[2] + 0.02
     made.player.pursue(Goal(made.machine.frames.pivot(ELSEWHERE), 9.0))
     run(made, 100)
     assert np.abs(made.step().twist_to(HOME)).max() < 1e-9
-    made.player.pause(False)
+    made.pause(False)
     run(made, 300)
     assert np.abs(made.step().twist_to(ELSEWHERE)).max() < 1e-9
+
+
+def test_pause_outlasts_a_machine_that_is_lost_and_taken_over_again():
+    made = driving()
+    made.pause(True)
+    made.note_machine_state('disarmed', is_followed=False)
+    made.note_machine_state('enabled', is_followed=False)
+    made.note_pose(HOME)
+    made.note_machine_state('enabled', is_followed=True)
+    made.player.pursue(Goal(ELSEWHERE, 1.0))
+    assert np.abs(run(made, 50).twist_to(HOME)).max() < 1e-6
+    made.pause(False)
+    assert np.abs(run(made, 300).twist_to(ELSEWHERE)).max() < 1e-6
