@@ -151,14 +151,14 @@ class Client:
         client = self.node.create_client(kind, name)
         try:
             self.wait(f'service {name}', client.service_is_ready, seconds=10.0)
-            response = self.ask(client, request, f'an answer of {name}')
+            response = self.answer_of(client, request, f'an answer of {name}')
         finally:
             self.node.destroy_client(client)
         if not response.success:
             raise Refused(f'{name}: {response.message}')
         return str(response.message)
 
-    def ask(self, client: Any, request: Any, what: str) -> Any:
+    def answer_of(self, client: Any, request: Any, what: str) -> Any:
         """The service's response; asked again where it is lost, as just after discovery."""
         for _ in range(ASKED_AT_MOST):
             future = client.call_async(request)

@@ -1,6 +1,7 @@
 """The services of the trajectory node: stop, home, pause, start_cycle, plan."""
 
 from collections.abc import Callable
+from threading import Thread
 
 import numpy as np
 from geometry_msgs.msg import PoseStamped
@@ -8,10 +9,12 @@ from nav_msgs.srv import GetPlan
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
-from manipulator.errors import ManipulatorError
+from manipulator.errors import ManipulatorError, Unreachable
+from manipulator.machine import Machine
 from manipulator.nodes.cycle_parameters import CycleParameters
 from manipulator.nodes.messages import goal_of, pose_message, seconds
 from manipulator.pose import Pose
+from manipulator.reach.words import explained
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.plan import MotionState
@@ -75,12 +78,15 @@ class TrajectoryServices:
         """The platform's poses on a move from start (from here, when it is all zero) to goal."""
         machine = self._pilot.machine
         try:
+            goal = goal_of(request.goal, machine.frames)
             start = self._start_of(request)
             near = machine.kinematics.inverse(start)
-            goal = goal_of(request.goal, machine.frames)
             move = plan_to(machine, MotionState.at_rest(start), goal, near, self._dt)
         except ManipulatorError as error:
             self._node.get_logger().warning(f'plan: {error}')
+            if isinstance(error, Unreachable):
+                # A tenth of a second's work: not in the thread that streams setpoints.
+                Thread(target=self._explain, args=(machine, goal), daemon=True).start()
             return response
         stamp = self._node.get_clock().now().to_msg()
         times = np.append(np.arange(0.0, move.duration, self._dt), move.duration)
@@ -88,6 +94,11 @@ class TrajectoryServices:
         response.plan.header.stamp = stamp
         response.plan.poses = [pose_message(poses[i], stamp) for i in range(len(times))]
         return response
+
+    def _explain(self, machine: Machine, goal: Pose) -> None:
+        said = explained(machine, goal)
+        if said:
+            self._node.get_logger().info(f'plan: {said}')
 
     def _start_of(self, request: GetPlan.Request) -> Pose:
         if request.start == PoseStamped():

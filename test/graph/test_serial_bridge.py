@@ -103,7 +103,7 @@ class Rig(Client):
         request = SetParameters.Request(parameters=[Parameter(name='battery_v', value=value)])
         client = self.node.create_client(SetParameters, 'fake_hardware/set_parameters')
         self.wait('parameters', client.service_is_ready, 10.0)
-        assert self.ask(client, request, 'the battery').results[0].successful
+        assert self.answer_of(client, request, 'the battery').results[0].successful
 
 
 @pytest.fixture(scope='module')
