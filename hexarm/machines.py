@@ -50,11 +50,13 @@ def shipped() -> dict[str, Path]:
 def find(name_or_path: str) -> Path:
     """The file of a shipped machine's name, or of a path; ConfigError says what there is."""
     path = Path(name_or_path).expanduser()
+    if path.suffix in ('.yaml', '.yml') or '/' in name_or_path:
+        if path.is_file():
+            return path
+        raise ConfigError([f'machine file {name_or_path} does not exist'])
     known = shipped()
     if name_or_path not in known and path.is_file():
         return path
-    if path.suffix in ('.yaml', '.yml') or '/' in name_or_path:
-        raise ConfigError([f'machine file {name_or_path} does not exist'])
     if name_or_path in known:
         return known[name_or_path]
     near = difflib.get_close_matches(name_or_path, list(known), n=1)

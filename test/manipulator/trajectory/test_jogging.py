@@ -283,7 +283,7 @@ def test_arm_beyond_its_range_moves_only_towards_it():
         assert np.array(joints)[:, 4].max() <= beyond[4] + 1e-6
 
 
-@pytest.mark.parametrize('name', PLATFORMS)
+@pytest.mark.parametrize('name', [name for name in PLATFORMS if name.startswith('stewart')])
 def test_platform_beyond_a_limit_is_driven_back_but_not_further(name):
     machine = MACHINES[name]
     motion = player(machine)
@@ -292,8 +292,7 @@ def test_platform_beyond_a_limit_is_driven_back_but_not_further(name):
     run(motion, 30)
     pose = motion.state.pose.moved([0, 0, 1e-5, 0, 0, 0])
     joints = machine.kinematics.inverse_or_nan(pose, motion.joints)
-    if not np.isfinite(joints).all() or machine.constraints.admits(pose, joints):
-        pytest.skip('the edge is where the legs end')
+    assert not machine.constraints.admits(pose, joints)
     beyond = Player(machine, pose, joints, DT)
     poses, _ = run(beyond, 20, wish(up))
     assert poses[-1].position[2] <= pose.position[2] + 1e-9
