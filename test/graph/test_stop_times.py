@@ -8,7 +8,7 @@ import pytest
 from bench.rig import Rig
 from bridge.messages import Setpoint
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.unsteady]
 
 PROCESSES = ('serial_bridge', 'ik', 'pose', 'trajectory')
 GENEROUS = 2.0
