@@ -1,9 +1,13 @@
 """Rods and their Jacobian, the same for crank and linear legs: docs/kinematics.md, section 4."""
 
+import math
+
 import numpy as np
 
 from manipulator.arrays import Array
 from manipulator.pose import Pose
+
+YZX, ZXY = [1, 2, 0], [2, 0, 1]
 
 
 def rods(base_points: Array, platform_points: Array, pose: Pose) -> Array:
@@ -21,13 +25,20 @@ def leg_jacobian(base_points: Array, platform_points: Array, pose: Pose) -> Arra
     arms = platform_points @ np.swapaxes(pose.rotation, -1, -2)
     rod = arms + pose.position[..., None, :] - base_points
     unit = rod / np.sqrt((rod * rod).sum(axis=-1))[..., None]
-    return np.concatenate([unit, np.cross(arms, unit)], axis=-1)
+    jacobian = np.empty((*unit.shape[:-1], 6))
+    jacobian[..., :3] = unit
+    moment = arms[..., YZX] * unit[..., ZXY]  # the cross product, which numpy's own is slow at
+    moment -= arms[..., ZXY] * unit[..., YZX]
+    jacobian[..., 3:] = moment
+    return jacobian
 
 
 def smallest_singular_value(jacobian: Array, characteristic_length: float) -> Array:
     """σmin (...) of a leg Jacobian whose rotations are scaled by a length; NaN for NaN."""
-    scale = np.array([1.0, 1.0, 1.0] + [1.0 / characteristic_length] * 3)
-    scaled = jacobian * scale
+    scaled = jacobian.copy()
+    scaled[..., 3:] /= characteristic_length
+    if math.isfinite(scaled.sum()):
+        return np.asarray(np.linalg.svd(scaled, compute_uv=False)[..., -1])
     finite = np.isfinite(scaled).all(axis=(-1, -2))
     safe = np.where(finite[..., None, None], scaled, 0.0)
     result: Array = np.where(finite, np.linalg.svd(safe, compute_uv=False)[..., -1], np.nan)

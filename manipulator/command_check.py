@@ -48,7 +48,9 @@ class CommandCheck:
 
     def _check_limits(self, pose: Pose, joints: Array, near: Array | None) -> None:
         constraints = self._machine.constraints
-        if near is not None and not constraints.admits(pose, joints):
+        if constraints.admits(pose, joints):
+            return
+        if near is not None:
             start = self._machine.kinematics.forward(near, pose).pose
             constraints = constraints.stretched_to(start, near)
         constraints.check(pose, joints)

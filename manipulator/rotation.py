@@ -6,7 +6,7 @@ All functions broadcast over leading axes. Quaternions are x, y, z, w as in ROS.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from manipulator.arrays import Array
+from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput
 
 SMALL_ANGLE = 1e-6
@@ -23,6 +23,20 @@ def skew(vector: Array) -> Array:
     matrix[..., 2, 0] = -vector[..., 1]
     matrix[..., 0, 1] = -vector[..., 2]
     return matrix
+
+
+def _products() -> Array:
+    """E (16, 9), flat 3×3 matrices with R = Σ qᵢ qⱼ Eᵢⱼ for a unit quaternion q = x, y, z, w."""
+    basis, table = np.eye(3), np.zeros((4, 4, 3, 3))
+    for i, j in np.ndindex(3, 3):
+        outer = np.outer(basis[i], basis[j])
+        table[i, j] = outer + outer.T - basis * basis[i, j]
+    table[:3, 3] = table[3, :3] = skew(basis)
+    table[3, 3] = basis
+    return frozen(table.reshape(16, 9))
+
+
+PRODUCTS = _products()
 
 
 def exp(rotation_vector: ArrayLike) -> Array:
@@ -72,38 +86,24 @@ def from_quaternion(quaternion: ArrayLike) -> Array:
     if not np.all(np.abs(length - 1.0) <= UNIT_TOLERANCE):
         worst = np.ravel(length)[np.argmax(np.abs(np.nan_to_num(np.ravel(length), nan=9.9) - 1))]
         raise InvalidInput(f'quaternion has length {worst:.6g}, a rotation needs 1 ± 0.001')
-    x, y, z, w = np.moveaxis(q / length[..., None], -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    unit = q / length[..., None]
+    outer = unit[..., :, None] * unit[..., None, :]
+    matrix: Array = (outer.reshape(*q.shape[:-1], 16) @ PRODUCTS).reshape(*q.shape[:-1], 3, 3)
+    return matrix
 
 
 def to_quaternion(rotation: ArrayLike) -> Array:
     """The unit quaternion x, y, z, w with w ≥ 0; (..., 3, 3) to (..., 4).
 
-    Every row of the 4×4 matrix 4·q·qᵀ is the quaternion times a factor; the longest is taken.
+    Every row of 4·q·qᵀ = I + (⟨Eᵢⱼ, R⟩) is the quaternion times a factor; the longest is taken.
     """
     m = np.asarray(rotation, dtype=np.float64)
-    m00, m01, m02 = m[..., 0, 0], m[..., 0, 1], m[..., 0, 2]
-    m10, m11, m12 = m[..., 1, 0], m[..., 1, 1], m[..., 1, 2]
-    m20, m21, m22 = m[..., 2, 0], m[..., 2, 1], m[..., 2, 2]
-    rows = np.stack(
-        [
-            np.stack([1 + m00 - m11 - m22, m01 + m10, m02 + m20, m21 - m12], axis=-1),
-            np.stack([m01 + m10, 1 - m00 + m11 - m22, m12 + m21, m02 - m20], axis=-1),
-            np.stack([m02 + m20, m12 + m21, 1 - m00 - m11 + m22, m10 - m01], axis=-1),
-            np.stack([m21 - m12, m02 - m20, m10 - m01, 1 + m00 + m11 + m22], axis=-1),
-        ],
-        axis=-2,
-    )
-    longest = np.argmax(np.einsum('...ii->...i', rows), axis=-1)
-    q = np.take_along_axis(rows, longest[..., None, None], axis=-2)[..., 0, :]
-    q = q / np.sqrt(np.einsum('...i,...i->...', q, q))[..., None]
-    result: Array = np.where(q[..., 3:] < 0, -q, q)
-    return result
+    leading = m.shape[:-2]
+    rows = (m.reshape(*leading, 9) @ PRODUCTS.T).reshape(-1, 4, 4) + np.eye(4)
+    longest = rows.reshape(-1, 16)[:, ::5].argmax(axis=-1)
+    q = rows[np.arange(len(rows)), longest]
+    q *= np.copysign(1.0, q[:, 3:]) / np.sqrt((q * q).sum(axis=-1))[:, None]
+    return q.reshape(*leading, 4)
 
 
 def from_rpy(roll_pitch_yaw: ArrayLike) -> Array:
