@@ -3,16 +3,13 @@ SHELL := /bin/bash
 ENV := .venv
 BIN := $(ENV)/bin
 
-.PHONY: demo test stops lint bench soak clean
+.PHONY: demo test lint bench soak clean
 
 demo: $(ENV)/ready
 	@$(BIN)/hexarm demo
 
 test: $(ENV)/ready
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/python -m pytest $(PYTEST)
-
-stops: $(ENV)/ready   # kills and freezes each process while the platform moves
-	@$(BIN)/python -m pytest -m unsteady test/graph/test_stop_times.py
 
 lint: $(ENV)/ready
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy

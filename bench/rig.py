@@ -4,6 +4,7 @@ The nodes are the shipped ones, as processes that can be killed, frozen and star
 one; the line is a pty. bench/stop_times.py, test/graph and test/soak use it.
 """
 
+import bisect
 import contextlib
 import os
 import signal
@@ -25,6 +26,7 @@ from hexarm.graph import Graph, machine_graph
 from manipulator.errors import ManipulatorError
 
 TRIES = 10
+PULSE_PERIOD = 0.02
 FROZEN = 1.0
 """Seconds for which the servo targets must be still to be called so."""
 
@@ -77,6 +79,8 @@ class Recorder:
         self.machine = machine
         self.board, self.calibration = machine.board, machine.calibration
         self._changes = [(time.monotonic(), machine.board.pulses)]
+        self._periods = [1.0]
+        self._board_time = 0.0
         self._lock = threading.Lock()
 
     @property
@@ -85,21 +89,39 @@ class Recorder:
 
     def step(self, dt, stuck_channel=None):
         self.machine.step(dt, stuck_channel)
+        self._board_time += dt
         if self.board.pulses != self._changes[-1][1]:
             with self._lock:
                 self._changes.append((time.monotonic(), self.board.pulses))
+                self._periods.append(max(1.0, np.ceil(self._board_time / PULSE_PERIOD)))
+            self._board_time = 0.0
 
     def changes(self, since=float('-inf')):
         """(time, pulses in counts) after every change since then, with the one before it."""
         with self._lock:
-            later = [k for k, (t, _) in enumerate(self._changes) if t >= since]
-            first = later[0] if later else len(self._changes)
-            return self._changes[max(first - 1, 0) :]
+            return self._changes[self._before(since) :]
+
+    @property
+    def slew(self):
+        """The most that a servo's pulse may change in one pulse period, in counts."""
+        return max(self.calibration.count_speeds) * PULSE_PERIOD + 1.0
 
     def largest_step(self, since=float('-inf')):
-        """The largest change of one pulse from one time to the next, in counts."""
-        pulses = [p for _, p in self.changes(since) if None not in p]
-        return float(np.abs(np.diff(np.array(pulses), axis=0)).max()) if len(pulses) > 1 else 0.0
+        """The largest change of one pulse in one pulse period, in counts.
+
+        A thread that this computer held up sees the change of several periods at once.
+        """
+        with self._lock:
+            first = self._before(since)
+            changes, periods = self._changes[first:], self._periods[first + 1 :]
+        pulses = np.array([p for _, p in changes], dtype=float)  # None is NaN
+        steps = np.abs(np.diff(pulses, axis=0)) / np.reshape(periods, (-1, 1))
+        return float(np.nanmax(steps)) if np.isfinite(steps).any() else 0.0
+
+    def _before(self, since):
+        """The index of the last change before a time."""
+        times = [t for t, _ in self._changes]
+        return max(bisect.bisect_left(times, since) - 1, 0)
 
     def way(self, since):
         """How far any pulse has been from where it was at that time, in counts."""

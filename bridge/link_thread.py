@@ -120,6 +120,7 @@ class LinkThread(threading.Thread):
             self._look_at = now + LOOK_AGAIN_AFTER
             self._port = self._open_port()
             self._tell(self.session.opened(now))
+        looked_at = time.monotonic()
         has_input = self._wait()
         self._take_requests()
         self._take_setpoint()
@@ -128,7 +129,8 @@ class LinkThread(threading.Thread):
             received, now = self._port.read(), time.monotonic()
             self._read_at = now + len(received) / self._bytes_per_second
             self._tell(self.session.receive(received, now))
-        self._tell(self.session.tick(time.monotonic()))
+        # A thread that was held up may not call the board silent before it has listened again.
+        self._tell(self.session.tick(looked_at))
         self._write()
 
     def _wait(self) -> bool:

@@ -12,12 +12,14 @@ class Jitter:
         self._last: float | None = None
         self._lateness: deque[float] = deque(maxlen=1000)
 
-    def tick(self) -> None:
-        """Notes that a tick begins now."""
+    def tick(self) -> float:
+        """Notes that a tick begins now; returns the seconds since the last one, 0 at first."""
         now = time.monotonic()
+        elapsed = 0.0 if self._last is None else now - self._last
         if self._last is not None:
-            self._lateness.append(abs(now - self._last - self._period))
+            self._lateness.append(abs(elapsed - self._period))
         self._last = now
+        return elapsed
 
     def quantile(self, q: float) -> float:
         """The q-quantile of the lateness, 0 before the second tick."""

@@ -118,7 +118,7 @@ class TrajectoryNode(Node):
             self.get_logger().warning(f'pivot: {error}', throttle_duration_sec=1.0)
 
     def _tick(self) -> None:
-        self._jitter.tick()
+        self._pilot.note_stall(self._jitter.tick())
         self._pilot.note_silence(self._poses.age)
         self._teleop.drive(time.monotonic())
         self._paths.poll()

@@ -105,6 +105,11 @@ class Pilot:
         elif self._player is not None:
             self._player.blind(seconds > POSE_PATIENCE)
 
+    def note_stall(self, seconds: float) -> None:
+        """How long the caller itself stood still: by then the board holds, and goals are old."""
+        if seconds > POSE_DEADLINE:
+            self.release(f'setpoints stood still for {seconds:.1f} s')
+
     def release(self, reason: str) -> None:
         """Lets go of the machine: no setpoints until its pose is known again."""
         if self._player is not None:

@@ -32,6 +32,7 @@ class Rig:
         self.events = []
         self.written = []
         self.changed = threading.Condition()
+        self.stall = 0.0
         self.machine = FakeMachine.from_config(CONFIG, boot_s=0.1, hysteresis=0.0)
         self.board = BoardThread(self.machine, FakeLine(path), lambda positions: None)
         self.link = LinkThread(
@@ -44,6 +45,8 @@ class Rig:
         self.link.start()
 
     def _note(self, event):
+        stall, self.stall = self.stall, 0.0
+        time.sleep(stall)
         with self.changed:
             if not isinstance(event, StateReceived):
                 self.events.append(event)
@@ -175,6 +178,17 @@ def test_a_mute_board_is_lost_though_the_port_is_open(rig):
     assert 'silent' in rig.events[-1].reason
     rig.board.is_mute = False
     rig.wait_for_event(Connected, 2)
+
+
+def test_a_board_is_not_lost_because_this_thread_was_held_up(rig):
+    rig.arm()
+    rig.put((3100,) * 6)
+    rig.wait_for(lambda: rig.link.session.state.joints[0].count == 3100)
+    rig.stall = 0.7
+    rig.wait_for_mode(Mode.HOLDING)
+    assert rig.stall == 0.0
+    time.sleep(0.1)
+    assert not any(isinstance(event, Disconnected) for event in rig.events)
 
 
 def test_a_missing_port_is_said_and_looked_for(no_board):

@@ -8,7 +8,7 @@ import pytest
 from bench.rig import Rig
 from bridge.messages import Setpoint
 
-pytestmark = [pytest.mark.graph, pytest.mark.unsteady]
+pytestmark = pytest.mark.graph
 
 PROCESSES = ('serial_bridge', 'ik', 'pose', 'trajectory')
 GENEROUS = 2.0
@@ -28,36 +28,39 @@ def module_rig(tmp_path_factory, tolerant_robocake):
 
 @pytest.fixture
 def circling(module_rig):
-    """The platform on its circle, and the largest step of a pulse there, in counts."""
+    """The platform on its circle, its servos moving."""
     module_rig.circle(0.7)
-    largest = module_rig.recorder.largest_step(module_rig.tap.heard(Setpoint)[-60][0])
-    assert largest > 5
-    return module_rig, largest
+    assert module_rig.recorder.largest_step(module_rig.tap.heard(Setpoint)[-60][0]) > 5
+    return module_rig
 
 
-def drives_again(rig, largest):
-    """Home and onto the circle again, no step beyond the joint speed of 480 °/s."""
+def check_that_it_drives_again(rig):
+    """Home and onto the circle again, never faster than the servos."""
     since = rig.tap.heard()[-1][0]
     rig.circle(0.3)
-    return 0 < rig.recorder.largest_step(since) <= max(201, largest)
+    assert 0 < rig.recorder.largest_step(since) <= rig.recorder.slew
+
+
+def is_enabled(rig):
+    return rig.user.machine_state.message == 'enabled'
 
 
 @pytest.mark.parametrize('name', PROCESSES)
 def test_a_frozen_process_stops_the_machine_and_nothing_jumps_when_it_goes_on(circling, name):
-    rig, largest = circling
+    rig = circling
     assert rig.stop_time(name, signal.SIGSTOP) < GENEROUS
     resumed = rig.send(name, signal.SIGCONT)
     rig.user.spin(1.0)
+    rig.user.wait('the machine enabled again', lambda: is_enabled(rig), 10.0)
     assert rig.recorder.way(resumed) <= QUIET
-    assert rig.user.machine_state.message == 'enabled'
-    assert drives_again(rig, largest)
+    check_that_it_drives_again(rig)
 
 
 @pytest.mark.parametrize('name', PROCESSES)
 def test_a_killed_process_stops_the_machine_and_nothing_jumps_when_it_is_started_again(
     circling, name
 ):
-    rig, largest = circling
+    rig = circling
     assert rig.stop_time(name, signal.SIGKILL) < GENEROUS
     before = time.monotonic()
     rig.start(name)
@@ -67,4 +70,4 @@ def test_a_killed_process_stops_the_machine_and_nothing_jumps_when_it_is_started
         assert not rig.tap.heard(Setpoint, before)
         rig.enable()
     assert rig.recorder.way(before) <= QUIET
-    assert drives_again(rig, largest)
+    check_that_it_drives_again(rig)

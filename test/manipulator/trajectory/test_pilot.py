@@ -54,6 +54,19 @@ def test_motion_begins_where_the_joints_are():
     assert np.abs(made.step().twist_to(ELSEWHERE)).max() < 1e-12
 
 
+def test_a_driver_that_stood_still_itself_drops_its_goal_and_begins_where_the_joints_are():
+    made = driving()
+    made.player.pursue(Goal(ELSEWHERE, 7.0))
+    there = run(made, 30)
+    made.note_stall(0.4)
+    assert made.is_driving
+    made.note_stall(0.6)
+    assert made.step() is None
+    assert (made.status.result, made.status.goal_stamp) == ('stopped', 7.0)
+    see(made, there)
+    assert np.abs(made.step().twist_to(there)).max() < 1e-12
+
+
 def test_no_goal_is_taken_until_the_board_follows():
     made = pilot()
     made.note_machine_state('enabled', is_followed=False)
