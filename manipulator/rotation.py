@@ -103,7 +103,8 @@ def to_quaternion(rotation: ArrayLike) -> Array:
     longest = rows.reshape(-1, 16)[:, ::5].argmax(axis=-1)
     q = rows[np.arange(len(rows)), longest]
     q *= np.copysign(1.0, q[:, 3:]) / np.sqrt((q * q).sum(axis=-1))[:, None]
-    return q.reshape(*leading, 4)
+    quaternion: Array = q.reshape(*leading, 4)
+    return quaternion
 
 
 def from_rpy(roll_pitch_yaw: ArrayLike) -> Array:
