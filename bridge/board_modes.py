@@ -67,7 +67,7 @@ class BoardModes:
         self._watch_deadline(now_us)
         self._energise_next(now_us)
         if fault is None and self.mode in BY_ITSELF:
-            fault = self._play_on()
+            fault = self._play_on(now_us)
         self.drive.advance(PULSE_PERIOD_US * 1e-6)
         return fault
 
@@ -76,9 +76,7 @@ class BoardModes:
         fault = self._fault_in(setpoint)
         if fault is None:
             self.drive.aim(setpoint.counts)
-            self._deadline_us = now_us + 1000 * setpoint.deadline_ms
-            self.is_deadline_passed = False
-            self.mode = Mode.ARMED
+            self._wait_armed(now_us, setpoint.deadline_ms)
         return fault
 
     def obey(self, command: Command, now_us: int) -> Result:
@@ -87,14 +85,14 @@ class BoardModes:
             case Arm(park):
                 return self._arm(park, now_us)
             case Disarm():
-                return self._disarm()
+                return self._disarm(now_us)
             case Stop():
-                self._hold(Mode.STOPPED)
+                self._hold(Mode.STOPPED, now_us)
                 return Result.OK
             case Clear():
-                return self._clear()
+                return self._clear(now_us)
             case Play():
-                return self._play(command)
+                return self._play(command, now_us)
             case Finish():
                 self._programs.finish()
                 return Result.OK
@@ -113,59 +111,69 @@ class BoardModes:
         if self._range_fault(park) is not None:
             return Result.OUT_OF_RANGE
         if self.mode in (*FOLLOWING, *BY_ITSELF):
-            self._hold(Mode.ARMED)
+            self._hold(Mode.ARMED, now_us)
         elif self.mode is Mode.DISARMED:
             self._park = park
             self._energise_at_us = now_us
-            self._hold(Mode.ARMING)
+            self._hold(Mode.ARMING, now_us)
         return Result.OK
 
-    def _disarm(self) -> Result:
+    def _disarm(self, now_us: int) -> Result:
         self.drive.release()
         if self.mode not in LATCHED:
-            self._hold(Mode.DISARMED)
+            self._hold(Mode.DISARMED, now_us)
         return Result.OK
 
-    def _clear(self) -> Result:
+    def _clear(self, now_us: int) -> Result:
         if self.mode not in LATCHED:
             return Result.OK
         if self.is_undervoltage:
             return Result.UNDERVOLTAGE
         self.fault = FaultCode.NONE
         if self.drive.is_all_on:
-            self._hold(Mode.ARMED)
+            self._hold(Mode.ARMED, now_us)
         else:
             self.drive.release()
-            self._hold(Mode.DISARMED)
+            self._hold(Mode.DISARMED, now_us)
         return Result.OK
 
-    def _play(self, play: Play) -> Result:
+    def _play(self, play: Play, now_us: int) -> Result:
         if self.mode in LATCHED:
             return LATCHED[self.mode]
         if self.mode not in FOLLOWING:
             return Result.NOT_ARMED
         result = self._programs.begin(play.program, play.is_loop, self.drive.counts)
         if result is Result.OK:
-            self._hold(Mode.CHECKING)
+            self._hold(Mode.CHECKING, now_us)
         return result
 
-    def _play_on(self) -> Fault | None:
+    def _play_on(self, now_us: int) -> Fault | None:
         """One period of a program; what cannot be reached ends it where the joints are."""
         step, counts = self._programs.step()
         if step in TROUBLES:
-            self._hold(Mode.ARMED)
+            self._hold(Mode.ARMED, now_us)
             return Fault(TROUBLES[step], NO_JOINT, self._programs.trouble_ms)
         if step is not Step.CHECKING:
-            self.mode = Mode.PLAYING if step is Step.MOVING else Mode.ARMED
+            self.mode = Mode.PLAYING
             self.drive.aim([round(count) for count in counts])
+        if step is Step.DONE:
+            self._wait_armed(now_us)
         return None
 
-    def _hold(self, mode: Mode) -> None:
-        """Stands still in `mode`, with no deadline running."""
+    def _hold(self, mode: Mode, now_us: int) -> None:
+        """Stands still in `mode`; only an armed board has a deadline."""
         self.drive.halt()
         self._deadline_us = None
         self.is_deadline_passed = False
         self.mode = mode
+        if mode is Mode.ARMED:
+            self._wait_armed(now_us)
+
+    def _wait_armed(self, now_us: int, deadline_ms: int = MAX_DEADLINE_MS) -> None:
+        """Armed until the next setpoint is overdue: the first one by the longest deadline."""
+        self.mode = Mode.ARMED
+        self._deadline_us = now_us + 1000 * deadline_ms
+        self.is_deadline_passed = False
 
     def _fault_in(self, setpoint: Setpoint) -> Fault | None:
         if self.mode not in FOLLOWING:
@@ -188,9 +196,9 @@ class BoardModes:
             return
         if self.settings.on_link_loss == 'release':
             self.drive.release()
-            self._hold(Mode.DISARMED)
+            self._hold(Mode.DISARMED, now_us)
         else:
-            self._hold(Mode.HOLDING)
+            self._hold(Mode.HOLDING, now_us)
         self.is_deadline_passed = True
 
     def _watch_battery(self, now_us: int, battery_mv: int) -> Fault | None:
@@ -204,7 +212,7 @@ class BoardModes:
         is_lasting = now_us - self._low_since_us >= UNDERVOLTAGE_DELAY_US
         if not is_lasting or self.mode in (Mode.DISARMED, *LATCHED):
             return None
-        self._hold(Mode.FAULT)
+        self._hold(Mode.FAULT, now_us)
         self.fault = FaultCode.UNDERVOLTAGE
         return Fault(FaultCode.UNDERVOLTAGE, NO_JOINT, battery_mv)
 
@@ -212,7 +220,7 @@ class BoardModes:
         if self.mode is not Mode.ARMING or now_us < self._energise_at_us:
             return
         if self.drive.is_all_on:
-            self._hold(Mode.ARMED)
+            self._hold(Mode.ARMED, now_us)
             return
         channel = self.drive.pulses.index(None)
         self.drive.energise(channel, self._park[channel])

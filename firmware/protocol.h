@@ -28,8 +28,8 @@ enum Type {
 enum Mode {
     MODE_DISARMED = 0, /* no pulses */
     MODE_ARMING = 1,   /* servo after servo is energised at the park pose */
-    MODE_ARMED = 2,    /* follows setpoints, holds until the first one */
-    MODE_HOLDING = 3,  /* the last setpoint's deadline passed */
+    MODE_ARMED = 2,    /* follows setpoints, waits for the first one */
+    MODE_HOLDING = 3,  /* the deadline for the next setpoint passed */
     MODE_STOPPED = 4,  /* holds until CLEAR */
     MODE_FAULT = 5,    /* holds until CLEAR */
     MODE_CHECKING = 6, /* computes whether a program can be played; nothing moves */

@@ -18,6 +18,7 @@ static uint8_t fault;
 static bool is_deadline_passed;
 static bool has_deadline;
 static uint32_t deadline_us;
+static bool is_driven; /* by setpoints whose deadline has not passed */
 static uint16_t millivolts;
 static bool is_undervoltage;
 static uint32_t low_since_ms;
@@ -25,13 +26,31 @@ static uint16_t park_counts[JOINT_COUNT];
 static uint32_t energise_ms;
 static uint8_t program_after_arming; /* 0: none; the start button asked for it */
 
+static void expect_setpoint_within(uint16_t ms)
+{
+    deadline_us = clock_us() + 1000UL * ms;
+    has_deadline = true;
+    is_deadline_passed = false;
+}
+
+/* Armed and without a setpoint: good for as long as the longest deadline, whatever came before. */
+static void wait_armed(void)
+{
+    mode = MODE_ARMED;
+    is_driven = false;
+    expect_setpoint_within(MAX_DEADLINE_MS);
+}
+
 static void hold(uint8_t new_mode)
 {
     motion_halt();
     has_deadline = false;
     is_deadline_passed = false;
+    is_driven = false;
     program_after_arming = 0;
     mode = new_mode;
+    if (new_mode == MODE_ARMED)
+        wait_armed();
 }
 
 static bool is_latched(void)
@@ -66,9 +85,8 @@ Fault safety_follow(uint16_t deadline_ms, const uint16_t *counts, uint8_t joints
     if (joint != NO_JOINT)
         return (Fault){FAULT_OUT_OF_RANGE, joint, counts[joint]};
     motion_aim(counts);
-    deadline_us = clock_us() + 1000UL * deadline_ms;
-    has_deadline = true;
-    is_deadline_passed = false;
+    expect_setpoint_within(deadline_ms);
+    is_driven = true;
     mode = MODE_ARMED;
     return NO_FAULT;
 }
@@ -151,7 +169,8 @@ static uint8_t program_to_start(void)
     return 0;
 }
 
-/* Without a host: arm where the program begins, play it in a loop, end it; or forget a stop. */
+/* Without a host: arm where the program begins, play it in a loop, end it; or forget a stop.
+ * A machine that a host drives is the host's. */
 static void press_start(void)
 {
     uint8_t program = program_to_start();
@@ -160,7 +179,8 @@ static void press_start(void)
     } else if (safety_is_playing()) {
         play_finish();
     } else if (is_following()) {
-        safety_play(program, true);
+        if (!is_driven)
+            safety_play(program, true);
     } else if (mode == MODE_DISARMED && program) {
         uint16_t start[JOINT_COUNT];
         if (play_start_counts(program, start) && safety_arm(start, JOINT_COUNT) == RESULT_OK)
@@ -233,7 +253,7 @@ static Fault play(void)
     if (step == PLAY_MOVING)
         mode = MODE_PLAYING;
     if (step == PLAY_DONE)
-        mode = MODE_ARMED; /* what was aimed at last still goes out */
+        wait_armed(); /* what was aimed at last still goes out */
     if (step != PLAY_UNREACHABLE && step != PLAY_TOO_FAST)
         return NO_FAULT;
     hold(MODE_ARMED);

@@ -51,10 +51,47 @@ def test_setpoints_are_refused_while_it_arms_and_before(driver):
     assert driver.counts() == PARK
 
 
-def test_after_arming_it_holds_without_a_deadline(armed):
-    armed.run(5.0)
-    state = armed.state()
-    assert (state.mode, state.flags) == (Mode.ARMED, Flag(0))
+ARMED_BY = {
+    'arming': lambda driver: None,
+    'arming again': lambda driver: driver.ask(Arm(PARK)),
+    'clear': lambda driver: [driver.ask(Stop()), driver.run(3.0), driver.ask(Clear())],
+}
+"""Ways to be armed without a setpoint; `arm` has waited a little already."""
+
+
+@pytest.mark.parametrize('way', ARMED_BY)
+@pytest.mark.parametrize('on_link_loss', ['hold', 'release'])
+def test_the_first_setpoint_has_a_deadline_of_two_seconds(make_driver, on_link_loss, way):
+    driver = make_driver(on_link_loss=on_link_loss)
+    driver.arm()
+    ARMED_BY[way](driver)
+    driver.run(1.5)
+    assert (driver.state().mode, driver.state().flags) == (Mode.ARMED, Flag(0))
+    assert driver.counts() == PARK
+    driver.run(0.5)
+    mode = Mode.HOLDING if on_link_loss == 'hold' else Mode.DISARMED
+    assert (driver.state().mode, driver.state().flags) == (mode, Flag.DEADLINE_PASSED)
+    assert (driver.board.pulses == PARK) == (on_link_loss == 'hold')
+
+
+def test_the_first_setpoint_brings_its_own_deadline(armed):
+    armed.say(Setpoint(100, MOVED))
+    armed.run(0.14)
+    assert (armed.state().mode, armed.counts()) == (Mode.HOLDING, MOVED)
+    armed.ask(Arm(PARK))
+    armed.say(Setpoint(2000, PARK))
+    armed.run(1.9)
+    assert armed.state().mode is Mode.ARMED
+
+
+def test_stopped_it_holds_for_as_long_as_it_is_left_alone(make_driver):
+    driver = make_driver(on_link_loss='release')
+    driver.arm()
+    driver.say(Setpoint(100, MOVED))
+    driver.run(0.06)
+    driver.ask(Stop())
+    driver.run(4.0)
+    assert (driver.state().mode, driver.counts()) == (Mode.STOPPED, MOVED)
 
 
 def test_arming_again_moves_nothing(armed):
@@ -186,7 +223,7 @@ def test_clear_moves_nothing_and_lets_a_new_setpoint_through(armed):
     armed.ask(Stop())
     before = armed.board.pulses
     assert armed.ask(Clear()) is Result.OK
-    armed.run(2.0)
+    armed.run(1.5)
     assert armed.board.pulses == before
     assert armed.state().mode is Mode.ARMED
     armed.say(Setpoint(1000, PARK))

@@ -8,7 +8,7 @@ import pytest
 
 from bridge.board_courses import table_crc
 from bridge.calibration import Calibration
-from bridge.messages import Arm, Mode, Result, State
+from bridge.messages import Arm, Mode, Result, Setpoint, State
 from bridge.program_messages import CycleAxis, TableBegin, TableEnd, TableRow
 from bridge.servo_config import BoardConfig
 from firmware.simulator.board import START_BUTTON, STOP_BUTTON
@@ -118,6 +118,25 @@ def test_a_host_that_arms_takes_over(csv_file):
     assert host.ask(Arm((3000,) * 6)) is Result.OK
     assert host.state().mode is Mode.ARMED
     assert set(modes(host, 1.0)) == {Mode.ARMED}
+
+
+def test_a_machine_that_a_host_drives_is_the_hosts(csv_file):
+    host = Host(table=csv_file)
+    host.run(0.1)
+    start = CALIBRATION.counts(np.radians([120.0] * 6))
+    host.ask(Arm(start))
+    host.run(0.3)
+    for _ in range(10):
+        host.say(Setpoint(200, start))
+        host.run(0.05)
+        host.board.press(START_BUTTON)
+        host.run(0.05)
+        host.board.let_go(START_BUTTON)
+    assert host.state().mode is Mode.ARMED
+    host.run(0.3)
+    assert host.state().mode is Mode.HOLDING
+    press(host, START_BUTTON)
+    assert modes(host, 0.5)[-1] is Mode.PLAYING
 
 
 def test_the_header_of_a_table_holds_the_counts_of_its_positions(csv_file, capsys):

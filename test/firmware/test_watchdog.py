@@ -26,4 +26,4 @@ def test_a_hung_program_is_reset_within_half_a_second_and_disarmed(armed, with_i
 def test_a_program_that_works_is_never_reset(armed):
     armed.run(30.0)
     assert armed.chip.watchdog_resets == 0
-    assert armed.state().mode is Mode.ARMED
+    assert armed.state().mode is Mode.HOLDING
