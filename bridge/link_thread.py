@@ -91,6 +91,9 @@ class LinkThread(threading.Thread):
     def request(self, command: Command) -> 'Future[None]':
         """Done when the board has obeyed; Refused says why it did not."""
         future: Future[None] = Future()
+        if not self.is_alive():
+            future.set_exception(Refused('the thread of the serial link does not run'))
+            return future
         self._requests.append((command, future))
         self._wake()
         return future

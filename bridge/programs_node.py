@@ -1,11 +1,16 @@
-"""The part of serial_bridge that gives the board programs to play by itself."""
+"""The part of serial_bridge that gives the board programs to play by itself.
+
+In a thread of its own: on a bad line the board takes seconds to answer.
+"""
 
 import threading
+import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 
 import numpy as np
 from rclpy.node import Node
+from rclpy.serialization import deserialize_message
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectory
@@ -14,6 +19,7 @@ from bridge.calibration import Calibration
 from bridge.count_table import count_table
 from bridge.messages import Command
 from bridge.program_messages import CycleAxis, Finish, Play, Program
+from bridge.side_node import SideNode
 from bridge.upload import Upload
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
@@ -22,30 +28,40 @@ from manipulator.nodes.qos import COMMAND, LATCHED
 
 AXES = 'x, y, z, roll, pitch, yaw'
 ANSWER_WITHIN = 5.0
-MOST_ROWS = 65_535
+LAST_TRIES = 1.0
+"""Seconds in which the command that is under way when the time is up succeeds or fails."""
+MOST_BYTES = 1_000_000
+"""Of a joint_table: many times what a board holds. Larger ones are not even decoded."""
+BUSY = 'another upload is under way'
 
 
-class BoardPrograms:
+class BoardPrograms(SideNode):
     """`joint_table`, `program_status`, `~/play_table`, `~/play_cycle` and `~/finish_program`."""
 
     def __init__(
         self,
-        node: Node,
+        owner: Node,
         calibration: Calibration,
         request: Callable[[Command], 'Future[None]'],
     ) -> None:
-        self._node, self._calibration, self._request = node, calibration, request
+        super().__init__(owner, 'programs')
+        self._owner, self._calibration, self._request = owner, calibration, request
         self._is_busy = threading.Lock()
         for name, unit in (('amplitude', 'm, rad'), ('frequency', 'Hz'), ('phase', 'rad')):
             description = f"of the board's cycle ({unit}) about {AXES}"
-            declare(node, f'board_cycle.{name}', [0.0] * 6, description, is_read_only=False)
-        self._status = node.create_publisher(String, 'program_status', LATCHED)
-        node.create_subscription(JointTrajectory, 'joint_table', self._on_table, COMMAND)
-        node.create_service(SetBool, '~/play_table', self._on_play_table)
-        node.create_service(SetBool, '~/play_cycle', self._on_play_cycle)
-        node.create_service(Trigger, '~/finish_program', self._on_finish)
+            declare(owner, f'board_cycle.{name}', [0.0] * 6, description, is_read_only=False)
+        self._status = self.create_publisher(String, 'program_status', LATCHED)
+        self.create_subscription(JointTrajectory, 'joint_table', self._on_table, COMMAND, raw=True)
+        name = owner.get_name()
+        self.create_service(SetBool, f'{name}/play_table', self._on_play_table)
+        self.create_service(SetBool, f'{name}/play_cycle', self._on_play_cycle)
+        self.create_service(Trigger, f'{name}/finish_program', self._on_finish)
 
-    def _on_table(self, message: JointTrajectory) -> None:
+    def _on_table(self, serialized: bytes) -> None:
+        if len(serialized) > MOST_BYTES:
+            self._say(f'joint_table refused: {len(serialized)} bytes, at most {MOST_BYTES}')
+            return
+        message = deserialize_message(serialized, JointTrajectory)
         try:
             table = count_table(*_columns(message, self._calibration.names), self._calibration)
         except ManipulatorError as error:
@@ -56,7 +72,7 @@ class BoardPrograms:
 
     def _upload(self, commands: Sequence[Command], done: str) -> None:
         if not self._is_busy.acquire(blocking=False):
-            self._say('joint_table refused: another upload is under way')
+            self._say(f'joint_table refused: {BUSY}')
             return
 
         def end(reason: str) -> None:
@@ -69,7 +85,7 @@ class BoardPrograms:
         self, request: SetBool.Request, response: SetBool.Response
     ) -> SetBool.Response:
         commands = (Play(Program.TABLE, request.data),)
-        response.success, response.message = self._ask(commands, 'the board plays its table')
+        response.success, response.message = self._play(commands, 'the board plays its table')
         return response
 
     def _on_play_cycle(
@@ -81,7 +97,7 @@ class BoardPrograms:
             response.success, response.message = False, str(error)
             return response
         done = 'the board checks its cycle, then plays it'
-        response.success, response.message = self._ask(commands, done)
+        response.success, response.message = self._play(commands, done)
         return response
 
     def _on_finish(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -93,36 +109,48 @@ class BoardPrograms:
         """The six axes from the parameters; InvalidInput where they are not six numbers each."""
         columns = []
         for name in ('amplitude', 'frequency', 'phase'):
-            values = list(self._node.get_parameter(f'board_cycle.{name}').value)
+            values = list(self._owner.get_parameter(f'board_cycle.{name}').value)
             if len(values) != 6 or not np.isfinite(values).all():
                 raise InvalidInput(f'parameter board_cycle.{name}: {values}, needs six numbers')
             columns.append(values)
         rows = enumerate(zip(*columns, strict=True))
         return tuple(CycleAxis(k, a, _millihertz(f), p) for k, (a, f, p) in rows)
 
+    def _play(self, commands: Sequence[Command], done: str) -> tuple[bool, str]:
+        """As `_ask`, unless an upload is under way, which it would spoil."""
+        if not self._is_busy.acquire(blocking=False):
+            return False, BUSY
+        try:
+            return self._ask(commands, done)
+        finally:
+            self._is_busy.release()
+
     def _ask(self, commands: Sequence[Command], done: str) -> tuple[bool, str]:
-        """Whether the board obeyed them all, and what to say."""
+        """Whether the board obeyed them all, and what to say; after that nothing more is sent."""
         ended = threading.Event()
         reasons = []
+        until = time.monotonic() + ANSWER_WITHIN
+
+        def late() -> str:
+            is_late = time.monotonic() > until
+            return f'not all obeyed within {ANSWER_WITHIN:g} s, given up' if is_late else ''
 
         def end(reason: str) -> None:
             reasons.append(reason)
             ended.set()
 
-        Upload(self._request, commands, end).begin()
-        if not ended.wait(ANSWER_WITHIN):
-            return False, f'no answer within {ANSWER_WITHIN:g} s'
+        Upload(self._request, commands, end, late).begin()
+        if not ended.wait(ANSWER_WITHIN + LAST_TRIES):
+            return False, f'no answer within {ANSWER_WITHIN + LAST_TRIES:g} s'
         return (False, reasons[0]) if reasons[0] else (True, done)
 
     def _say(self, text: str) -> None:
-        self._node.get_logger().info(text)
+        self.get_logger().info(text)
         self._status.publish(String(data=text))
 
 
 def _columns(message: JointTrajectory, names: Sequence[str]) -> tuple[Array, Array]:
     """Times (n,) and positions (n, joints) in the order of `names`; InvalidInput otherwise."""
-    if len(message.points) > MOST_ROWS:
-        raise InvalidInput(f'{len(message.points)} points, at most {MOST_ROWS}')
     if sorted(message.joint_names) != sorted(names):
         raise InvalidInput(f'joints are {list(message.joint_names)}, needs {list(names)}')
     order = [list(message.joint_names).index(name) for name in names]

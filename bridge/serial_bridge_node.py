@@ -1,15 +1,14 @@
 """The node between the graph and the board: joint commands down, joint states up."""
 
 import time
-from concurrent.futures import Future
-from concurrent.futures import TimeoutError as NoAnswer
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Bool, Float64
+from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
+from bridge.board_answers import BoardAnswers
 from bridge.calibration import Calibration
 from bridge.command_gate import CommandGate
 from bridge.events import (
@@ -25,11 +24,12 @@ from bridge.latencies import Latencies, percentiles_ms
 from bridge.link_monitor import LinkMonitor
 from bridge.link_thread import LinkThread, Ticket
 from bridge.machine_status import MachineStatus
-from bridge.messages import Arm, Clear, Command, Disarm, Stop
+from bridge.messages import Arm, Clear, Command, Disarm
 from bridge.programs_node import BoardPrograms
 from bridge.serial_port import SerialPort
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
+from bridge.stop_node import StopNode
 from hexarm import machines
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
@@ -37,7 +37,6 @@ from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 
 LEVELS = (OK, WARN, ERROR)
-ANSWER_WITHIN = 1.0
 SAY_AGAIN_AFTER = 2.0
 
 
@@ -66,7 +65,6 @@ class SerialBridge(Node):
         self._receipt_to_frame, self._setpoint_to_frame = Latencies(), Latencies()
         self._is_followed = False
         self._said: tuple[MachineStatus, dict[str, object]] | None = None
-        self._make_interfaces()
         self._link = LinkThread(
             lambda: SerialPort(self._port, self._baud),
             self._session,
@@ -74,21 +72,24 @@ class SerialBridge(Node):
             self._on_written,
             bytes_per_second=self._baud / 5,  # twice what the line carries
         )
-        self._programs = BoardPrograms(self, self._calibration, self._link.request)
-        self._link.start()
+        self._answers = BoardAnswers(self._link.request, lambda: self._monitor.trouble)
+        programs = BoardPrograms(self, self._calibration, self._link.request)
+        self._aside = StopNode(self, self._link, self._answers), programs
+        self._make_interfaces()
+        for part in (self._link, *self._aside):
+            part.start()
 
     def close(self) -> None:
         """Gives the port back; the board's deadline does what the machine file says."""
-        self._link.close()
+        for part in (*self._aside, self._link):
+            part.close()
 
     def _make_interfaces(self) -> None:
         self._joint_states = self.create_publisher(JointState, 'joint_states', MEASUREMENT)
         self._machine_state = self.create_publisher(DiagnosticStatus, 'machine_state', LATCHED)
         self.create_subscription(JointState, 'joint_command', self._on_command, COMMAND)
         self.create_subscription(Float64, 'gripper', self._on_gripper, COMMAND)
-        self.create_subscription(Bool, 'emergency_stop', self._on_emergency_stop, COMMAND)
         self.create_service(SetBool, '~/enable', self._on_enable)
-        self.create_service(Trigger, '~/stop', self._on_stop)
         self.create_service(Trigger, '~/clear_fault', self._on_clear_fault)
         self._diagnostics = Diagnostics(self, self._report, ('joint_command',))
 
@@ -132,14 +133,6 @@ class SerialBridge(Node):
         except ManipulatorError as error:
             self._warn(f'gripper refused: {error}')
 
-    def _on_emergency_stop(self, message: Bool) -> None:
-        if message.data:
-            self._link.request(Stop()).add_done_callback(self._say_stop_failed)
-
-    def _say_stop_failed(self, done: 'Future[None]') -> None:
-        if done.exception() is not None:
-            self.get_logger().error(f'STOP not obeyed yet, it is said again: {done.exception()}')
-
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         if request.data and self._monitor.status.word == 'enabled':
             # An ARM would hold up the setpoints of a machine that is moving.
@@ -152,11 +145,6 @@ class SerialBridge(Node):
             response.success, response.message = self._ask(Disarm(), 'disarmed: no more pulses')
         return response
 
-    def _on_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        done = 'stopped: ~/clear_fault ends it'
-        response.success, response.message = self._ask(Stop(), done)
-        return response
-
     def _on_clear_fault(
         self, request: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
@@ -165,16 +153,10 @@ class SerialBridge(Node):
         return response
 
     def _ask(self, command: Command, done: str) -> tuple[bool, str]:
-        """Whether the board obeyed, and what to say."""
-        try:
-            self._link.request(command).result(ANSWER_WITHIN)
-        except Refused as error:
-            trouble = self._monitor.trouble
-            return False, f'{error}{f": {trouble}" if trouble else ""}'
-        except NoAnswer:
-            return False, f'no answer within {ANSWER_WITHIN:g} s'
-        self._restart()
-        return True, done
+        is_obeyed, said = self._answers.ask(command, done)
+        if is_obeyed:
+            self._restart()
+        return is_obeyed, said
 
     # From the board (the link's thread)
 

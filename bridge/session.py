@@ -193,9 +193,10 @@ class Session:
     def _greet(self, hello: Hello, now: float) -> list[Event]:
         misfit = greeting.misfit(hello, self.joint_count)
         if misfit:
+            failed = self._fail_pending(misfit)
             is_news = self.phase is not Phase.INCOMPATIBLE
             self._forget(Phase.INCOMPATIBLE, now)
-            return [Incompatible(misfit)] if is_news else []
+            return [*failed, Incompatible(misfit)] if is_news else []
         events: list[Event] = []
         has_restarted = self.hello is not None and greeting.has_restarted(
             self.hello, hello, now - self._greeted_at

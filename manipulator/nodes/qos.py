@@ -19,3 +19,8 @@ LATCHED = QoSProfile(
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
 """States that a late listener must know: machine_state, motion_status."""
+
+EVERY_WORD = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST, depth=100, reliability=ReliabilityPolicy.RELIABLE
+)
+"""emergency_stop: a *false* right behind a *true* must not take its place."""

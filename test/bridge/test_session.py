@@ -1,4 +1,5 @@
 import contextlib
+import random
 
 import pytest
 
@@ -29,6 +30,7 @@ from bridge.messages import (
     Setpoint,
     Stop,
 )
+from bridge.program_messages import Finish, Play
 from bridge.session import Session
 from manipulator.errors import Refused
 
@@ -340,3 +342,45 @@ def test_a_stop_that_is_refused_lets_no_setpoint_out_either(armed):
     assert not armed.session.accepts_setpoints
     armed.run(0.1)
     assert armed.board.mode is Mode.STOPPED
+
+
+def test_a_board_of_another_version_fails_what_was_under_way(armed):
+    armed.is_mute = True
+    armed.session.send_command(Disarm(), armed.now)
+    other = Hello(2, ResetCause.EXTERNAL, 6, 10)
+    events = armed.session.receive(encode(other, 1), armed.now)
+    assert [type(event) for event in events] == [CommandFailed, Incompatible]
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_every_command_ends_whatever_happens_meanwhile(seed):
+    rng, line = random.Random(seed), Line()
+    mishaps = {
+        'lose': lambda: setattr(line, 'loses', rng.random() < 0.5),
+        'mute': lambda: setattr(line, 'is_mute', rng.random() < 0.5),
+        'reset': lambda: line.board.reset(ResetCause.WATCHDOG),
+        'other': lambda: line.session.receive(
+            encode(Hello(2, ResetCause.EXTERNAL, 6, 0), 1), line.now
+        ),
+        'replug': lambda: [
+            *line.session.closed('unplugged', line.now),
+            *line.session.opened(line.now),
+        ],
+        'nothing': lambda: None,
+    }
+    taken = 0
+    for _ in range(60):
+        command = rng.choice([Arm(PARK), Disarm(), Clear(), Stop(), Play(2, True), Finish()])
+        try:
+            events = line.session.send_command(command, line.now)
+        except Refused:
+            line.loses = line.is_mute = False
+            line.run(1.0)
+            continue
+        taken += 1
+        events = [*events, *line.run(rng.choice([0.0, 0.005, 0.03]))]
+        events = [*events, *(mishaps[rng.choice(list(mishaps))]() or [])]
+        events += line.run(0.7)
+        ends = [e for e in events if isinstance(e, Acknowledged | CommandFailed)]
+        assert command in [e.command for e in ends]
+    assert taken > 20

@@ -49,6 +49,21 @@ def test_a_refusal_ends_it_and_says_why():
     assert line.ends == ['no board']
 
 
+def test_what_is_too_late_is_not_begun():
+    line, reasons = Line(), iter(['', 'too late'])
+    Upload(line.request, [Stop(), Disarm()], line.ends.append, lambda: next(reasons)).begin()
+    line.sent[0][1].set_result(None)
+    assert len(line.sent) == 1
+    assert line.ends == ['too late']
+
+
+def test_what_is_done_is_done_however_late():
+    line, reasons = Line(), iter([''])
+    Upload(line.request, [Stop()], line.ends.append, lambda: next(reasons)).begin()
+    line.sent[0][1].set_result(None)
+    assert line.ends == ['']
+
+
 def test_a_table_is_begun_sent_row_by_row_and_sealed_with_a_crc_over_the_whole():
     table = count_table(TIMES, POSITIONS, CALIBRATION)
     begin, *rows, end = table.upload

@@ -13,6 +13,8 @@ ROOT = Path(__file__).resolve().parents[2]
 NODES = ('trajectory', 'ik', 'pose', 'serial_bridge', 'fake_hardware')
 EVERYWHERE = {'/diagnostics', '/rosout', '/parameter_events'}
 """Every node has these; the text above the tables says so."""
+THREADS = ('serial_bridge_stop', 'serial_bridge_programs')
+"""Nodes in the process of another one, without parameters and diagnostics."""
 ROS_PARAMETERS = ('use_sim_time', 'start_type_description_service')
 ROS_OWN = ('parameter', 'type_description')
 
@@ -54,7 +56,7 @@ def qos_text(profile):
     return f'{reliability} {durability}'
 
 
-@pytest.mark.parametrize('node', NODES)
+@pytest.mark.parametrize('node', NODES + THREADS)
 def test_topics_and_services_are_those_of_the_document(enabled, node):
     enabled.wait(f'node {node}', lambda: running(enabled, node), 10.0)
     assert running(enabled, node) == documented(node)

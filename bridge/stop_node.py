@@ -1,0 +1,38 @@
+"""The part of serial_bridge that hears STOP, in a thread of its own: it waits for no service."""
+
+from concurrent.futures import Future
+
+from rclpy.node import Node
+from std_msgs.msg import Bool
+from std_srvs.srv import Trigger
+
+from bridge.board_answers import BoardAnswers
+from bridge.link_thread import LinkThread
+from bridge.messages import Stop
+from bridge.side_node import SideNode
+from manipulator.nodes.qos import EVERY_WORD
+
+
+class StopNode(SideNode):
+    """`emergency_stop` and `~/stop`."""
+
+    def __init__(self, owner: Node, link: LinkThread, answers: BoardAnswers) -> None:
+        super().__init__(owner, 'stop')
+        self._link, self._answers = link, answers
+        self.create_subscription(Bool, 'emergency_stop', self._on_message, EVERY_WORD)
+        self.create_service(Trigger, f'{owner.get_name()}/stop', self._on_service)
+
+    def _on_message(self, message: Bool) -> None:
+        if message.data:
+            self._link.request(Stop()).add_done_callback(self._say_failed)
+
+    def _say_failed(self, done: 'Future[None]') -> None:
+        if done.exception() is not None:
+            self.get_logger().error(f'STOP not obeyed yet, it is said again: {done.exception()}')
+
+    def _on_service(
+        self, request: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
+        done = 'stopped: ~/clear_fault ends it'
+        response.success, response.message = self._answers.ask(Stop(), done)
+        return response

@@ -1,0 +1,165 @@
+"""A STOP waits for nothing: not for a program that is being sent over a bad line, nor a table."""
+
+import random
+import statistics
+import time
+
+import pytest
+from std_msgs.msg import Bool, String
+from std_srvs.srv import SetBool
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from bench.rig import Tap, TappedLine
+from bridge.board_thread import BoardThread, FakeMachine
+from bridge.calibration import Calibration
+from bridge.messages import Stop
+from bridge.program_messages import CycleAxis, Play, TableRow
+from bridge.servo_config import BoardConfig
+from hexarm import machines
+from hexarm.board_solver import board_solver
+from hexarm.client import Client
+from hexarm.graph import Executable, Graph
+from manipulator.nodes.qos import EVERY_WORD, LATCHED
+
+pytestmark = pytest.mark.graph
+
+SPACE = 'stop_first'
+NAMES = [f'crank_{i}' for i in range(1, 7)]
+LOSS = 0.5
+STOPS = 10
+
+
+class BadLine(TappedLine):
+    """Of what the host says while `is_bad`, the board hears every other piece."""
+
+    is_bad = False
+
+    def read(self):
+        received = super().read()
+        is_lost = BadLine.is_bad and random.random() < LOSS
+        return b'' if is_lost else received
+
+
+class User(Client):
+    """Publishes stops, and calls services without waiting for their answers."""
+
+    def __init__(self):
+        super().__init__(SPACE)
+        self.said = []
+        self.stops = self.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
+        self.tables = self.node.create_publisher(JointTrajectory, 'joint_table', 1)
+        self.node.create_subscription(String, 'program_status', self._hear, LATCHED)
+        self.plays = self.node.create_client(SetBool, 'serial_bridge/play_cycle')
+        self.wait('the bridge', self._is_heard, 10.0)
+        self.wait('the board', lambda: self.machine_state.message == 'disarmed', 10.0)
+
+    def _is_heard(self):
+        publishers = (self.stops, self.tables)
+        is_heard = all(publisher.get_subscription_count() == 1 for publisher in publishers)
+        return is_heard and self.plays.service_is_ready()
+
+    def _hear(self, message):
+        self.said.append(message.data)
+
+    def play_cycle(self):
+        return self.plays.call_async(SetBool.Request(data=True))
+
+    def wait_for_state(self, word):
+        self.wait(word, lambda: self.machine_state.message == word, 10.0)
+
+
+@pytest.fixture(scope='module')
+def tap():
+    return Tap()
+
+
+@pytest.fixture(scope='module')
+def user(tap, tmp_path_factory):
+    path = tmp_path_factory.mktemp('line') / 'board'
+    config = BoardConfig.from_machine(machines.read('robocake'))
+    solve = board_solver(machines.load('robocake'), Calibration.from_config(config.servos))
+    machine = FakeMachine.from_config(config, boot_s=0.1, hysteresis=0.0, solve=solve)
+    board = BoardThread(machine, BadLine(path, tap), lambda positions: None)
+    board.start()
+    parameters = {'machine': 'robocake', 'port': str(path)}
+    try:
+        with Graph([Executable('bridge', 'serial_bridge', parameters)], SPACE), User() as user:
+            yield user
+    finally:
+        board.close()
+
+
+@pytest.fixture
+def calm(user):
+    """A board that hears everything and is not stopped."""
+    BadLine.is_bad = False
+    user.trigger('serial_bridge/clear_fault')
+    user.wait_for_state('disarmed')
+    yield user
+    BadLine.is_bad = False
+
+
+def stop_time(user, tap, seconds):
+    """From the message to the frame, asked for so long after the cycle was begun to be sent."""
+    BadLine.is_bad = True
+    began = time.monotonic()
+    answer = user.play_cycle()
+    user.wait('the cycle', lambda: tap.heard(CycleAxis, began), 5.0)
+    user.spin(seconds)
+    before = time.monotonic()
+    user.stops.publish(Bool(data=True))
+    user.wait('STOP', lambda: tap.heard(Stop, before), 10.0)
+    BadLine.is_bad = False
+    user.wait('an answer', answer.done, 10.0)
+    user.wait_for_state('stopped')
+    user.trigger('serial_bridge/clear_fault')
+    user.wait_for_state('disarmed')
+    return tap.heard(Stop, before)[0][0] - before
+
+
+def test_a_stop_does_not_wait_for_a_program_on_a_bad_line(calm, tap):
+    times = [stop_time(calm, tap, random.uniform(0.0, 0.3)) for _ in range(STOPS)]
+    print(f'median {1e3 * statistics.median(times):.1f} ms, worst {1e3 * max(times):.1f} ms')
+    assert statistics.median(times) <= 0.05
+
+
+def test_what_a_stop_interrupted_is_not_taken_up_again(calm, tap):
+    BadLine.is_bad = True
+    answer = calm.play_cycle()
+    calm.stops.publish(Bool(data=True))
+    calm.wait('an answer', answer.done, 10.0)
+    BadLine.is_bad = False
+    calm.wait_for_state('stopped')
+    stopped = time.monotonic()
+    calm.trigger('serial_bridge/clear_fault')
+    calm.spin(0.5)
+    assert not tap.heard((CycleAxis, Play), stopped)
+
+
+def test_a_false_right_behind_does_not_take_its_place(calm):
+    calm.stops.publish(Bool(data=True))
+    for _ in range(20):
+        calm.stops.publish(Bool(data=False))
+    calm.wait_for_state('stopped')
+
+
+def test_a_program_does_not_spoil_an_upload(calm, tap):
+    rows = [JointTrajectoryPoint(positions=[2.1] * 6) for _ in range(100)]
+    for k, row in enumerate(rows):
+        row.time_from_start.nanosec = k % 10 * 100_000_000
+        row.time_from_start.sec = k // 10
+    began = time.monotonic()
+    calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
+    calm.wait('rows', lambda: tap.heard(TableRow, began), 5.0)
+    answer = calm.play_cycle()
+    calm.wait('an answer', answer.done, 10.0)
+    assert answer.result().message == 'another upload is under way'
+    calm.wait(
+        'the upload', lambda: 'table of 100 rows, 100 ms apart, is on board' in calm.said, 20.0
+    )
+
+
+def test_a_table_of_megabytes_is_not_even_decoded(calm):
+    rows = [JointTrajectoryPoint(positions=[2.1] * 6)] * 20_000
+    calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
+    calm.wait('a refusal', lambda: any('at most 1000000' in text for text in calm.said), 10.0)
