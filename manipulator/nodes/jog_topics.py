@@ -15,6 +15,7 @@ from std_srvs.srv import Trigger
 
 from manipulator.arrays import Array, frozen
 from manipulator.nodes.qos import COMMAND, LATCHED
+from manipulator.nodes.stop_button import StopButton
 
 NO_TWIST = frozen([0.0] * 6)
 
@@ -43,12 +44,14 @@ class JogTopics:
         self._modes = node.create_publisher(String, 'jog_mode', LATCHED)
         self._gripper = node.create_publisher(Float64, 'gripper', LATCHED)
         node.create_subscription(Float64, 'gripper', self._on_gripper, LATCHED)
+        self._stop_button = StopButton(node)
         self._services = {
             name: node.create_client(Trigger, f'trajectory/{name}') for name in ('home', 'stop')
         }
 
     def drive(self, twist: Array, frame: str, is_held: bool) -> None:
-        """Sends the twist (6,), or the one zero at release, or nothing."""
+        """Sends the twist (6,), or the one zero at release, or nothing; call at every tick."""
+        self._stop_button.watch()
         if is_held or self._is_moving:
             message = TwistStamped()
             message.header.stamp = self._node.get_clock().now().to_msg()
@@ -76,7 +79,7 @@ class JogTopics:
     def home(self, is_held: bool) -> None:
         """Goes home while held: asks once the machine is free, and stops it at release."""
         if self._is_homing and not is_held and self._is_home_asked:
-            self.stop()
+            self._ask('stop')
         self._is_home_asked &= is_held
         self._is_homing = is_held
         is_free = time.monotonic() - self._last_twist > HAND_OVER
@@ -89,8 +92,8 @@ class JogTopics:
         self._ask('home')
 
     def stop(self) -> None:
-        """Asks the trajectory node to stop whatever it does."""
-        self._ask('stop')
+        """Stops whatever moves: gently if it can be, else at once."""
+        self._stop_button.press()
 
     @property
     def is_moving(self) -> bool:
@@ -102,6 +105,7 @@ class JogTopics:
         self.home(False)
         self.drive(NO_TWIST, '', False)
         self._twists.wait_for_all_acked(LAST_WORD)
+        self._stop_button.close(LAST_WORD)
 
     def _ask(self, name: str) -> None:
         client = self._services[name]
