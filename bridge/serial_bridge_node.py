@@ -29,6 +29,7 @@ from bridge.programs_node import BoardPrograms
 from bridge.serial_port import SerialPort
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
+from bridge.stop_memory import StopMemory, stop_file
 from bridge.stop_node import StopNode
 from hexarm import machines
 from manipulator.errors import ManipulatorError, Refused
@@ -57,7 +58,8 @@ class SerialBridge(Node):
         self._calibration = Calibration.from_config(config.servos)
         self._gate = CommandGate(self._calibration, 1e-3 * config.link.setpoint_deadline_ms)
         self._gripper = Gripper(config.servos, self._calibration)
-        self._session = Session(len(self._calibration.names))
+        self._memory = StopMemory(stop_file(self.get_fully_qualified_name(), self._port))
+        self._session = Session(len(self._calibration.names), self._memory.is_kept)
         self._monitor = LinkMonitor(self._session, self._calibration)
         # Receipt times are monotonic, but read like the system's clock at the start.
         self._clock_start = time.time() - time.monotonic()
@@ -74,7 +76,7 @@ class SerialBridge(Node):
         )
         self._answers = BoardAnswers(self._link.request, lambda: self._monitor.trouble)
         programs = BoardPrograms(self, self._calibration, self._link.request)
-        self._aside = StopNode(self, self._link, self._answers), programs
+        self._aside = StopNode(self, self._link, self._answers, self._remember), programs
         self._make_interfaces()
         for part in (self._link, *self._aside):
             part.start()
@@ -163,6 +165,7 @@ class SerialBridge(Node):
     def _on_event(self, event: Event) -> None:
         now = time.monotonic()
         self._monitor.note(event, now)
+        self._remember()
         match event:
             case StateReceived():
                 self._publish_joints()
@@ -171,6 +174,12 @@ class SerialBridge(Node):
             case Disconnected(reason) | Incompatible(reason):
                 self._warn(reason)
         self._publish_status()
+
+    def _remember(self) -> None:
+        """Keeps it for a bridge that starts after this one whether a STOP stands."""
+        trouble = self._memory.keep(self._session.is_stop_wanted)
+        if trouble:
+            self.get_logger().error(trouble)
 
     def _on_written(self, ticket: Ticket, now: float) -> None:
         self._is_followed = True

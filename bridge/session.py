@@ -66,13 +66,13 @@ class Session:
     away or started again, and until the board has obeyed a CLEAR no setpoint goes out.
     """
 
-    def __init__(self, joint_count: int) -> None:
+    def __init__(self, joint_count: int, is_stop_wanted: bool = False) -> None:
         self.joint_count = joint_count
         self.phase = Phase.CLOSED
         self.hello: Hello | None = None
         self.state: State | None = None
         self.setpoints_sent = 0
-        self.is_stop_wanted = False
+        self.is_stop_wanted = is_stop_wanted
         self.reader = FrameReader()
         self.round_trips = RoundTrips()
         self._output = bytearray()

@@ -1,5 +1,6 @@
 """The part of serial_bridge that hears STOP, in a thread of its own: it waits for no service."""
 
+from collections.abc import Callable
 from concurrent.futures import Future
 
 from rclpy.node import Node
@@ -16,9 +17,16 @@ from manipulator.nodes.qos import EVERY_WORD
 class StopNode(SideNode):
     """`emergency_stop` and `~/stop`."""
 
-    def __init__(self, owner: Node, link: LinkThread, answers: BoardAnswers) -> None:
+    def __init__(
+        self,
+        owner: Node,
+        link: LinkThread,
+        answers: BoardAnswers,
+        remember: Callable[[], None],
+    ) -> None:
+        """`remember` is called after each STOP that was asked for, also if no board heard it."""
         super().__init__(owner, 'stop')
-        self._link, self._answers = link, answers
+        self._link, self._answers, self._remember = link, answers, remember
         self.create_subscription(Bool, 'emergency_stop', self._on_message, EVERY_WORD)
         self.create_service(Trigger, f'{owner.get_name()}/stop', self._on_service)
 
@@ -27,6 +35,7 @@ class StopNode(SideNode):
             self._link.request(Stop()).add_done_callback(self._say_failed)
 
     def _say_failed(self, done: 'Future[None]') -> None:
+        self._remember()
         if done.exception() is not None:
             self.get_logger().error(f'STOP not obeyed yet, it is said again: {done.exception()}')
 
@@ -35,4 +44,5 @@ class StopNode(SideNode):
     ) -> Trigger.Response:
         done = 'stopped: ~/clear_fault ends it'
         response.success, response.message = self._answers.ask(Stop(), done)
+        self._remember()
         return response

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from hexarm.client import Client
 
 ARM_KIND = 'serial_arm'
+SETTLES = 1.0
+"""Seconds within which a STOP from before is said to the board, and obeyed."""
 SERVOS_OFF = ('not heard of', 'disconnected', 'booting', 'disarmed')
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
 
@@ -54,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
 
             with Client(namespace, interrupt) as client:
                 try:
-                    client.enable()
+                    enable(client, namespace)
                     print(_welcome(namespace, machine, arguments.port), flush=True)
                     _watch(client)
                 except Interrupted:
@@ -96,6 +98,26 @@ def check_alive(graph: Graph) -> None:
     dead = graph.dead()
     if dead is not None:
         raise NodeDied(f'{dead}; stopping the others')
+
+
+def enable(client: 'Client', namespace: str) -> None:
+    """Energises the servos; a machine that is stopped waits until somebody has cleared it."""
+    while True:
+        try:
+            client.enable()
+            return
+        except Refused:
+            client.spin(SETTLES)
+            if client.machine_state.message != 'stopped':
+                raise
+        print(
+            f'{client.summary}. It is enabled once you have looked at it and called\n'
+            f'  ros2 service call /{namespace.strip("/")}/serial_bridge/clear_fault '
+            'std_srvs/srv/Trigger',
+            flush=True,
+        )
+        while client.machine_state.message == 'stopped':
+            client.spin(0.2)
 
 
 def park(client: 'Client') -> None:

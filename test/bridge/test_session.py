@@ -320,6 +320,17 @@ def test_a_stop_outlives_a_restart_of_the_board(armed):
     assert armed.sent.count(Stop()) == 2
 
 
+def test_a_stop_that_an_earlier_bridge_was_asked_for_is_said(line):
+    line.session = Session(6, is_stop_wanted=True)
+    line.session.opened(line.now)
+    line.run(0.6)
+    assert line.session.state.mode is Mode.STOPPED
+    line.command(Clear())
+    line.run(0.2)
+    assert not line.session.is_stop_wanted
+    assert line.session.state.mode is Mode.DISARMED
+
+
 def test_hammering_stop_and_clear_ends_as_the_last_one_says(armed):
     for _ in range(20):
         armed.session.send_command(Stop(), armed.now)
