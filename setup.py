@@ -30,12 +30,14 @@ setup(
         'gamepad': ['evdev>=1.6; sys_platform == "linux"'],
         'plot': ['matplotlib>=3.8'],
         'physics': ['mujoco>=3.2', 'matplotlib>=3.8', 'pillow>=10'],
+        'record': ['mcap>=1.6', 'mcap-ros2-support>=0.5', 'matplotlib>=3.8'],
         'terminal': ['rich>=13'],
         'test': [
             'pytest>=8',
             'hypothesis>=6.100',
             'mypy>=1.11',
             'ruff>=0.6',
+            'rosbags>=0.10',  # reads our recordings independently
             'types-PyYAML>=6.0',
             'colcon-core>=0.18',
             'colcon-ros>=0.5',

@@ -1,13 +1,13 @@
 """`hexarm up hexapod`: a whole graph, servos enabled, until Ctrl-C; then it parks."""
 
 import argparse
-import re
 import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hexarm.graph import Graph, link_folder, machine_graph
 from hexarm.machines import load, read
+from hexarm.namespaces import NAMESPACE
 from manipulator.errors import ManipulatorError, Refused
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def check(kind: str, machine: str, namespace: str) -> None:
     """Raises Refused or ConfigError for what would only fail once the nodes have started."""
-    if re.fullmatch(r'/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*', namespace) is None:
+    if NAMESPACE.fullmatch(namespace) is None:
         raise Refused(f'namespace {namespace!r} is no ROS name: letters, digits, _ and /')
     load(machine)
     its_kind = read(machine).kind

@@ -7,6 +7,8 @@ INSTALL = {
     'matplotlib': 'python3 -m pip install matplotlib',
     'mujoco': 'python3 -m pip install mujoco',
     'rich': 'python3 -m pip install rich',
+    'mcap': 'python3 -m pip install mcap',
+    'mcap_ros2': 'python3 -m pip install mcap-ros2-support',
     'PIL': 'python3 -m pip install pillow',
     'rclpy': 'install ROS 2 Jazzy and source its setup.bash, or pip install hexarm[ros]',
 }

@@ -1,0 +1,88 @@
+"""Hears the topics of a machine and keeps each message as it came, undecoded."""
+
+import time
+from importlib import import_module
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+
+from hexarm.recording.bag import Bag, Topic
+from hexarm.recording.message_text import UnknownType
+from hexarm.recording.qualities import hearing, offered
+from hexarm.recording.wanted import Wanted
+
+
+class Listener:
+    """Subscribes to what is wanted of what there is, each time it looks around."""
+
+    def __init__(self, node: Node, wanted: Wanted, bag: Bag) -> None:
+        self._node, self._wanted, self._bag = node, wanted, bag
+        self._subscriptions: dict[str, Any] = {}
+        self._qualities: dict[str, QoSProfile] = {}
+        self._joined: set[str] = set()
+        self._unknown: set[str] = set()
+
+    def look_around(self, now: float) -> None:
+        """Joins and leaves topics; anew where publishers offer other qualities than before."""
+        for name, types in self._node.get_topic_names_and_types():
+            if name in self._unknown:
+                continue
+            publishers = self._node.get_publishers_info_by_topic(name)
+            if not self._wanted.may_join(name, bool(publishers), now):
+                self._leave(name)
+                continue
+            try:
+                self._join(name, types[0], publishers)
+            except UnknownType as error:
+                self._unknown.add(name)
+                self._node.get_logger().warning(f'{name} is not recorded: {error}')
+
+    @property
+    def missing(self) -> list[str]:
+        """Topics that were asked for by name and never were."""
+        return sorted(set(self._wanted.names) - self._joined)
+
+    def _join(self, name: str, type_name: str, publishers: list[Any]) -> None:
+        offers = [p.qos_profile for p in publishers]
+        if name in self._subscriptions and not offers:
+            return
+        qualities = hearing(offers, self._others(name))
+        if qualities == self._qualities.get(name):
+            return
+        kind = message_class(type_name)
+        self._bag.add_type(type_name)
+        self._leave(name)
+        self._joined.add(name)
+        self._qualities[name] = qualities
+        self._subscriptions[name] = self._node.create_subscription(
+            kind, name, lambda message: self._keep(name, type_name, message), qualities, raw=True
+        )
+
+    def _keep(self, name: str, type_name: str, message: bytes) -> None:
+        if name not in self._bag.counts:
+            # Only now, with a publisher, is it known what is offered.
+            publishers = self._node.get_publishers_info_by_topic(name)
+            type_hash = str(publishers[0].topic_type_hash) if publishers else ''
+            offers = offered([p.qos_profile for p in publishers])
+            self._bag.add_topic(Topic(name, type_name, offers, type_hash))
+        self._bag.write(name, message, time.time_ns())
+
+    def _others(self, name: str) -> list[QoSProfile]:
+        """What the other listeners of the topic ask for."""
+        found = self._node.get_subscriptions_info_by_topic(name)
+        return [s.qos_profile for s in found if s.node_name != self._node.get_name()]
+
+    def _leave(self, name: str) -> None:
+        if name in self._subscriptions:
+            self._node.destroy_subscription(self._subscriptions.pop(name))
+            del self._qualities[name]
+
+
+def message_class(type_name: str) -> type:
+    """The class of `package/msg/Name`; UnknownType where the package is not installed."""
+    package, _, name = type_name.split('/')
+    try:
+        return getattr(import_module(f'{package}.msg'), name)  # type: ignore[no-any-return]
+    except (ModuleNotFoundError, AttributeError) as error:
+        raise UnknownType(f'{type_name} is not installed here') from error

@@ -1,0 +1,56 @@
+"""Which topics a recording wants, and from when on it may listen to them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+SHARED = ('/diagnostics', '/rosout', '/tf', '/tf_static')
+"""Topics of all machines, without which a recording of one is poorer."""
+
+COMMANDS = frozenset(
+    (
+        *('goal_pose', 'goal_path', 'jog_mode', 'look_at', 'speed_override', 'pivot'),
+        *('cmd_vel', 'cmd_vel/joy', 'cmd_vel/panel', 'cmd_vel/keyboard'),
+        *('gripper', 'emergency_stop', 'joint_table'),
+    )
+)
+"""What users publish, and the machine's nodes only hear."""
+
+SETTLED = 5.0
+"""Seconds after which a publisher has met every listener that it will meet."""
+
+
+@dataclass
+class Wanted:
+    """The topics of `namespace`, or only `names` (relative ones are the namespace's).
+
+    A command is joined only once its publisher has been there for SETTLED. Many a script
+    publishes once, as soon as anybody listens; a recorder that listened before would now and then
+    be taken for the machine, and the goal, or the stop, would reach nobody else. With
+    `with_commands`, and for a name that was asked for, it is joined at once all the same.
+    """
+
+    namespace: str
+    names: Sequence[str] = ()
+    with_commands: bool = False
+    _since: dict[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Makes the names absolute."""
+        space = f'/{self.namespace.strip("/")}/'
+        self._space = space
+        self.names = tuple(n if n.startswith('/') else space + n for n in self.names)
+
+    def may_join(self, topic: str, is_published: bool, now: float) -> bool:
+        """Whether to listen to the topic from now (s, monotonic) on."""
+        if self.names:
+            return topic in self.names
+        if topic in SHARED:
+            return True
+        if not topic.startswith(self._space):
+            return False
+        if self.with_commands or topic.removeprefix(self._space) not in COMMANDS:
+            return True
+        if not is_published:
+            self._since.pop(topic, None)
+            return False
+        return now - self._since.setdefault(topic, now) >= SETTLED

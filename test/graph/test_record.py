@@ -1,0 +1,147 @@
+"""`hexarm record` beside a running machine, read back by readers that are not ours."""
+
+import contextlib
+import resource
+import signal
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from diagnostic_msgs.msg import DiagnosticStatus
+from mcap.exceptions import EndOfFile
+from mcap.records import Message
+from mcap.stream_reader import StreamReader
+from rclpy.serialization import deserialize_message
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import Stores, get_typestore
+from sensor_msgs.msg import JointState
+
+from manipulator.pose import Pose
+
+pytestmark = pytest.mark.graph
+
+ROOT = Path(__file__).resolve().parents[2]
+STREAMS = ('setpoint', 'joint_command', 'joint_states', 'pose')
+LATCHED = ('machine_state', 'motion_status')
+
+
+def ends_with(process, status):
+    said = process.communicate(timeout=30)[0]
+    assert process.returncode == status, said
+    return said
+
+
+def messages_before_the_tear(path):
+    """How many messages of an unfinished file mcap's own reader finds."""
+    count = 0
+    with path.open('rb') as file, contextlib.suppress(EndOfFile, struct.error):
+        for record in StreamReader(file).records:
+            count += isinstance(record, Message)
+    return count
+
+
+@pytest.fixture(scope='module')
+def recording(hexapod_graph, user, hexarm, tmp_path_factory):
+    """A move, recorded from before its goal until Ctrl-C; the file and the recorder's words."""
+    path = tmp_path_factory.mktemp('recording') / 'move.mcap'
+    user.enable()
+    recorder = hexarm('record', 'hexapod', '-o', str(path))
+    user.wait('the recorder', lambda: user.node.count_subscribers('setpoint') > 1, 15.0)
+    user.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.047)))
+    user.spin(6.0)  # until a publisher of goals has been there long enough
+    user.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.044)))
+    user.spin(1.0)
+    recorder.send_signal(signal.SIGINT)
+    return path, ends_with(recorder, 0)
+
+
+@pytest.fixture(params=[None, Stores.ROS2_JAZZY], ids=['own definitions', 'jazzy'])
+def heard(recording, request):
+    """Every message by topic, decoded by rosbags with the file's definitions, or its own."""
+    store = get_typestore(request.param) if request.param else None
+    found = {}
+    with AnyReader([recording[0]], default_typestore=store) as reader:
+        for connection, _, raw in reader.messages():
+            message = reader.deserialize(raw, connection.msgtype)
+            found.setdefault(connection.topic, []).append(message)
+    return found
+
+
+def test_streams_and_latched_states_are_in_it(heard):
+    assert {f'/hexapod/{name}' for name in (*STREAMS, *LATCHED)} < set(heard)
+    assert len(heard['/hexapod/setpoint']) > 600
+    assert heard['/hexapod/machine_state'][0].message == 'enabled'
+    assert heard['/hexapod/pose'][-1].pose.position.z == pytest.approx(0.044, abs=2e-3)
+
+
+def test_goal_of_a_publisher_that_stays_is_in_it(heard):
+    assert heard['/hexapod/goal_pose'][-1].pose.position.z == 0.044
+
+
+def test_the_count_that_it_tells_is_that_of_the_file(heard, recording):
+    count = sum(map(len, heard.values()))
+    assert f'{count:,} messages of {len(heard)} topics' in recording[1]
+
+
+def test_messages_are_stored_as_they_were_on_the_wire(recording):
+    with AnyReader([recording[0]]) as reader:
+        kinds = {'/hexapod/joint_states': JointState, '/hexapod/machine_state': DiagnosticStatus}
+        for connection, _, raw in reader.messages():
+            if connection.topic in kinds:
+                deserialize_message(raw, kinds[connection.topic])
+
+
+def test_qualities_are_those_of_the_publishers(recording):
+    with AnyReader([recording[0]]) as reader:
+        offered = {c.topic: c.ext.offered_qos_profiles for c in reader.connections}
+    (latched,), (streamed,) = offered['/hexapod/machine_state'], offered['/hexapod/setpoint']
+    assert (latched.durability.name, streamed.durability.name) == ('TRANSIENT_LOCAL', 'VOLATILE')
+    assert {q.reliability.name for q in (latched, streamed)} == {'RELIABLE'}
+
+
+def test_killed_recorder_loses_at_most_the_last_second(user, hexarm, tmp_path):
+    path = tmp_path / 'killed.mcap'
+    recorder = hexarm('record', 'hexapod', '-o', str(path))
+    user.wait('a first chunk', lambda: path.exists() and path.stat().st_size > 20_000, 20.0)
+    recorder.kill()
+    recorder.wait(10)
+    assert messages_before_the_tear(path) > 100
+
+
+def test_full_disk_ends_it_with_one_line_and_a_readable_file(user, tmp_path):
+    path = tmp_path / 'full.mcap'
+
+    def small_files_only():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
+
+    done = subprocess.run(
+        [sys.executable, '-m', 'hexarm', 'record', '-o', str(path), '--for', '60'],
+        cwd=ROOT,
+        preexec_fn=small_files_only,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert done.stderr.count('\n') == 1, done.stderr
+    assert f'hexarm: {path}: File too large; what was written before' in done.stderr
+    assert messages_before_the_tear(path) > 100
+
+
+def test_only_the_topics_asked_for_and_what_never_was(user, hexarm, tmp_path):
+    path = tmp_path / 'one.mcap'
+    words = ('-o', str(path), '--for', '3', '--topics', 'pose', 'nonsense')
+    said = ends_with(hexarm('record', 'hexapod', *words), 0)
+    assert '/hexapod/nonsense was never there' in said
+    with AnyReader([path]) as reader:
+        assert {c.topic for c in reader.connections} == {'/hexapod/pose'}
+
+
+def test_namespace_without_a_machine_says_so_and_leaves_no_file(hexarm, tmp_path):
+    path = tmp_path / 'nothing.mcap'
+    said = ends_with(hexarm('record', 'nobody', '-o', str(path), '--for', '1.5'), 1)
+    assert 'nothing was heard in /nobody: is the graph running, on this ROS domain?' in said
+    assert not path.exists()

@@ -1,0 +1,45 @@
+"""Which topics a recording joins, and when."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from hexarm.recording.wanted import COMMANDS, SETTLED, Wanted
+
+INTERFACES = Path(__file__).resolve().parents[3] / 'docs' / 'interfaces.md'
+MACHINE = re.compile(r'^\| `([\w/]+)` \| (in|out) \|', re.MULTILINE)
+
+
+def test_commands_are_what_the_nodes_of_the_document_only_hear():
+    told = MACHINE.findall(INTERFACES.read_text())
+    heard, published = ({n for n, way in told if way == kind} for kind in ('in', 'out'))
+    assert heard - published == COMMANDS
+
+
+@pytest.mark.parametrize('topic', ['/arm/pose', '/arm/serial_bridge/log', '/diagnostics', '/tf'])
+def test_streams_and_shared_topics_are_joined_at_once(topic):
+    assert Wanted('arm').may_join(topic, True, 0.0)
+
+
+@pytest.mark.parametrize('topic', ['/hexapod/pose', '/arms/pose', '/arm2/pose', '/clock'])
+def test_other_machines_are_left_alone(topic):
+    assert not Wanted('arm').may_join(topic, True, 0.0)
+
+
+@pytest.mark.parametrize('command', sorted(COMMANDS))
+def test_command_is_joined_once_its_publisher_has_been_there_for_long(command):
+    wanted, topic = Wanted('arm'), f'/arm/{command}'
+    assert not wanted.may_join(topic, True, 10.0)
+    assert not wanted.may_join(topic, True, 10.0 + SETTLED - 0.01)
+    assert wanted.may_join(topic, True, 10.0 + SETTLED)
+    assert not wanted.may_join(topic, False, 20.0)
+    assert not wanted.may_join(topic, True, 20.1), 'the next publisher is another one'
+
+
+def test_commands_are_joined_early_where_that_is_asked_for():
+    assert Wanted('arm', with_commands=True).may_join('/arm/goal_pose', False, 0.0)
+    named = Wanted('arm', names=['goal_pose', '/hexapod/pose'])
+    assert named.may_join('/arm/goal_pose', False, 0.0)
+    assert named.may_join('/hexapod/pose', False, 0.0)
+    assert not named.may_join('/arm/pose', True, 0.0)
