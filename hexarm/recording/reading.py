@@ -1,0 +1,64 @@
+"""The messages of an MCAP file, decoded without ROS; a file that was torn off ends at the tear."""
+
+import struct
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from mcap.exceptions import EndOfFile, InvalidMagic, McapError
+from mcap.records import Channel, Message, Schema
+from mcap.stream_reader import StreamReader
+from mcap_ros2.decoder import DecoderFactory
+
+from manipulator.errors import InvalidInput
+
+TORN = (EndOfFile, struct.error)
+"""What mcap's reader raises where the file ends within a record."""
+
+
+def messages(path: Path, is_wanted: Callable[[str], bool]) -> Iterator[tuple[str, float, Any]]:
+    """Topic, time of receipt (s) and message of each wanted topic, in the order of the file.
+
+    Takes a bag's folder, too. InvalidInput for what is no MCAP recording of ROS 2 messages.
+    """
+    factory = DecoderFactory()
+    schemas: dict[int, Schema] = {}
+    channels: dict[int, Channel] = {}
+    for record in _records(mcap_of(path)):
+        if isinstance(record, Schema):
+            schemas[record.id] = record
+        elif isinstance(record, Channel):
+            channels[record.id] = record
+        elif isinstance(record, Message) and is_wanted(channels[record.channel_id].topic):
+            channel = channels[record.channel_id]
+            decode = factory.decoder_for(channel.message_encoding, schemas.get(channel.schema_id))
+            if decode is None:
+                raise InvalidInput(f'{path}: {channel.topic} holds no ROS 2 messages')
+            yield channel.topic, record.log_time * 1e-9, decode(record.data)
+
+
+def mcap_of(path: Path) -> Path:
+    """The file itself, or the one in a bag's folder; InvalidInput says what is there instead."""
+    if not path.is_dir():
+        return path
+    found = sorted(path.glob('*.mcap'))
+    if len(found) == 1:
+        return found[0]
+    if list(path.glob('*.db3')):
+        raise InvalidInput(f'{path} is an SQLite bag: turn it into MCAP with `ros2 bag convert`')
+    raise InvalidInput(f'{path} is a folder with {len(found)} MCAP files: name one of them')
+
+
+def _records(path: Path) -> Iterator[Any]:
+    try:
+        with path.open('rb') as file:
+            try:
+                yield from StreamReader(file).records
+            except TORN:
+                return
+    except OSError as error:
+        raise InvalidInput(f'{path}: {error.strerror or error}') from error
+    except InvalidMagic as error:
+        raise InvalidInput(f'{path} is no MCAP file') from error
+    except McapError as error:
+        raise InvalidInput(f'{path} is damaged: {error}') from error

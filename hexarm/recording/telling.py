@@ -1,0 +1,146 @@
+"""From the messages of a recording to its story."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from hexarm.recording.story import Event, Series, Story
+from manipulator.arrays import Array
+from manipulator.errors import InvalidInput
+from manipulator.pose import Pose
+
+POSES = ('setpoint', 'pose', 'goal_pose')
+JOINTS = ('joint_command', 'joint_states')
+STATES = ('machine_state', 'motion_status')
+TOPICS = (*POSES, *JOINTS, *STATES, 'emergency_stop')
+DIAGNOSTICS = '/diagnostics'
+BAD_STATES = ('disconnected', 'stopped', 'fault', 'refused', 'holding')
+COUNTERS = ('setpoints_refused', 'twists_refused', 'joint_states_refused', 'refusals')
+"""Diagnostics that count refusals; those of goals stand in motion_status, each with its reason."""
+
+
+def is_wanted(topic: str) -> bool:
+    """Whether a story needs the topic."""
+    return topic == DIAGNOSTICS or topic.endswith(tuple(f'/{name}' for name in TOPICS))
+
+
+def tell(messages: Iterable[tuple[str, float, Any]], namespace: str | None = None) -> Story:
+    """The story of the machine in `namespace`, by default the only one that is in the recording.
+
+    Raises InvalidInput where there is no machine, or another, or several to choose from.
+    """
+    heard: dict[str, Teller] = {}
+    diagnostics: list[tuple[float, Any]] = []
+    first, last = np.inf, -np.inf
+    for topic, at, message in messages:
+        first, last = min(first, at), max(last, at)
+        if topic == DIAGNOSTICS:
+            diagnostics += [(at, entry) for entry in message.status]
+        else:
+            name = next(name for name in TOPICS if topic.endswith(f'/{name}'))
+            space = topic.removesuffix(f'/{name}').strip('/')
+            heard.setdefault(space, Teller(space)).hear(name, at, message)
+    space = _chosen(heard, namespace)
+    for at, entry in diagnostics:
+        heard[space].hear_diagnostics(at, entry)
+    return heard[space].story(first, last - first)
+
+
+def _chosen(heard: dict[str, 'Teller'], namespace: str | None) -> str:
+    there = ', '.join(f'/{name}' for name in sorted(heard))
+    if not heard:
+        raise InvalidInput('there is no machine in this recording')
+    if namespace is None and len(heard) > 1:
+        raise InvalidInput(f'several machines are in it, choose with --namespace: {there}')
+    space = next(iter(heard)) if namespace is None else namespace
+    if space not in heard:
+        raise InvalidInput(f'/{space} is not in this recording, only {there}')
+    return space
+
+
+@dataclass
+class Teller:
+    """Collects what one machine's topics said."""
+
+    namespace: str
+    rows: dict[str, list[tuple[float, Any]]] = field(default_factory=dict)
+    events: list[Event] = field(default_factory=list)
+    _said: dict[str, object] = field(default_factory=dict)
+
+    def hear(self, name: str, at: float, message: Any) -> None:
+        """One message of the topic `name`, relative to the namespace."""
+        if name in STATES:
+            self._on_state(name, at, message)
+        elif name == 'emergency_stop':
+            if message.data:
+                self.events.append(Event(at, 'user', 'emergency stop', is_bad=True))
+        elif name in JOINTS:
+            positions = dict(zip(message.name, message.position, strict=False))
+            self.rows.setdefault(name, []).append((at, positions))
+        elif message.header.frame_id in ('', 'base'):
+            p, q = message.pose.position, message.pose.orientation
+            self.rows.setdefault(name, []).append((at, (p.x, p.y, p.z, q.x, q.y, q.z, q.w)))
+
+    def hear_diagnostics(self, at: float, entry: Any) -> None:
+        """A node's report: counts of refusals that have grown become events."""
+        space, _, node = entry.name.rpartition('/')
+        if space != self.namespace:
+            return
+        values = {pair.key: pair.value for pair in entry.values}
+        for key in COUNTERS:
+            count = int(values[key]) if values.get(key, '').isdigit() else 0
+            before = self._said.get(f'{node} {key}', 0)
+            self._said[f'{node} {key}'] = count
+            if isinstance(before, int) and count > before:
+                reason = values.get('last_twist_refusal' if 'twist' in key else 'last_refusal', '')
+                self.events.append(Event(at, node, 'refused', reason, True, count - before))
+
+    def _on_state(self, name: str, at: float, message: Any) -> None:
+        values = {pair.key: pair.value for pair in message.values}
+        what = values.get('result', message.message)
+        said = (what, values.get('reason', ''), values.get('goal_stamp', ''))
+        if said != self._said.get(name) and what:
+            self._said[name] = said
+            source = {'machine_state': 'machine', 'motion_status': 'motion'}[name]
+            self.events.append(Event(at, source, what, said[1], what in BAD_STATES))
+
+    def story(self, first: float, duration: float) -> Story:
+        """All of it, with times from `first` on."""
+        names = self._joint_names()
+        events = sorted(self.events, key=lambda e: e.time)
+        return Story(
+            self.namespace,
+            duration,
+            names,
+            setpoint=self._poses('setpoint', first),
+            pose=self._poses('pose', first),
+            goals=self._poses('goal_pose', first),
+            joint_command=self._joints('joint_command', names, first),
+            joint_states=self._joints('joint_states', names, first),
+            events=tuple(replace(e, time=e.time - first) for e in events),
+        )
+
+    def _joint_names(self) -> tuple[str, ...]:
+        every = [tuple(row) for name in JOINTS for _, row in self.rows.get(name, [])]
+        return max(every, key=len, default=())
+
+    def _poses(self, name: str, first: float) -> Series:
+        rows = self.rows.get(name, [])
+        numbers = np.array([row for _, row in rows]).reshape(len(rows), 7)
+        good = np.isfinite(numbers).all(axis=1) & (
+            np.abs(np.linalg.norm(numbers[:, 3:], axis=1) - 1) < 1e-3
+        )
+        pose = Pose.from_xyz_quaternion(numbers[good, :3], numbers[good, 3:])
+        values = np.hstack([pose.position, np.unwrap(pose.rpy, axis=0)])
+        return Series(_times(rows, first)[good], values)
+
+    def _joints(self, name: str, names: tuple[str, ...], first: float) -> Series:
+        rows = self.rows.get(name, [])
+        values = [[row.get(joint, np.nan) for joint in names] for _, row in rows]
+        return Series(_times(rows, first), np.array(values).reshape(len(rows), len(names)))
+
+
+def _times(rows: list[tuple[float, Any]], first: float) -> Array:
+    return np.array([at - first for at, _ in rows])
