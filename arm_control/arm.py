@@ -11,6 +11,7 @@ from arm_control.joint_limits import JOINT_NAMES, JointLimits
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
+from manipulator.links import PLATFORM, Link
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke
 
@@ -110,6 +111,14 @@ class SerialArm:
         moved = self.chain.displacements(self._checked(joints))[:-1]
         points = np.einsum('nij,nj->ni', moved[:, :3, :3], self.chain.points) + moved[:, :3, 3]
         return (Stroke('link', np.vstack([np.zeros(3), points, pose.position])),)
+
+    def links(self, pose: Pose, joints: Array) -> tuple[Link, ...]:
+        """link_1 to link_6, each on its joint's axis, with base axes at zero; then the tool."""
+        moved = self.chain.displacements(self._checked(joints))[1:]
+        points = np.einsum('nij,nj->ni', moved[:, :3, :3], self.chain.points) + moved[:, :3, 3]
+        frames = zip(points, moved[:, :3, :3], strict=True)
+        links = (Link(f'link_{i}', Pose(p, R)) for i, (p, R) in enumerate(frames, start=1))
+        return *links, Link(PLATFORM, pose)
 
     def sigma_min(self, pose: Pose, joints: Array) -> Array:
         """The smallest singular value (...) of the Jacobian in characteristic lengths."""

@@ -16,6 +16,7 @@ from hexapod_control.margin_test import keeps_margin
 from manipulator.arrays import Array, Mask
 from manipulator.errors import ConfigError, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
+from manipulator.links import PLATFORM, Link
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke, outline
 
@@ -168,6 +169,10 @@ class ParallelPlatform(ABC):
         base, platform = self.base_points(joints), pose.transform(self.geometry.platform_points)
         rods = (Stroke('rod', ends) for ends in np.stack([base, platform], axis=1))
         return outline('body', base), *rods, outline('platform', platform)
+
+    def links(self, pose: Pose, joints: Array) -> tuple[Link, ...]:
+        """The platform alone: legs are lines, not frames."""
+        return (Link(PLATFORM, pose),)
 
     def sigma_min(self, pose: Pose, joints: Array) -> Array:
         """The forward singularity margin (...), dimensionless; NaN for NaN joints."""

@@ -25,6 +25,7 @@ from hexarm import (
     reproduce,
     simulate,
     up,
+    urdf,
     workspace,
 )
 from hexarm.answers import REFUSED
@@ -40,6 +41,7 @@ COMMANDS = (
     ik,
     fk,
     mjcf,
+    urdf,
     simulate,
     reproduce,
     reach,

@@ -15,6 +15,7 @@ from manipulator.kinematics import ForwardSolution, Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import admitted
 from manipulator.limits.limit_of import LimitOf
+from manipulator.links import Link
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke
@@ -82,6 +83,10 @@ class FramedKinematics:
     def skeleton(self, pose: Pose, joints: Array) -> tuple[Stroke, ...]:
         """That of the machine, in the base frame."""
         return self.inner.skeleton(self.frames.platform(pose), joints)
+
+    def links(self, pose: Pose, joints: Array) -> tuple[Link, ...]:
+        """Those of the machine, in the base frame."""
+        return self.inner.links(self.frames.platform(pose), joints)
 
     def sigma_min(self, pose: Pose, joints: Array) -> Array:
         """The machine's own margin: it does not depend on the user's frames."""

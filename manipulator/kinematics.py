@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from manipulator.arrays import Array
+from manipulator.links import Link
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke
 
@@ -75,6 +76,10 @@ class Kinematics(Protocol):
 
     def skeleton(self, pose: Pose, joints: Array) -> tuple[Stroke, ...]:
         """What to draw of the machine with one pose and its joints (n,)."""
+        ...
+
+    def links(self, pose: Pose, joints: Array) -> tuple[Link, ...]:
+        """The frames of the moving parts with one pose and its joints (n,), in the base frame."""
         ...
 
     def sigma_min(self, pose: Pose, joints: Array) -> Array:

@@ -33,7 +33,8 @@ WIDTH = 0.02
 class Markers:
     """Publishes `markers`, at most every PERIOD and only while somebody listens."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, frame_prefix: str) -> None:
+        self._frame = frame_prefix + BASE_FRAME
         self._publisher = node.create_publisher(MarkerArray, 'markers', MEASUREMENT)
         self._next = 0.0
 
@@ -45,13 +46,13 @@ class Markers:
         self._next = now + PERIOD
         width = WIDTH * float(kinematics.home.position[2])
         strokes = enumerate(kinematics.skeleton(pose, joints))
-        markers = [_marker(k, stroke, width, stamp) for k, stroke in strokes]
+        markers = [_marker(k, stroke, width, self._frame, stamp) for k, stroke in strokes]
         self._publisher.publish(MarkerArray(markers=markers))
 
 
-def _marker(number: int, stroke: Stroke, width: float, stamp: Time) -> Marker:
+def _marker(number: int, stroke: Stroke, width: float, frame: str, stamp: Time) -> Marker:
     marker = Marker(ns=stroke.part, id=number, type=Marker.LINE_STRIP, lifetime=LIFETIME)
-    marker.header.frame_id, marker.header.stamp = BASE_FRAME, stamp
+    marker.header.frame_id, marker.header.stamp = frame, stamp
     marker.pose.orientation.w = 1.0
     marker.scale.x = width
     red, green, blue = COLOURS[stroke.part]

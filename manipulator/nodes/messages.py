@@ -12,7 +12,7 @@ from manipulator.errors import InvalidInput
 from manipulator.frames import Frames
 from manipulator.pose import Pose
 
-BASE_FRAME, WORK_FRAME, PLATFORM_FRAME = 'base', 'work', 'platform'
+BASE_FRAME, WORK_FRAME, PLATFORM_FRAME, PIVOT_FRAME = 'base', 'work', 'platform', 'pivot'
 
 
 def seconds(stamp: Time) -> float:

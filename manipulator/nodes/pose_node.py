@@ -23,6 +23,7 @@ from manipulator.nodes.messages import (
 )
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
+from manipulator.nodes.transforms import Transforms, declare_prefix
 from manipulator.sag import settled
 
 
@@ -38,7 +39,9 @@ class PoseNode(Node):
         self._solution: ForwardSolution | None = None
         self._states = Intake(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
-        self._markers = Markers(self)
+        prefix = declare_prefix(self)
+        self._markers = Markers(self, prefix)
+        self._transforms = Transforms(self, prefix)
         self._pivot_publisher = self.create_publisher(PoseStamped, 'pivot_pose', MEASUREMENT)
         self.create_subscription(PointStamped, 'pivot', self._on_pivot, COMMAND)
         self.create_subscription(JointState, 'joint_states', self._states, MEASUREMENT)
@@ -61,6 +64,7 @@ class PoseNode(Node):
         pose, stamp = self._solution.pose, message.header.stamp
         self._publisher.publish(pose_message(pose, stamp))
         self._markers.show(self._kinematics, pose, joints, stamp)
+        self._transforms.show(self._kinematics, self._frames, pose, joints, stamp)
         if self._pivot_publisher.get_subscription_count() > 0:
             in_work = pose_message(self._frames.pivot(pose), stamp, WORK_FRAME)
             self._pivot_publisher.publish(in_work)

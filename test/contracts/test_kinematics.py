@@ -53,6 +53,13 @@ def subject(request):
     return Subject(machine, poses, machine.kinematics.inverse(poses))
 
 
+def test_last_link_is_the_moving_frame(subject):
+    for k in range(0, POSES, 20):
+        *_, last = subject.machine.kinematics.links(subject.poses[k], subject.joints[k])
+        assert last.name == 'platform'
+        assert np.abs(subject.poses[k].twist_to(last.pose)).max() < 1e-12
+
+
 def test_cold_forward_finds_the_pose_that_made_the_joints(subject):
     for k in range(POSES):
         solution = subject.machine.kinematics.forward(subject.joints[k])

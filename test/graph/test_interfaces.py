@@ -15,6 +15,8 @@ EVERYWHERE = {'/diagnostics', '/rosout', '/parameter_events'}
 """Every node has these; the text above the tables says so."""
 THREADS = ('serial_bridge_stop', 'serial_bridge_programs')
 """Nodes in the process of another one, without parameters and diagnostics."""
+OPTIONAL = {'/tf'}
+"""There where tf2_msgs is installed."""
 ROS_PARAMETERS = ('use_sim_time', 'start_type_description_service')
 ROS_OWN = ('parameter', 'type_description')
 
@@ -40,7 +42,7 @@ def running(user, node):
         ('out', ask.get_publisher_names_and_types_by_node, ask.get_publishers_info_by_topic),
     ):
         for topic, types in query(node, '/hexapod'):
-            if topic in EVERYWHERE:
+            if topic in EVERYWHERE | OPTIONAL:
                 continue
             (qos,) = {qos_text(e.qos_profile) for e in endpoints(topic) if e.node_name == node}
             found[kind, topic.removeprefix('/hexapod/')] = (types[0], qos)
@@ -58,6 +60,8 @@ def qos_text(profile):
 
 @pytest.mark.parametrize('node', NODES + THREADS)
 def test_topics_and_services_are_those_of_the_document(enabled, node):
+    names = enabled.node.get_node_names_and_namespaces
+    enabled.wait(f'the name of {node}', lambda: (node, '/hexapod') in names(), 10.0)
     enabled.wait(f'node {node}', lambda: running(enabled, node), 10.0)
     assert running(enabled, node) == documented(node)
 
