@@ -18,6 +18,8 @@ setup(
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
         (f'share/{NAME}/config', sorted(str(f) for f in Path('config').glob('*.yaml'))),
+        (f'share/{NAME}/launch', sorted(str(f) for f in Path('launch').glob('*.launch.py'))),
+        (f'share/{NAME}/viewers', sorted(str(f) for f in Path('viewers').iterdir())),
     ],
     install_requires=['numpy>=1.26', 'pyserial>=3.5', 'PyYAML>=6.0', 'ruckig>=0.14'],
     extras_require={

@@ -1,0 +1,70 @@
+"""A machine's graph for `ros2 launch`: the nodes of `hexarm up`, for full ROS installations."""
+
+from pathlib import Path
+from typing import Any
+
+from launch import LaunchContext, LaunchDescription
+from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+from hexarm.graph import Executable, machine_graph
+from hexarm.up import MACHINES, check
+
+PACKAGE = 'hexarm'
+PREFIXES = {'hexapod_control': 'hexapod_', 'arm_control': 'arm_'}
+"""Of a room's executables; those of other rooms are called as their entries are."""
+
+
+def graph(kind: str) -> LaunchDescription:
+    """The launch description of a hexapod or an arm; nothing moves before somebody enables it."""
+    arguments = {
+        'machine': (MACHINES[kind], 'machine file: a shipped name or a path'),
+        'port': ('fake', "a device, as /dev/serial/by-id/…, or 'fake' for the fake board"),
+        'namespace': (kind, 'where the graph lives'),
+        'frame_prefix': ('', 'stands before the frames of tf and markers, as in hexapod/'),
+        'panel': ('false', 'true: the page to look at it and to drive it, too'),
+    }
+    declared = [
+        DeclareLaunchArgument(name, default_value=default, description=meaning)
+        for name, (default, meaning) in arguments.items()
+    ]
+    return LaunchDescription([*declared, OpaqueFunction(function=_nodes, args=[kind])])
+
+
+def _nodes(context: LaunchContext, kind: str) -> list[Any]:
+    """The processes; Refused or ConfigError for arguments that do not fit, before any starts."""
+    machine, port, namespace, frame_prefix = (
+        LaunchConfiguration(name).perform(context)
+        for name in ('machine', 'port', 'namespace', 'frame_prefix')
+    )
+    check(kind, machine, namespace)
+    space = namespace.strip('/')
+    link = Path(f'/tmp/hexarm_{space.replace("/", "_")}')
+    own = {'pose': {'frame_prefix': frame_prefix}}
+    started = [
+        _process(node, space, own.get(node.entry, {}))
+        for node in machine_graph(kind, machine, port, link)
+    ]
+    panel = Node(
+        package=PACKAGE,
+        executable='panel',
+        namespace=space,
+        parameters=[{'machine': machine}],
+        output='screen',
+        condition=IfCondition(LaunchConfiguration('panel')),
+    )
+    return [*started, panel]
+
+
+def _process(node: Executable, namespace: str, own: dict[str, str]) -> Any:
+    if node.command:
+        return ExecuteProcess(cmd=list(node.command), output='screen')
+    return Node(
+        package=PACKAGE,
+        executable=PREFIXES.get(node.module, '') + node.entry,
+        namespace=namespace,
+        parameters=[node.parameters | own],
+        output='screen',
+    )
