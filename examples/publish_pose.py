@@ -51,11 +51,17 @@ class Mover:
 
     def go_to(self, xyz, quaternion=LEVEL):
         """Publishes a goal and waits for its end; exits with the reason when it is not reached."""
-        self.wait(self.goals.get_subscription_count, f'nobody hears {self.goals.topic_name}')
+        self.wait(self.is_heard, f'no machine hears {self.goals.topic_name}')
         stamp = self.publish(xyz, quaternion)
         self.wait(lambda: self.result(stamp), 'no answer on motion_status')
         if self.result(stamp) != 'reached':
             sys.exit(self.status.message)
+
+    def is_heard(self):
+        """Whether every listener is connected, the machine among them: others may only watch."""
+        listeners = self.node.get_subscriptions_info_by_topic(self.goals.topic_name)
+        is_there = 'trajectory' in [listener.node_name for listener in listeners]
+        return is_there and self.goals.get_subscription_count() >= len(listeners)
 
     def result(self, stamp):
         """'reached', 'refused' or 'stopped' once the goal of that stamp has ended."""

@@ -15,8 +15,12 @@ import sys
 import time
 
 import rclpy
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def stop(node, namespace):
@@ -33,16 +37,22 @@ def stop(node, namespace):
 
 
 def emergency_stop(node, namespace):
-    """Publishes true once somebody hears it, and waits until it has arrived."""
+    """Publishes true until the bridge says that the machine is stopped, and returns its words.
+
+    Publishing once, as soon as anybody listens, is not enough: it may be a recorder.
+    """
+    states = []
+    topic = f'{namespace}/machine_state'
+    node.create_subscription(DiagnosticStatus, topic, states.append, LATCHED)
     publisher = node.create_publisher(Bool, f'{namespace}/emergency_stop', 1)
     end = time.monotonic() + 10.0
-    while not publisher.get_subscription_count():
+    while not states or states[-1].message != 'stopped':
         if time.monotonic() > end:
-            sys.exit(f'nobody hears {publisher.topic_name}')
-        rclpy.spin_once(node, timeout_sec=0.01)
-    publisher.publish(Bool(data=True))
-    publisher.wait_for_all_acked()
-    return 'emergency stop sent'
+            state = states[-1].message if states else 'nobody answers'
+            sys.exit(f'not confirmed within 10 s: {state}')
+        publisher.publish(Bool(data=True))
+        rclpy.spin_once(node, timeout_sec=0.02)
+    return states[-1].message
 
 
 def main():

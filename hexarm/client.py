@@ -120,13 +120,15 @@ class Client:
 
     def go_to(self, pose: Pose, seconds: float = 10.0) -> None:
         """Publishes a goal and waits until it is reached; Refused or Stopped with the reason."""
-        self.wait('a listener for goals', lambda: self._goals.get_subscription_count() > 0, 10.0)
+        self.wait('a listener for goals', lambda: self._reaches(self._goals, 'trajectory'), 10.0)
         stamp = f'{self.publish_goal(pose):.9f}'
         self._await_result(lambda: self.motion('goal_stamp') == stamp, seconds)
 
     def follow(self, poses: Pose, seconds: float = 60.0) -> None:
         """Goes exactly along poses (n,), n ≤ 2,000; Refused or Stopped with the reason."""
-        self.wait('a listener for paths', lambda: self._paths.get_subscription_count() > 0, 10.0)
+        self.wait(
+            'a listener for paths', lambda: self._reaches(self._paths, 'path_listener'), 10.0
+        )
         stamp = self.node.get_clock().now().to_msg()
         self._paths.publish(path_message(poses, stamp))
         name = f'{stamp.sec + 1e-9 * stamp.nanosec:.9f}'
@@ -137,6 +139,12 @@ class Client:
         before = self.motion('goal_stamp')
         self.trigger('trajectory/home')
         self._await_result(lambda: self.motion('goal_stamp') != before, seconds)
+
+    def _reaches(self, publisher: Any, listener: str) -> bool:
+        """Whether every listener is connected, that node among them: others may only watch."""
+        found = self.node.get_subscriptions_info_by_topic(publisher.topic_name)
+        is_there = any(one.node_name == listener for one in found)
+        return is_there and bool(publisher.get_subscription_count() >= len(found))
 
     def _await_result(self, is_ours: Callable[[], bool], seconds: float) -> None:
         ends = {'reached': None, 'refused': Refused, 'stopped': Stopped}

@@ -160,7 +160,7 @@ def test_stop_ends_a_move_and_the_tour_says_so(start, slowly):
 
 
 def test_emergency_stop_holds_until_it_is_cleared(start, client):
-    assert end(start('stop', '--emergency')) == (0, 'emergency stop sent\n')
+    assert end(start('stop', '--emergency')) == (0, 'stopped\n')
     client.wait('the stop', lambda: client.machine_state.message == 'stopped', 10.0)
     status, said = end(start('publish_pose', 0, 0, 0.045))
     assert status == 1
