@@ -38,7 +38,7 @@ def status(name='', message='', **values):
 
 
 def asked(t):
-    return Pose.from_xyz_rpy((0.01 * math.sin(t), 0.0, 0.045), (0.0, 0.0, math.pi + t))
+    return Pose.from_xyz_rpy((0.01 * math.sin(t), 0.0, 0.045), (0.0, 0.0, math.pi - 1.0 + t))
 
 
 def conversation():

@@ -50,6 +50,15 @@ def test_every_executable_is_where_ros2_run_looks(colcon_prefix, executables):
     assert {f.name for f in folder.iterdir() if os.access(f, os.X_OK)} == executables
 
 
+def test_launch_files_and_layouts_are_in_share(colcon_prefix):
+    share = colcon_prefix / 'share' / 'hexarm'
+    assert {f.name for f in (share / 'launch').iterdir()} == {
+        'hexapod.launch.py',
+        'arm.launch.py',
+    }
+    assert {f.suffix for f in (share / 'viewers').iterdir()} == {'.json', '.rviz'}
+
+
 def test_machine_files_are_found_in_share(colcon_prefix, colcon_environment, machines, run):
     command = colcon_prefix / 'lib' / 'hexarm' / 'hexarm'
     answer = json.loads(run(command, 'machines', '--json', env=colcon_environment, cwd='/'))
