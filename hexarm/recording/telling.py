@@ -110,13 +110,14 @@ class Teller:
         """All of it, with times from `first` on."""
         names = self._joint_names()
         events = sorted(self.events, key=lambda e: e.time)
+        setpoint = self._poses('setpoint', first)
         return Story(
             self.namespace,
             duration,
             names,
-            setpoint=self._poses('setpoint', first),
-            pose=self._poses('pose', first),
-            goals=self._poses('goal_pose', first),
+            setpoint=setpoint,
+            pose=_on_the_turn_of(setpoint, self._poses('pose', first)),
+            goals=_on_the_turn_of(setpoint, self._poses('goal_pose', first)),
             joint_command=self._joints('joint_command', names, first),
             joint_states=self._joints('joint_states', names, first),
             events=tuple(replace(e, time=e.time - first) for e in events),
@@ -140,6 +141,16 @@ class Teller:
         rows = self.rows.get(name, [])
         values = [[row.get(joint, np.nan) for joint in names] for _, row in rows]
         return Series(_times(rows, first), np.array(values).reshape(len(rows), len(names)))
+
+
+def _on_the_turn_of(setpoint: Series, poses: Series) -> Series:
+    """The poses with their angles moved by whole turns next to the setpoint's."""
+    if not len(setpoint):
+        return poses
+    asked = setpoint.before(np.maximum(poses.times, setpoint.times[0]))
+    turns = np.round((asked - poses.values)[:, 3:] / (2 * np.pi))
+    angles = poses.values[:, 3:] + 2 * np.pi * turns
+    return Series(poses.times, np.hstack([poses.values[:, :3], angles]))
 
 
 def _times(rows: list[tuple[float, Any]], first: float) -> Array:

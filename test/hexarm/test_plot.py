@@ -55,7 +55,7 @@ def conversation():
         known = NAMES if t > 1.0 else NAMES[:1]
         positions = [t - 0.01, -t + 0.02][: len(known)]
         yield t + 0.002, 'joint_states', JointState(name=known, position=positions)
-    yield 3.0, 'goal_pose', stamped(Pose.from_xyz_rpy((9.0, 0.0, 0.0)))
+    yield 3.0, 'goal_pose', stamped(Pose.from_xyz_rpy((9.0, 0.0, 0.0), (0.0, 0.0, -1.2)))
     for t in (3.01, 3.02):
         refused = {'result': 'refused', 'reason': 'leg 3: rod too short', 'goal_stamp': '1'}
         yield t, 'motion_status', status(**refused)
@@ -131,10 +131,18 @@ def test_tables_hold_what_was_said_in_radians_and_metres(recording, tmp_path, ca
         assert float(row['x_m']) == pytest.approx(0.01 * math.sin(t), abs=1e-8)
     yaw = np.array([float(row['yaw_rad']) for row in setpoints])
     assert np.abs(np.diff(yaw) - 0.02).max() < 1e-6, 'no jump by a whole turn'
+    poses = {float(row['time_s']): float(row['yaw_rad']) for row in table(folder / 'pose.csv')}
+    assert max(abs(yaw - (math.pi - 1.0 + t)) for t, yaw in poses.items()) < 0.01
     assert joints[0]['crank_2'] == 'nan'
     assert float(joints[-1]['crank_2']) == pytest.approx(
         0.02 - float(joints[-1]['time_s']), abs=3e-3
     )
+
+
+def test_goal_is_told_on_the_turn_of_the_setpoint(recording, tmp_path, capsys):
+    plotted(capsys, recording, '--csv', tmp_path)
+    (goal,) = table(tmp_path / 'goals.csv')
+    assert float(goal['yaw_rad']) == pytest.approx(2 * math.pi - 1.2, abs=1e-6)
 
 
 def test_picture_is_drawn_beside_the_recording(recording, capsys):
