@@ -1,0 +1,1 @@
+"""One local web page to look at a machine and to hold it: docs/panel.md."""

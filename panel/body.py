@@ -1,0 +1,181 @@
+"""The machine as solids in a viser scene: once as measured, once as commanded."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from manipulator.arrays import Array
+from manipulator.kinematics import Kinematics
+from manipulator.skeleton import Stroke
+from panel.bars import Bars, bars_between, wxyz_of
+from panel.margins import colour
+from panel.meshes import bar, hull, plate, sphere
+from panel.view import Stance
+
+RADII = {'body': 0.012, 'crank': 0.022, 'rod': 0.014, 'platform': 0.016, 'link': 0.055}
+"""Of bars, by part, as shares of the machine's size."""
+
+PLAIN = {'body': (84, 96, 110), 'platform': (196, 206, 218), 'link': (104, 140, 180)}
+"""Parts whose colour says nothing; cranks, rods and joints are coloured by their margins."""
+
+STILL = 2e-5
+"""Metres and radians below which a change is not drawn."""
+
+PLATE = 0.03
+GHOST = (120, 190, 255)
+COLUMNS = ('crank', 'rod')
+
+Colours = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Every bar and every ball of a stance: what part it is of, and whose margin it shows.
+
+    owners name a leg or joint, '' for parts that show none; parts repeat per piece.
+    """
+
+    bars: Bars
+    balls: Array
+    ball_radii: Array
+    parts: tuple[str, ...]
+    owners: tuple[str, ...]
+    ball_owners: tuple[str, ...]
+
+
+def pieces(strokes: tuple[Stroke, ...], size: float) -> Pieces:
+    """Bars along every stroke and balls at the ends of what turns; metres."""
+    starts, ends, radii, parts, owners = [], [], [], [], []
+    balls, ball_radii, ball_owners = [], [], []
+    counts: dict[str, int] = {}
+    for stroke in strokes:
+        counts[stroke.part] = counts.get(stroke.part, 0) + 1
+        owner = f'leg {counts[stroke.part]}' if stroke.part in COLUMNS else ''
+        radius = RADII[stroke.part] * size
+        tapers = np.linspace(1.0, 0.45, len(stroke.points)) if stroke.part == 'link' else None
+        for k, (a, b) in enumerate(zip(stroke.points[:-1], stroke.points[1:], strict=True)):
+            starts.append(a)
+            ends.append(b)
+            radii.append(radius if tapers is None else radius * tapers[k])
+            parts.append(stroke.part)
+            owners.append(owner)
+        for k, point in enumerate(stroke.points):
+            balls.append(point)
+            ball_radii.append(1.35 * radius if tapers is None else 1.3 * radius * tapers[k])
+            is_joint = tapers is not None and 0 < k < len(stroke.points) - 1
+            ball_owners.append(f'joint {k}' if is_joint else owner)
+    return Pieces(
+        bars_between(np.array(starts), np.array(ends), np.array(radii)),
+        np.array(balls),
+        np.array(ball_radii),
+        tuple(parts),
+        tuple(owners),
+        tuple(ball_owners),
+    )
+
+
+def colours(parts: tuple[str, ...], owners: tuple[str, ...], left: dict[str, float]) -> Colours:
+    """(n, 3): by margin where the piece has an owner, else the part's own."""
+    found = [
+        colour(left.get(owner, 1.0)) if owner else PLAIN.get(part, GHOST)
+        for part, owner in zip(parts, owners, strict=True)
+    ]
+    return np.array(found, dtype=np.uint8)
+
+
+class Body:
+    """One drawing of the machine under the scene's name `name`; lengths times `scale`."""
+
+    def __init__(
+        self, scene: Any, name: str, kinematics: Kinematics, scale: float, is_ghost: bool
+    ) -> None:
+        self._kinematics = kinematics
+        self._scale = scale
+        self._is_ghost = is_ghost
+        self._shown: Stance | None = None
+        home = kinematics.home
+        joints = kinematics.inverse(home)
+        found = self._pieces(Stance(home, joints))
+        look: dict[str, Any] = {'opacity': 0.28 if is_ghost else None, 'lod': 'off'}
+        look |= {'cast_shadow': not is_ghost, 'receive_shadow': not is_ghost}
+        vertices, faces = bar()
+        self._bars = scene.add_batched_meshes_simple(
+            f'{name}/bars', vertices, faces, found.bars.wxyz, found.bars.starts,
+            batched_scales=found.bars.sizes.astype(np.float32),
+            batched_colors=self._bar_colours(found, {}), **look,
+        )  # fmt: skip
+        ball, ball_faces = hull(sphere(9, 14))
+        count = len(found.balls)
+        self._balls = scene.add_batched_meshes_simple(
+            f'{name}/balls', ball, ball_faces, np.tile([1.0, 0.0, 0.0, 0.0], (count, 1)),
+            found.balls, batched_scales=found.ball_radii.astype(np.float32),
+            batched_colors=self._ball_colours(found, {}), **look,
+        )  # fmt: skip
+        self._plate = self._add_plate(scene, name, Stance(home, joints), look)
+
+    def show(self, stance: Stance, left: dict[str, float]) -> None:
+        """Moves every piece to a stance; `left` is the share of room left by owner.
+
+        Nothing is sent for a machine that stands still: pages draw only what changes.
+        """
+        if self._shown is not None and _are_alike(stance, self._shown):
+            return
+        self._shown = stance
+        found = self._pieces(stance)
+        self._bars.batched_positions = found.bars.starts.astype(np.float32)
+        self._bars.batched_wxyzs = found.bars.wxyz.astype(np.float32)
+        self._bars.batched_scales = found.bars.sizes.astype(np.float32)
+        self._balls.batched_positions = found.balls.astype(np.float32)
+        if not self._is_ghost:
+            self._recolour(self._bars, self._bar_colours(found, left))
+            self._recolour(self._balls, self._ball_colours(found, left))
+        if self._plate is not None:
+            self._plate.position = stance.pose.position * self._scale
+            self._plate.wxyz = wxyz_of(stance.pose)
+
+    def set_visible(self, is_visible: bool) -> None:
+        """Shows or hides all of it."""
+        for handle in (self._bars, self._balls, self._plate):
+            if handle is not None and handle.visible != is_visible:
+                handle.visible = is_visible
+
+    def _pieces(self, stance: Stance) -> Pieces:
+        strokes = self._kinematics.skeleton(stance.pose, stance.joints)
+        scaled = tuple(Stroke(s.part, s.points * self._scale) for s in strokes)
+        return pieces(scaled, 1.0)
+
+    def _bar_colours(self, found: Pieces, left: dict[str, float]) -> Colours:
+        if self._is_ghost:
+            return np.tile(np.array(GHOST, dtype=np.uint8), (len(found.parts), 1))
+        return colours(found.parts, found.owners, left)
+
+    def _ball_colours(self, found: Pieces, left: dict[str, float]) -> Colours:
+        if self._is_ghost:
+            return np.tile(np.array(GHOST, dtype=np.uint8), (len(found.balls), 1))
+        return colours(('link',) * len(found.balls), found.ball_owners, left)
+
+    @staticmethod
+    def _recolour(handle: Any, wanted: Colours) -> None:
+        if not np.array_equal(handle.batched_colors, wanted):
+            handle.batched_colors = wanted
+
+    def _add_plate(self, scene: Any, name: str, stance: Stance, look: dict[str, Any]) -> Any:
+        """The platform as a plate, where the machine has one."""
+        strokes = self._kinematics.skeleton(stance.pose, stance.joints)
+        outline = next((s.points[:-1] for s in strokes if s.part == 'platform'), None)
+        if outline is None:
+            return None
+        inside = stance.pose.inverse().transform(outline) * self._scale
+        vertices, faces = plate(inside, PLATE)
+        look = {key: value for key, value in look.items() if key != 'lod'}
+        tint = GHOST if self._is_ghost else PLAIN['platform']
+        return scene.add_mesh_simple(f'{name}/plate', vertices, faces, color=tint, side='double',
+                                     flat_shading=True, **look)  # fmt: skip
+
+
+def _are_alike(a: Stance, b: Stance) -> bool:
+    """Whether nobody could see the difference."""
+    way = np.abs(a.pose.twist_to(b.pose)).max()
+    return bool(max(way, np.abs(a.joints - b.joints).max()) < STILL)

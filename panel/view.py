@@ -1,0 +1,49 @@
+"""What the page shows of a machine at one moment."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from manipulator.arrays import Array
+from manipulator.frames import Frames
+from manipulator.pose import Pose
+
+
+@dataclass(frozen=True, eq=False)
+class Stance:
+    """One pose of the platform or tool in the base frame, and the joints that go with it."""
+
+    pose: Pose
+    joints: Array
+
+
+@dataclass(frozen=True)
+class NodeReport:
+    """What one node last said on /diagnostics; age in seconds, level 0 (good) to 3."""
+
+    name: str
+    level: int
+    message: str
+    values: Mapping[str, str]
+    age: float
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """Measured and commanded stance (None while nothing fresh is known) and all the words.
+
+    goal is the newest asked for by the sliders, driver who jogs ('' for nobody).
+    """
+
+    measured: Stance | None = None
+    commanded: Stance | None = None
+    frames: Frames = field(default_factory=Frames)
+    machine_state: str = 'not heard of'
+    machine_reason: str = ''
+    mode: str = ''
+    motion: str = ''
+    nodes: tuple[NodeReport, ...] = ()
+
+    @property
+    def is_enabled(self) -> bool:
+        """Whether the servos follow."""
+        return self.machine_state == 'enabled'
