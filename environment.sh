@@ -21,6 +21,6 @@ unset LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE PYTHONPATH AMENT_PREFIX_PAT
 log="$environment/install.log"
 echo "Making $environment with $("$python" --version): about a minute, once."
 "$python" -m venv --clear "$environment" || stop "could not make the virtual environment $environment."
-"$environment/bin/python" -m pip install --disable-pip-version-check -e '.[ros,plot,physics,terminal,record,test]' >"$log" 2>&1 \
+"$environment/bin/python" -m pip install --disable-pip-version-check -e '.[ros,plot,physics,panel,terminal,record,test]' >"$log" 2>&1 \
   || { tail -n 15 "$log" >&2; stop "the installation failed, see above and $log (is there a network?)."; }
 touch "$environment/ready"

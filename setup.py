@@ -5,7 +5,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 NAME = 'hexarm'
-ROOMS = ['manipulator', 'hexapod_control', 'arm_control', 'physics', 'bridge', 'hexarm']
+ROOMS = ['manipulator', 'hexapod_control', 'arm_control', 'physics', 'bridge', 'panel', 'hexarm']
 
 setup(
     name=NAME,
@@ -14,6 +14,7 @@ setup(
     license='Apache-2.0',
     python_requires='>=3.10',
     packages=find_packages(include=[pattern for r in ROOMS for pattern in (r, f'{r}.*')]),
+    package_data={'panel': ['joystick.html']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
@@ -33,11 +34,13 @@ setup(
         'plot': ['matplotlib>=3.8'],
         'physics': ['mujoco>=3.2', 'matplotlib>=3.8', 'pillow>=10'],
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.5', 'matplotlib>=3.8'],
+        'panel': ['viser>=1.0'],
         'terminal': ['rich>=13'],
         'test': [
             'pytest>=8',
             'hypothesis>=6.100',
             'mypy>=1.11',
+            'playwright>=1.45',  # drives the system's Chromium, for the panel's page
             'ruff>=0.6',
             'rosbags>=0.10',  # reads our recordings independently
             'types-PyYAML>=6.0',
@@ -60,6 +63,7 @@ setup(
             'keyboard_teleop = manipulator.device_executables:keyboard_teleop',
             'serial_bridge = bridge.executables:serial_bridge',
             'fake_hardware = bridge.executables:fake_hardware',
+            'panel = panel.executables:panel',
         ],
     },
 )

@@ -14,6 +14,7 @@ from hexarm.answers import picture_file
 from hexarm.demo_report import Curve, Observation, Result, measure
 from hexarm.graph import Executable, Graph, link_folder, machine_graph
 from hexarm.machines import load
+from hexarm.panel_process import offered_panel
 from hexarm.up import Interrupted, StopSignal, check_alive, park
 from manipulator.errors import Refused
 from manipulator.machine import Machine
@@ -83,7 +84,9 @@ def on_graph(
 
     with link_folder() as folder:
         nodes = machine_graph(kind, machine, 'fake', Path(folder) / 'board')
-        with Graph([*nodes, *others], kind, log_level='error') as graph:
+        with Graph(
+            [*nodes, *others, *offered_panel(machine, say)], kind, log_level='error'
+        ) as graph:
 
             def interrupt() -> None:
                 stop.check()

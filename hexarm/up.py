@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from hexarm.graph import Graph, link_folder, machine_graph
 from hexarm.machines import load, read
 from hexarm.namespaces import NAMESPACE
+from hexarm.panel_process import panel_address, panel_process
 from manipulator.errors import ManipulatorError, Refused
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument('--machine', help='a shipped name or a path (default: the usual one)')
     parser.add_argument('--port', default='fake', help="a device, 'fake' (default) or 'simavr'")
     parser.add_argument('--namespace', help='default: hexapod or arm')
+    parser.add_argument('--panel', action='store_true', help='with a web page to look and drive')
     parser.set_defaults(run=run)
 
 
@@ -45,9 +47,11 @@ def run(arguments: argparse.Namespace) -> int:
     machine = arguments.machine or MACHINES[arguments.kind]
     namespace = arguments.namespace or arguments.kind
     check(arguments.kind, machine, namespace)
+    others = [panel_process(machine)] if arguments.panel else []
     stop = StopSignal()
     with link_folder() as folder:
         nodes = machine_graph(arguments.kind, machine, arguments.port, Path(folder) / 'board')
+        nodes += others
         with Graph(nodes, namespace) as graph:
 
             def interrupt() -> None:
@@ -58,6 +62,8 @@ def run(arguments: argparse.Namespace) -> int:
                 try:
                     enable(client, namespace)
                     print(_welcome(namespace, machine, arguments.port), flush=True)
+                    for panel in others:
+                        print(f'The panel is on {panel_address(panel)}', flush=True)
                     _watch(client)
                 except Interrupted:
                     stop.is_set = False

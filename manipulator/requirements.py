@@ -10,6 +10,7 @@ INSTALL = {
     'mcap': 'python3 -m pip install mcap',
     'mcap_ros2': 'python3 -m pip install mcap-ros2-support',
     'PIL': 'python3 -m pip install pillow',
+    'viser': 'python3 -m pip install viser',
     'rclpy': 'install ROS 2 Jazzy and source its setup.bash, or pip install hexarm[ros]',
 }
 

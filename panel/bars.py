@@ -13,7 +13,7 @@ SHORTEST = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Bars:
-    """n bars of length and radius one along z, placed: starts (n, 3), wxyz (n, 4), sizes (n, 3)."""
+    """Where n bars of length and radius one along z go: starts, sizes (n, 3), wxyz (n, 4)."""
 
     starts: Array
     wxyz: Array

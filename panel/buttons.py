@@ -39,11 +39,10 @@ class Buttons:
         self._line = gui.add_html(state_line(View(), ''))
         stop = gui.add_button('STOP', color=RED, icon='hand-stop')
 
-        # In the server's own loop, before anything that waits for a thread.
-        @stop.on_click
-        async def _stop(event: Any) -> None:
+        async def on_stop(event: Any) -> None:
             wishes.emergency_stop()
 
+        stop.on_click(on_stop)  # in the server's own loop: nothing to wait for
         self._group(gui, 'Servos', {
             'Enable': lambda: wishes.enable(True),
             'Disable': lambda: wishes.enable(False),
@@ -81,9 +80,10 @@ class Buttons:
     def _group(gui: Any, label: str, actions: dict[str, Callable[[], None]]) -> None:
         group = gui.add_button_group(label, tuple(actions))
 
-        @group.on_click
-        async def _pressed(event: Any) -> None:
+        async def on_press(event: Any) -> None:
             actions[event.target.value]()
+
+        group.on_click(on_press)
 
 
 def state_line(view: View, said: str) -> str:

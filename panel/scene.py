@@ -123,8 +123,8 @@ class Scene:
     def _floor(self, height: float) -> None:
         self._scene.add_grid(
             '/floor', width=6.0, height=6.0, cell_size=0.1, section_size=0.5, plane='xy',
-            cell_color=(48, 54, 61), section_color=(68, 76, 86), position=(0.0, 0.0, height - 0.06),
-            shadow_opacity=0.35,
+            cell_color=(48, 54, 61), section_color=(68, 76, 86),
+            position=(0.0, 0.0, height - 0.06), shadow_opacity=0.0,
         )  # fmt: skip
         self._scene.world_axes.visible = False
         self._scene.configure_default_lights(cast_shadow=False)  # shadows cost most of the drawing

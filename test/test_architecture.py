@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-ROOMS = {'manipulator', 'hexapod_control', 'arm_control', 'physics', 'bridge', 'hexarm'}
+ROOMS = {'manipulator', 'hexapod_control', 'arm_control', 'physics', 'bridge', 'panel', 'hexarm'}
 MAY_IMPORT = {'physics': {'hexapod_control', 'arm_control'}}
 TOP = ('nodes/', '_node.py', 'executables.py', '__main__.py')
 ROS = {'rclpy', 'geometry_msgs', 'sensor_msgs', 'std_msgs', 'std_srvs', 'diagnostic_msgs'}

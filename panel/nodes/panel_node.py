@@ -70,7 +70,7 @@ class PanelNode(Node):
         self._timer = self.create_timer(TICK, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/panel',))
         self.address = address(host, self._server.get_port())
-        print(f'panel: {self.address}', flush=True)
+        self.get_logger().info(f'the page is on {self.address}')
 
     def close(self) -> None:
         """Lets go of the machine, then of the pages."""

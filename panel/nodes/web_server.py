@@ -69,16 +69,16 @@ def _extended_serve(serve_joystick: Handler) -> Iterator[list[int]]:
         options['process_request'] = _checked(options.get('process_request'))
 
         async def handle(connection: ServerConnection) -> None:
-            is_joystick = connection.request.path == JOYSTICK_PATH  # type: ignore[union-attr]
+            is_joystick = connection.request.path == JOYSTICK_PATH
             await (serve_joystick if is_joystick else handler)(connection)
 
         return original(handle, host, port, **options)
 
-    websockets_server.serve = serve  # type: ignore[assignment,misc]
+    websockets_server.serve = serve
     try:
         yield opened
     finally:
-        websockets_server.serve = original  # type: ignore[misc]
+        websockets_server.serve = original
 
 
 def _checked(serve_file: Any) -> Callable[[ServerConnection, Request], Response | None]:
@@ -97,5 +97,4 @@ def _checked(serve_file: Any) -> Callable[[ServerConnection, Request], Response 
 
 
 def _refuse_to_share(*arguments: object, **options: object) -> None:
-    """viser can publish a page on the internet at a client's request; not this one."""
-    return None
+    """A client may ask viser to publish its page on the internet; not this one."""
