@@ -2,49 +2,50 @@
 
 import time
 from dataclasses import dataclass
+from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PointStamped, PoseStamped
 from rclpy.node import Node
+from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
 from manipulator.errors import ManipulatorError
 from manipulator.frames import Frames
-from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine
 from manipulator.nodes.messages import PLATFORM_FRAME, joints_of, point_of, pose_of
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from panel.view import NodeReport, Stance, View
+
+STREAMS = {
+    'pose': MEASUREMENT,
+    'joint_states': MEASUREMENT,
+    'setpoint': COMMAND,
+    'joint_command': COMMAND,
+}
+"""What is drawn, with the quality of service of each."""
 
 FRESH = 0.5
 """Seconds after which a pose or joints no longer count as known."""
 
 
 @dataclass
-class _Pair:
-    """The last pose and joints of one origin, as messages, and when they came."""
+class _Newest:
+    """The newest message of a topic, as it came: most are overtaken before anybody looks."""
 
-    pose: PoseStamped | None = None
-    joints: JointState | None = None
-    pose_at: float = float('-inf')
-    joints_at: float = float('-inf')
+    kind: type
+    serialized: bytes = b''
+    heard_at: float = float('-inf')
 
-    def hear_pose(self, message: PoseStamped) -> None:
-        """Keeps a pose."""
-        self.pose, self.pose_at = message, time.monotonic()
+    def hear(self, serialized: bytes) -> None:
+        """Keeps a message."""
+        self.serialized, self.heard_at = serialized, time.monotonic()
 
-    def hear_joints(self, message: JointState) -> None:
-        """Keeps joints."""
-        self.joints, self.joints_at = message, time.monotonic()
-
-    def stance(self, kinematics: Kinematics) -> Stance | None:
-        """Both, decoded; None where one is missing, old or no pose of this machine."""
-        if time.monotonic() - min(self.pose_at, self.joints_at) > FRESH:
+    def message(self) -> Any | None:
+        """Decoded, or None where it is old."""
+        if time.monotonic() - self.heard_at > FRESH:
             return None
-        try:
-            return Stance(pose_of(self.pose), joints_of(self.joints, kinematics.joint_names))
-        except ManipulatorError:
-            return None
+        return deserialize_message(self.serialized, self.kind)
 
 
 class Hearing:
@@ -54,25 +55,36 @@ class Hearing:
         self._node = node
         self._kinematics = machine.kinematics
         self._frames: Frames = machine.frames
-        self._measured, self._commanded = _Pair(), _Pair()
+        self._streams = {
+            name: _Newest(JointState if 'joint' in name else PoseStamped) for name in STREAMS
+        }
+        self._subscriptions: list[Any] = []
         self.machine_state = DiagnosticStatus(message='not heard of')
         self.motion_status = DiagnosticStatus()
         self._reports: dict[str, tuple[DiagnosticStatus, float]] = {}
         subscribe = node.create_subscription
-        subscribe(PoseStamped, 'pose', self._measured.hear_pose, MEASUREMENT)
-        subscribe(JointState, 'joint_states', self._measured.hear_joints, MEASUREMENT)
-        subscribe(PoseStamped, 'setpoint', self._commanded.hear_pose, COMMAND)
-        subscribe(JointState, 'joint_command', self._commanded.hear_joints, COMMAND)
         subscribe(PointStamped, 'pivot', self._on_pivot, COMMAND)
         subscribe(DiagnosticStatus, 'machine_state', self._on_machine_state, LATCHED)
         subscribe(DiagnosticStatus, 'motion_status', self._on_motion_status, LATCHED)
         subscribe(DiagnosticArray, '/diagnostics', self._on_diagnostics, 10)
 
+    def listen(self, is_watched: bool) -> None:
+        """Hears the fast topics only while somebody looks: they are most of the work."""
+        if is_watched == bool(self._subscriptions):
+            return
+        for subscription in self._subscriptions:
+            self._node.destroy_subscription(subscription)
+        self._subscriptions = [
+            self._node.create_subscription(newest.kind, name, newest.hear, STREAMS[name], raw=True)
+            for name, newest in self._streams.items()
+            if is_watched
+        ]
+
     def view(self) -> View:
         """What is known now."""
         return View(
-            measured=self._measured.stance(self._kinematics),
-            commanded=self._commanded.stance(self._kinematics),
+            measured=self._stance('pose', 'joint_states'),
+            commanded=self._stance('setpoint', 'joint_command'),
             frames=self._frames,
             machine_state=self.machine_state.message,
             machine_reason=_value(self.machine_state, 'reason'),
@@ -80,6 +92,17 @@ class Hearing:
             motion=self.motion_status.message,
             nodes=self._node_reports(),
         )
+
+    def _stance(self, pose_topic: str, joint_topic: str) -> Stance | None:
+        """From two topics; None where one is old, or not of this machine."""
+        pose = self._streams[pose_topic].message()
+        joints = self._streams[joint_topic].message()
+        if pose is None or joints is None:
+            return None
+        try:
+            return Stance(pose_of(pose), joints_of(joints, self._kinematics.joint_names))
+        except ManipulatorError:
+            return None
 
     def _node_reports(self) -> tuple[NodeReport, ...]:
         now = time.monotonic()

@@ -85,7 +85,9 @@ class PanelNode(Node):
         self._ticks += 1
         if self._is_time_for(GOAL_EVERY):
             self._asking.send_goal()
-        if self._server.get_clients():
+        is_watched = bool(self._server.get_clients())
+        self._hearing.listen(is_watched)
+        if is_watched:
             self._draw()
 
     def _draw(self) -> None:

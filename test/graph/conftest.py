@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
@@ -100,3 +101,60 @@ def enabled(user):
     if user.machine_state.message != 'enabled':
         user.enable()
     return user
+
+
+@pytest.fixture(scope='session')
+def interfaces():
+    """The tables of docs/interfaces.md, and what running nodes have of what they list."""
+    return Interfaces()
+
+
+class Interfaces:
+    """Topics and services of nodes in the namespace /hexapod: as written, and as they are."""
+
+    EVERYWHERE = frozenset({'/diagnostics', '/rosout', '/parameter_events'})
+    """Every node has these; the text above the tables says so."""
+
+    OPTIONAL = frozenset({'/tf'})
+    """There where tf2_msgs is installed."""
+
+    ROS_OWN = ('parameter', 'type_description')
+
+    @staticmethod
+    def section(node):
+        text = (ROOT / 'docs' / 'interfaces.md').read_text()
+        return text.split(f'\n## {node}\n')[1].split('\n## ')[0]
+
+    def documented(self, node):
+        """{(kind, name): (type, QoS)} from the tables of one node."""
+        row = r'^\| `([\w/]+)` \| (in|out|service) \| (\S+) \|([^|]*)\|'
+        found = re.findall(row, self.section(node), re.MULTILINE)
+        return {(kind, name): (message, qos.strip()) for name, kind, message, qos in found}
+
+    def running(self, user, node):
+        """The same from the graph."""
+        found = {}
+        ask = user.node
+        for kind, query, endpoints in (
+            (
+                'in',
+                ask.get_subscriber_names_and_types_by_node,
+                ask.get_subscriptions_info_by_topic,
+            ),
+            ('out', ask.get_publisher_names_and_types_by_node, ask.get_publishers_info_by_topic),
+        ):
+            for topic, types in query(node, '/hexapod'):
+                if topic in self.EVERYWHERE | self.OPTIONAL:
+                    continue
+                (qos,) = {qos_text(e.qos_profile) for e in endpoints(topic) if e.node_name == node}
+                found[kind, topic.removeprefix('/hexapod/')] = (types[0], qos)
+        for service, types in ask.get_service_names_and_types_by_node(node, '/hexapod'):
+            if not any(word in service for word in self.ROS_OWN):
+                found['service', service.removeprefix('/hexapod/')] = (types[0], '')
+        return found
+
+
+def qos_text(profile):
+    reliability = 'R' if profile.reliability == ReliabilityPolicy.RELIABLE else 'B'
+    durability = 'L' if profile.durability == DurabilityPolicy.TRANSIENT_LOCAL else 'V'
+    return f'{reliability} {durability}'
