@@ -83,15 +83,15 @@ def page(two_pages):
 
 
 @pytest.fixture
-def machine(enabled, two_pages):
+def machine(user, two_pages):
     """What the machine does, heard from outside; at home and able to move."""
-    if enabled.machine_state.message == 'stopped':
-        enabled.trigger('serial_bridge/clear_fault')
-    if enabled.machine_state.message != 'enabled':
-        enabled.enable()
-    enabled.wait('standing still', lambda: enabled.motion('mode') == 'hold', 10.0)
-    enabled.home()
-    heard = Heard(enabled)
+    if user.machine_state.message == 'stopped':
+        user.trigger('serial_bridge/clear_fault')
+    if user.machine_state.message != 'enabled':
+        user.enable()
+    user.wait('standing still', lambda: user.motion('mode') == 'hold', 10.0)
+    user.home()
+    heard = Heard(user)
     yield heard
     heard.close()
     for page in two_pages:
