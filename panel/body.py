@@ -17,7 +17,7 @@ from panel.view import Stance
 RADII = {'body': 0.012, 'crank': 0.022, 'rod': 0.014, 'platform': 0.016, 'link': 0.055}
 """Of bars, by part, as shares of the machine's size."""
 
-PLAIN = {'body': (84, 96, 110), 'platform': (196, 206, 218), 'link': (104, 140, 180)}
+PLAIN = {'body': (58, 68, 82), 'platform': (62, 104, 168), 'link': (62, 104, 168)}
 """Parts whose colour says nothing; cranks, rods and joints are coloured by their margins."""
 
 STILL = 2e-5

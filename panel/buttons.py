@@ -29,6 +29,7 @@ class Wishes:
     pause: Callable[[bool], None]
     brake: Callable[[], None]
     set_speed: Callable[[float], None]
+    choose_mode: Callable[[str], None]
 
 
 class Buttons:

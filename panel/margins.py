@@ -6,7 +6,7 @@ from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
-GOOD, NARROW, NONE_LEFT = (64, 192, 140), (245, 176, 65), (231, 76, 60)
+GOOD, NARROW, NONE_LEFT = (18, 150, 84), (224, 130, 8), (206, 32, 22)
 COMFORTABLE = 0.35
 """The share of a limit's room from which everything is well."""
 

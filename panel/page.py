@@ -9,6 +9,7 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.teleop.modes import MODES
 from panel.buttons import Buttons, Wishes
 from panel.goal_sliders import GoalSliders
 from panel.plots import Plots
@@ -16,7 +17,7 @@ from panel.readout import diagnostics_text
 from panel.scene import Scene
 from panel.view import View
 
-JOYSTICK_HEIGHT = 168
+JOYSTICK_HEIGHT = 200
 FASTEST = 100
 
 
@@ -44,6 +45,8 @@ class Page:
             self.sliders = GoalSliders(gui, machine, wish_goal)
             gui.add_html(joystick_frame(joystick))
             self._joystick_speed = gui.add_slider('joystick [%]', 1, FASTEST, 1, 40)
+            modes = gui.add_dropdown('jog mode', tuple(MODES))
+            modes.on_update(lambda event: wishes.choose_mode(event.target.value))
         kinematics = machine.kinematics
         with tabs.add_tab('Plots'):
             self._plots = Plots(gui, kinematics.joint_names, kinematics.joint_unit)

@@ -29,10 +29,7 @@ class NodeReport:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """Measured and commanded stance (None while nothing fresh is known) and all the words.
-
-    goal is the newest asked for by the sliders, driver who jogs ('' for nobody).
-    """
+    """Measured and commanded stance (None while nothing fresh is known) and all the words."""
 
     measured: Stance | None = None
     commanded: Stance | None = None
@@ -42,8 +39,3 @@ class View:
     mode: str = ''
     motion: str = ''
     nodes: tuple[NodeReport, ...] = ()
-
-    @property
-    def is_enabled(self) -> bool:
-        """Whether the servos follow."""
-        return self.machine_state == 'enabled'

@@ -31,9 +31,12 @@ class Asking:
     Only the emergency stop does not wait for it: its message goes out at once.
     """
 
-    def __init__(self, node: Node, on_stop: Callable[[], None]) -> None:
+    def __init__(
+        self, node: Node, on_stop: Callable[[], None], choose_mode: Callable[[str], None]
+    ) -> None:
         self._node = node
         self._on_stop = on_stop
+        self._choose_mode = choose_mode
         self._wishes: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._goal: Pose | None = None
         self.said = ''
@@ -57,6 +60,7 @@ class Asking:
             set_speed=lambda share: self._wishes.put(
                 lambda: self._speeds.publish(Float64(data=share))
             ),
+            choose_mode=lambda mode: self._wishes.put(lambda: self._choose_mode(mode)),
         )
 
     def wish_goal(self, pose: Pose) -> None:

@@ -16,8 +16,6 @@ from manipulator.errors import InvalidInput
 from panel.joystick import Joystick
 from panel.joystick_words import answer, heard
 
-ANOTHER = 'somebody else jogs the machine'
-
 
 class JoystickSocket:
     """Beats of all pages into one `Joystick`."""
@@ -27,12 +25,10 @@ class JoystickSocket:
         self._lock = threading.Lock()
         self._pages = itertools.count()
         self._may_move = may_move
-        self.connected = 0
 
     async def serve(self, connection: ServerConnection) -> None:
         """One page, from its first word until it is gone."""
         page = next(self._pages)
-        self.connected += 1
         try:
             async for text in connection:
                 await connection.send(self._answer(page, text))
@@ -41,7 +37,6 @@ class JoystickSocket:
         except ConnectionClosed:
             pass
         finally:
-            self.connected -= 1
             with self._lock:
                 self._joystick.leave(page)
 

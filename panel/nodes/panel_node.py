@@ -35,6 +35,10 @@ DRAW_EVERY, SAMPLE_EVERY, GOAL_EVERY, REDRAW_EVERY = 3, 5, 5, 20
 HAND_RESTS = 1.0
 """Seconds after the last move of a slider in which the sliders stay where the hand left them."""
 
+FOLLOWED = ('hold', 'jog', 'cycle', 'path')
+"""Modes in which the machine goes where the sliders did not ask it to."""
+
+ELSEWHERE = 1e-4
 REACH_GRID = (13, 24)
 HOST = 'address to serve the page on; 0.0.0.0 for every network: there is no login'
 PORT = 'port of the page; where it is taken, the next free one'
@@ -51,8 +55,8 @@ class PanelNode(Node):
         self._machine = load(name)
         self._joystick = JoystickSocket(self._why_still)
         self._hearing = Hearing(self, self._machine)
-        self._asking = Asking(self, self._joystick.stop)
         self._topics = JogTopics(self, 'panel')
+        self._asking = Asking(self, self._joystick.stop, self._topics.choose)
         limits = self._machine.motion
         self._full = np.repeat([limits.linear.speed, limits.angular.speed], 3)
         label = f'{Path(name).stem} · {self.get_namespace()}'
@@ -64,6 +68,7 @@ class PanelNode(Node):
         self._reach = NewestWorker[tuple[Pose, Array | None]](self._show_reach)
         self._moved_at = float('-inf')
         self._ticks = 0
+        self._reach_at = self._machine.kinematics.home
         self._is_reach_asked = self._is_hull_drawn = False
         self._view = View()
         self.create_subscription(Float64, 'speed_override', self._on_speed, COMMAND)
@@ -107,13 +112,15 @@ class PanelNode(Node):
             self._ask_reach(self._page.sliders.pose)
         if view.commanded is None or time.monotonic() - self._moved_at < HAND_RESTS:
             return
-        if view.mode in ('hold', 'jog', 'cycle', 'path') and self._is_elsewhere(view):
-            self._page.sliders.follow(view.commanded.pose)
-            self._ask_reach(view.commanded.pose)
+        pose = view.commanded.pose
+        if view.mode in FOLLOWED and self._is_elsewhere(pose):
+            self._page.sliders.follow(pose)
+            self._page.scene.show_goal(pose)
+        if view.mode == 'hold' and np.abs(self._reach_at.twist_to(pose)).max() > ELSEWHERE:
+            self._ask_reach(pose)
 
-    def _is_elsewhere(self, view: View) -> bool:
-        way = self._page.sliders.pose.twist_to(view.commanded.pose)  # type: ignore[union-attr]
-        return bool(np.abs(way).max() > 1e-4)
+    def _is_elsewhere(self, pose: Pose) -> bool:
+        return bool(np.abs(self._page.sliders.pose.twist_to(pose)).max() > ELSEWHERE)
 
     def _wish_goal(self, pose: Pose) -> None:
         self._moved_at = time.monotonic()
@@ -122,6 +129,7 @@ class PanelNode(Node):
 
     def _ask_reach(self, pose: Pose) -> None:
         self._page.scene.show_goal(pose)
+        self._reach_at = pose
         commanded = self._view.commanded
         self._reach.ask((pose, None if commanded is None else commanded.joints))
 

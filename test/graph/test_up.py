@@ -3,6 +3,7 @@
 import os
 import signal
 import time
+import urllib.request
 
 import pytest
 
@@ -40,6 +41,19 @@ def test_up_enables_runs_and_parks_on_ctrl_c(hexarm, processes_left):
     assert process.wait(20) == 0
     assert 'parking' in rest
     assert 'not parked' not in rest
+    wait_until_none_is_left(processes_left)
+
+
+def test_up_with_a_panel_tells_where_its_page_is(hexarm, processes_left):
+    process = hexarm('up', 'hexapod', '--panel')
+    said = read_until(process, 'The panel is on')
+    address = said.split('The panel is on')[1].strip()
+    with urllib.request.urlopen(address, timeout=20) as page:
+        assert '<title>' in page.read().decode()
+    process.send_signal(signal.SIGINT)
+    rest = process.stdout.read()
+    assert process.wait(20) == 0
+    assert 'Traceback' not in rest
     wait_until_none_is_left(processes_left)
 
 
