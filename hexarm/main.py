@@ -10,6 +10,7 @@ from typing import NoReturn
 
 from hexarm import (
     accuracy,
+    calibrate,
     check,
     demo,
     firmware_header,
@@ -50,6 +51,7 @@ COMMANDS = (
     leg_motion,
     machine_list,
     check,
+    calibrate,
     firmware_header,
 )
 EXAMPLES = """\

@@ -1,0 +1,15 @@
+"""`hexarm calibrate`: what a machine file says, set right by looking at the machine."""
+
+import argparse
+
+from hexarm.calibration import servos
+
+PARTS = (servos,)
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommand and its parts."""
+    parser = commands.add_parser('calibrate', help='set a machine file right by the machine')
+    parts = parser.add_subparsers(metavar='PART', title='parts', required=True)
+    for part in PARTS:
+        part.add_parser(parts)

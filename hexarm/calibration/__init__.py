@@ -1,0 +1,1 @@
+"""What stands behind `hexarm calibrate`: screens, files and the serial line."""

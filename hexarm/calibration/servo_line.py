@@ -1,0 +1,167 @@
+"""The board at the other end of a port that this process has to itself, for one sitting.
+
+A port that is lost is not opened again: where the servos stand would be anybody's guess.
+"""
+
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from concurrent.futures import TimeoutError as NoAnswer
+from contextlib import contextmanager
+from types import TracebackType
+
+from bridge.calibration import COUNTS_PER_US
+from bridge.events import Disconnected, Event, FaultReported, Incompatible
+from bridge.link_thread import LinkThread, Ticket
+from bridge.messages import Arm, Clear, Command, Disarm, FaultCode, Known, Mode, Setpoint, Stop
+from bridge.serial_port import SerialPort
+from bridge.servo_config import BoardConfig
+from bridge.session import Session
+from manipulator.errors import LinkError, Refused
+
+CONNECT_WITHIN, ARM_WITHIN, ANSWER_WITHIN = 6.0, 10.0, 1.0
+LOOK_EVERY = 0.02
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class ServoLine:
+    """A context manager: connects when it is entered, and takes the power from the servos at exit.
+
+    is_off says afterwards whether the board has confirmed that.
+    """
+
+    def __init__(self, port: str, config: BoardConfig) -> None:
+        """LinkError: why the port cannot be used."""
+        self.trouble = ''
+        self.is_off = False
+        self._is_energised = False
+        self._config = config
+        self._port: SerialPort | None = _opened(port, config.link.baud)
+        self._session = Session(len(config.servos.joints))
+        self._is_ready = threading.Event()
+        self._link = LinkThread(self._open_once, self._session, self._note)
+
+    def __enter__(self) -> 'ServoLine':
+        """LinkError where no board answers."""
+        self._link.start()
+        try:
+            self._await_board()
+        except BaseException:
+            self._link.close()
+            raise
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Servos off, as far as there is a board to obey; then the port is given back."""
+        with _undisturbed():
+            until = time.monotonic() + ANSWER_WITHIN
+            while not self.is_off and self.mode is not None and time.monotonic() < until:
+                try:
+                    self._ask(Disarm())
+                    self.is_off = True
+                except Refused:  # a STOP is under way, or a frame was lost
+                    time.sleep(LOOK_EVERY)
+            self._link.close()
+
+    @property
+    def mode(self) -> Mode | None:
+        """The board's, None where there is none."""
+        state = self._session.state
+        return None if state is None else state.mode
+
+    @property
+    def has_let_go(self) -> bool:
+        """The servos had power and have it no more."""
+        return self._is_energised and self.mode in (Mode.DISARMED, Mode.FAULT)
+
+    @property
+    def pulses(self) -> tuple[float, ...]:
+        """What the servos get now, in µs by channel; Refused where one gets nothing."""
+        state = self._session.state
+        if state is None or any(joint.known is Known.UNKNOWN for joint in state.joints):
+            raise Refused('a servo gets no pulse')
+        return tuple(joint.count / COUNTS_PER_US for joint in state.joints)
+
+    def energise(self, counts: tuple[int, ...]) -> None:
+        """Servo by servo, each at its count; where all are on already, they stay where they are.
+
+        Refused says why the board does not: stopped, a fault, the battery.
+        """
+        self._ask(Arm(counts))
+        until = time.monotonic() + ARM_WITHIN
+        while self.mode not in (Mode.ARMED, Mode.HOLDING):
+            if self.trouble or time.monotonic() > until:
+                raise Refused(f'the servos were not energised: {self.trouble or "no answer"}')
+            time.sleep(LOOK_EVERY)
+        self._is_energised = True
+
+    def move(self, counts: tuple[int, ...]) -> None:
+        """Be there now."""
+        setpoint = Setpoint(self._config.link.setpoint_deadline_ms, counts)
+        self._link.put_setpoint(Ticket(setpoint, time.monotonic()))
+
+    def stop(self) -> None:
+        """At once; repeated until the board has heard it."""
+        self._link.request(Stop())
+
+    def clear(self) -> None:
+        """Forget the stop; nothing moves. Refused says why not."""
+        self._ask(Clear())
+
+    def _ask(self, command: Command) -> None:
+        try:
+            self._link.request(command).result(ANSWER_WITHIN)
+        except NoAnswer as error:
+            raise Refused('the board does not answer') from error
+
+    def _await_board(self) -> None:
+        if not self._is_ready.wait(CONNECT_WITHIN):
+            reason = self.trouble or 'no board answers: is its firmware on it?'
+            raise LinkError(reason)
+        if self.mode is None:
+            raise LinkError(self.trouble or 'the board has fallen silent')
+
+    def _open_once(self) -> SerialPort:
+        port, self._port = self._port, None
+        if port is None:
+            raise LinkError(self.trouble or 'the port was lost')
+        return port
+
+    def _note(self, event: Event) -> None:
+        """In the link's thread."""
+        match event:
+            case Disconnected(reason) | Incompatible(reason):
+                self.trouble = self.trouble or reason
+                self._is_ready.set()
+            case FaultReported(fault):
+                if fault.code is FaultCode.UNDERVOLTAGE:
+                    self.trouble = 'the battery is too low'
+            case _:
+                if self.mode is not None:
+                    self._is_ready.set()
+
+
+def _opened(port: str, baud: int) -> SerialPort:
+    try:
+        return SerialPort(port, baud)
+    except LinkError as error:
+        if 'in use' in str(error):
+            raise LinkError(f'{error}; end hexarm up, then try again') from error
+        raise
+
+
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """No signal takes the time that the servos need to go off."""
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in SIGNALS}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

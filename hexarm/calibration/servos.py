@@ -1,0 +1,115 @@
+"""`hexarm calibrate servos MACHINE`: signs and centres, one servo at a time, by the keyboard."""
+
+import argparse
+import math
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from difflib import get_close_matches
+
+from bridge.servo_config import BoardConfig, ServoConfig
+from bridge.servo_walk import ServoWalk, Stage
+from hexarm.calibration.fake_servos import FakeServos, mounted_wrongly
+from hexarm.calibration.machine_writer import MachineWriter
+from hexarm.calibration.servo_line import SIGNALS, ServoLine
+from hexarm.calibration.servo_screen import POSITIVE
+from hexarm.calibration.servo_sitting import Sitting
+from hexarm.calibration.servo_values import changed_values, in_words
+from hexarm.machines import read
+from manipulator.errors import InvalidInput
+from manipulator.nodes.terminal import Terminal
+from manipulator.yaml_edit import with_values
+
+SEED = 7
+INTERRUPTED = 130
+
+
+def add_parser(parts: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the part."""
+    parser = parts.add_parser('servos', help='signs and centres, one servo at a time')
+    parser.add_argument('machine', metavar='MACHINE', help='a shipped name or the path of a file')
+    parser.add_argument(
+        '--port', default='fake', metavar='PATH',
+        help="the board's device, or 'fake' (default): servos mounted wrongly, to try it",
+    )  # fmt: skip
+    parser.add_argument('--only', metavar='NAME', nargs='+', help='these servos, not all')
+    parser.add_argument('--output', metavar='FILE', help='write a copy instead of MACHINE')
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Walks through the servos and writes what was found; status 0 unless it could not be done."""
+    writer = MachineWriter(arguments.machine, arguments.output)
+    file = read(arguments.machine)
+    config = BoardConfig.from_machine(file, str(writer.source))
+    chosen = chosen_servos(config.servos.joints, arguments.only)
+    try:
+        walk = _sit(arguments.port, config, chosen, POSITIVE.get(file.kind, ''))
+    except KeyboardInterrupt:
+        print('interrupted: nothing was written')
+        return INTERRUPTED
+    before = config.servos.joints
+    if walk is None or walk.stage is not Stage.WRITE or walk.servos == before:
+        print('nothing was written')
+        return 0
+    values = changed_values(before, walk.servos)
+    print('\n'.join(in_words(before, walk.servos)))
+    problems = writer.write(with_values(writer.text, values))
+    print(f'{writer.target}: {len(values)} values written')
+    for problem in problems:
+        print(f'  to be looked at: {problem}')
+    return 0
+
+
+def chosen_servos(servos: tuple[ServoConfig, ...], names: list[str] | None) -> tuple[int, ...]:
+    """Which servos to walk through; InvalidInput names one that there is not."""
+    known = [servo.name for servo in servos]
+    for name in names or ():
+        if name not in known:
+            near = get_close_matches(name, known, n=1)
+            hint = f', did you mean {near[0]!r}?' if near else ''
+            raise InvalidInput(f'no servo is called {name!r}{hint} (there are {known})')
+    return tuple(known.index(name) for name in names or known)
+
+
+def _sit(
+    port: str, config: BoardConfig, chosen: tuple[int, ...], positive: str
+) -> ServoWalk | None:
+    with ExitStack() as stack:
+        terminal = stack.enter_context(Terminal())
+        stack.enter_context(_signals_interrupt())
+        look: Callable[[int], str] = lambda i: ''  # noqa: E731
+        if port == 'fake':
+            fake = stack.enter_context(FakeServos(mounted_wrongly(config, SEED)))
+            port, look = fake.port, _eyes(fake, config)
+        line = ServoLine(port, config)
+        try:
+            with line:
+                servos = config.servos.joints
+                return Sitting(terminal, line, servos, chosen, positive, look).run()
+        finally:
+            terminal.show(f'\r\x1b[K{_farewell(line)}\n')
+
+
+def _eyes(fake: FakeServos, config: BoardConfig) -> Callable[[int], str]:
+    """What one would see on a machine, in words."""
+    if config.servos.joints[0].is_linear:
+        return lambda i: f'  [seen: {1e3 * fake.positions[i]:.1f} mm]'
+    return lambda i: f'  [seen: {math.degrees(fake.positions[i]):.1f}°]'
+
+
+def _farewell(line: ServoLine) -> str:
+    if line.is_off:
+        return 'servos off'
+    return 'the board has not confirmed that the servos are off: pull their plug'
+
+
+@contextmanager
+def _signals_interrupt() -> Iterator[None]:
+    """What would end the process raises KeyboardInterrupt, so that the servos go off."""
+    before = {number: signal.signal(number, signal.default_int_handler) for number in SIGNALS}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,132 @@
+"""A person at a terminal with `hexarm calibrate servos`, and the board that she looks at."""
+
+import contextlib
+import os
+import pty
+import select
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from bridge.board_thread import BoardThread, FakeMachine
+from bridge.fake_line import FakeLine
+from bridge.servo_config import BoardConfig
+from hexarm import machines
+
+ROOT = Path(__file__).resolve().parents[3]
+PATIENCE = 30.0
+RIGHT, LEFT = '\x1b[C', '\x1b[D'
+
+
+class Person:
+    """Types, reads the screen, and sees where the servos of the real machine stand."""
+
+    def __init__(self, truth, folder, machine, *words):
+        self.machine = FakeMachine.from_config(truth, boot_s=0.1, hysteresis=0.0)
+        port = folder / 'board'
+        self.board = BoardThread(self.machine, FakeLine(port), lambda positions: None)
+        self.board.start()
+        self.keys, screen = pty.openpty()
+        command = [sys.executable, '-m', 'hexarm', 'calibrate', 'servos', str(machine)]
+        self.process = subprocess.Popen(
+            [*command, '--port', str(port), *words],
+            cwd=ROOT,
+            stdin=screen,
+            stdout=screen,
+            stderr=screen,
+            start_new_session=True,
+        )
+        os.close(screen)
+        self.said = ''
+
+    @property
+    def pulses(self):
+        return self.machine.board.pulses
+
+    @property
+    def positions(self):
+        return self.machine.servos.positions
+
+    def type(self, keys):
+        os.write(self.keys, keys.encode())
+
+    def read(self):
+        while select.select([self.keys], [], [], 0.02)[0]:
+            try:
+                self.said += os.read(self.keys, 4096).decode(errors='replace')
+            except OSError:
+                return
+
+    def await_that(self, what, is_so):
+        until = time.monotonic() + PATIENCE
+        while not is_so():
+            assert time.monotonic() < until, f'{what} never came; the screen: {self.said[-2000:]}'
+            self.read()
+            time.sleep(0.01)
+
+    def await_words(self, words):
+        self.await_that(words, lambda: words in self.said)
+        self.said = self.said[self.said.index(words) + len(words) :]
+
+    def begin(self):
+        self.await_words('ENTER energises')
+        self.type('\r')
+        self.await_words('crank_1, direction')
+
+    def jog_to(self, channel, pulse_us):
+        """By the arrow keys, a step at a time, until the pulse is there."""
+        while abs(self.pulses[channel] / 2 - pulse_us) > 0.25:
+            before = self.pulses[channel]
+            wanted = RIGHT if before / 2 < pulse_us else LEFT
+            self.type(wanted)
+            with contextlib.suppress(AssertionError):
+                self.await_that('a move', lambda old=before: self.pulses[channel] != old)
+            self.await_rest(channel)
+
+    def await_rest(self, channel):
+        last = None
+        while self.pulses[channel] != last:
+            last = self.pulses[channel]
+            for _ in range(8):
+                self.read()
+                time.sleep(0.01)
+
+    def await_end(self):
+        self.await_that('the end', lambda: self.process.poll() is not None)
+        self.read()
+        return self.process.returncode
+
+    def close(self):
+        if self.process.poll() is None:
+            os.kill(self.process.pid, signal.SIGKILL)
+        self.process.wait(10)
+        with contextlib.suppress(OSError):
+            os.close(self.keys)
+        self.board.close()
+
+
+@pytest.fixture
+def sit_down(tmp_path):
+    """A person with a machine whose servos are in truth otherwise than its file says."""
+    people = []
+
+    def begin(wrong, *words):
+        file = tmp_path / 'mine.yaml'
+        file.write_text(machines.shipped()['robocake'].read_text())
+        config = BoardConfig.from_machine(machines.read(str(file)))
+        joints = list(config.servos.joints)
+        for index, values in wrong.items():
+            joints[index] = replace(joints[index], **values)
+        servos = replace(config.servos, joints=tuple(joints), arm_interval_ms=20)
+        person = Person(replace(config, servos=servos), tmp_path, file, *words)
+        people.append(person)
+        return person, file
+
+    yield begin
+    for person in people:
+        person.close()
