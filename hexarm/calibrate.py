@@ -2,9 +2,9 @@
 
 import argparse
 
-from hexarm.calibration import servos
+from hexarm.calibration import geometry, poses, servos
 
-PARTS = (servos,)
+PARTS = (servos, poses, geometry)
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:

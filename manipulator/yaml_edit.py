@@ -15,6 +15,8 @@ from manipulator.errors import ConfigError
 Place: TypeAlias = tuple[str | int, ...]
 """Keys and list indices from the top: ('servos', 'joints', 0, 'sign')."""
 
+_BEHIND = re.compile(r'(\s+\w+):[^#]*?(\s*#.*)$').match
+
 
 def with_values(text: str, values: Mapping[Place, str]) -> str:
     """The text with new scalars or flow lists at places that exist; ConfigError names others."""
@@ -28,14 +30,16 @@ def with_values(text: str, values: Mapping[Place, str]) -> str:
 def with_section(text: str, key: str, lines: Sequence[str]) -> str:
     """The text with the values under a top-level key exchanged for `lines`.
 
-    Comments that have a line of their own stay, ahead of the new lines; ConfigError where there
-    is no such key.
+    Comments that have a line of their own stay, ahead of the new lines, and those behind a key
+    that is there again; ConfigError where there is no such key.
     """
     node = _node(_composed(text), (key,))
     old = text.split('\n')
     first = next(i for i, line in enumerate(old) if re.match(rf'{re.escape(key)}\s*:', line))
     last = max(_last_lines(node))
     comments = [line for line in old[first + 1 : last + 1] if line.lstrip().startswith('#')]
+    behind = {found[1]: found[2] for line in old[first + 1 : last + 1] if (found := _BEHIND(line))}
+    lines = [line + behind.get(line.split(':')[0], '') for line in lines]
     head = old[first] if node.start_mark.line > first else f'{key}:'
     return '\n'.join([*old[:first], head, *comments, *lines, *old[last + 1 :]])
 

@@ -15,10 +15,12 @@ def changed_values(
         place: Place = ('servos', 'joints', i)
         for name in FIELDS:
             if getattr(old, name) != getattr(new, name):
-                found[(*place, name)] = str(getattr(new, name))
+                field = (*place, name)
+                found[field] = str(getattr(new, name))
         for end, (was, now) in enumerate(zip(old.pulse_range_us, new.pulse_range_us, strict=True)):
             if was != now:
-                found[(*place, 'pulse_range_us', end)] = str(now)
+                bound = (*place, 'pulse_range_us', end)
+                found[bound] = str(now)
     return found
 
 

@@ -50,6 +50,17 @@ def test_values_in_flow_and_block_style_change_alone():
     ]
 
 
+def test_a_key_that_is_there_again_keeps_its_comment():
+    after = with_section(TEXT, 'geometry', ['  height_mm: 42.0', '  radius_mm: 7.0'])
+    assert '  height_mm: 42.0   # goes\n  radius_mm: 7.0        # goes\n' in after
+
+
+@pytest.mark.parametrize('wrong', ['a: [1', 'a: 1\r\n'])
+def test_text_that_cannot_be_edited_is_refused(wrong):
+    with pytest.raises(ConfigError):
+        with_values(wrong, {('a',): '2'})
+
+
 @pytest.mark.parametrize(
     ('place', 'said'),
     [

@@ -1,0 +1,1 @@
+"""Parallel platforms as models whose parameters can be identified."""

@@ -1,0 +1,147 @@
+"""From measurements to the machine that they are of."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from manipulator import rotation as so3
+from manipulator.arrays import Array, Mask
+from manipulator.errors import InvalidInput, NoSolution
+from manipulator.identification.device_frames import COUNT, GROUPS, DeviceFrames
+from manipulator.identification.least_squares import Fit, fit
+from manipulator.identification.measurements import Measurements, Noise
+from manipulator.identification.model import Model, Parameter
+from manipulator.pose import Pose
+
+
+@dataclass(frozen=True, eq=False)
+class Identification:
+    """What was found.
+
+    parameters, values (p,) and covariance (p, p) are of the model first, then the 12 of the
+    frames; what was not free has value and covariance 0. frames are those
+    found. before and after are the errors (n, 6) in m and rad, of the machine file with the best
+    frames and of what was found. slopes (6n, p) are per multiple of the noise.
+    """
+
+    parameters: tuple[Parameter, ...]
+    is_free: Mask
+    values: Array
+    covariance: Array
+    frames: DeviceFrames
+    before: Array
+    after: Array
+    slopes: Array
+
+    @property
+    def deviations(self) -> Array:
+        """Standard deviations (p,), m or rad."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+
+    @property
+    def model_values(self) -> Array:
+        """The values of the machine alone."""
+        return self.values[:-COUNT]
+
+
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """A machine as the device sees it: model and frames as one function of all values."""
+
+    model: Model
+    frames: DeviceFrames
+    measurements: Measurements
+    noise: Noise
+    near: Pose
+
+    def errors(self, values: Array) -> Array:
+        """(n, 6): measured less predicted, m and rad, in the device's axes."""
+        return self._predicted(values)[1]
+
+    def weighted(self, values: Array) -> tuple[Array, Array]:
+        """Errors (6n,) and slopes (6n, p) in multiples of the noise."""
+        platform, errors = self._predicted(values)
+        own = self.model.slopes(values[:-COUNT], self.measurements.joints, platform)
+        slopes = self.frames.slopes(values[-COUNT:], platform, own)
+        weights = self.noise.weights
+        rows = -slopes * weights[:, None]
+        return (errors * weights).ravel(), rows.reshape(-1, rows.shape[2])
+
+    def _predicted(self, values: Array) -> tuple[Pose, Array]:
+        platform = self.model.predict(values[:-COUNT], self.measurements.joints, self.near)
+        seen = self.frames.moved(values[-COUNT:]).seen(platform)
+        measured = self.measurements.poses
+        turn = so3.log(measured.rotation @ np.swapaxes(seen.rotation, -1, -2))
+        return platform, np.concatenate([measured.position - seen.position, turn], axis=1)
+
+
+def identify(
+    model: Model, measurements: Measurements, noise: Noise, near: Pose, free: Collection[str]
+) -> Identification:
+    """The most probable machine, given the noise and the tolerances.
+
+    near (n,) are the poses by the machine file; free the groups of parameters that are sought.
+    Where the frames are not free, the device tells poses of the platform in the base frame.
+    Raises InvalidInput for a group that there is not, NoSolution where nothing fits.
+    """
+    parameters = (*model.parameters, *DeviceFrames.parameters())
+    is_free = free_mask(parameters, free)
+    known = DeviceFrames.known()
+    guessed = DeviceFrames.guessed(near, measurements.poses) if set(GROUPS) & set(free) else known
+    frames = DeviceFrames(
+        guessed.T_device_base if 'device' in free else known.T_device_base,
+        guessed.T_platform_marker if 'marker' in free else known.T_platform_marker,
+    )
+    sight = Sight(model, frames, measurements, noise, near)
+    best_frames = _fitted(sight, parameters, is_free & _is_frame(parameters))[0]
+    values, found = _fitted(sight, parameters, is_free)
+    covariance = np.zeros((len(parameters),) * 2)
+    if found is not None:
+        covariance[np.ix_(is_free, is_free)] = found.covariance
+    return Identification(
+        parameters,
+        is_free,
+        values,
+        covariance,
+        frames.moved(values[-COUNT:]),
+        sight.errors(best_frames),
+        sight.errors(values),
+        sight.weighted(values)[1],
+    )
+
+
+def free_mask(parameters: tuple[Parameter, ...], free: Collection[str]) -> Mask:
+    """Which parameters are in the groups; InvalidInput names a group that there is not."""
+    groups = list(dict.fromkeys(parameter.group for parameter in parameters))
+    for group in free:
+        if group not in groups:
+            raise InvalidInput(f'no parameters are called {group!r} (there are {groups})')
+    return np.array([parameter.group in free for parameter in parameters])
+
+
+def _is_frame(parameters: tuple[Parameter, ...]) -> Mask:
+    is_frame: Mask = np.arange(len(parameters)) >= len(parameters) - COUNT
+    return is_frame
+
+
+def _fitted(
+    sight: Sight, parameters: tuple[Parameter, ...], mask: Mask
+) -> tuple[Array, Fit | None]:
+    """All values, those of the mask fitted and the others zero."""
+    values = np.zeros(len(parameters))
+    if not mask.any():
+        return values, None
+    tolerances = np.array([parameter.tolerance for parameter in parameters])[mask]
+
+    def errors(some: Array) -> tuple[Array, Array]:
+        whole = values.copy()
+        whole[mask] = some
+        r, slopes = sight.weighted(whole)
+        if not np.isfinite(slopes).all():
+            raise NoSolution('a singular pose')
+        return r, slopes[:, mask]
+
+    found = fit(errors, tolerances)
+    values[mask] = found.values
+    return values, found
