@@ -8,7 +8,6 @@ import numpy as np
 from hexapod_control.identification.leg_model import Tolerances
 from hexapod_control.identification.model_of import model_of
 from hexapod_control.workspace import sample
-from hexarm.answers import REFUSED
 from hexarm.calibration.pose_table import planned
 from hexarm.machines import load
 from manipulator.arrays import Array
@@ -40,12 +39,11 @@ def add_parser(parts: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Writes the table; status 2 where the file is there already."""
+    """Writes the table; InvalidInput where the file is there already."""
     if not 1 <= arguments.count <= MOST:
         raise InvalidInput(f'--count {arguments.count} outside [1, {MOST}]')
     if arguments.output and Path(arguments.output).exists():
-        print(f'hexarm: {arguments.output} exists already: it is not overwritten')
-        return REFUSED
+        raise InvalidInput(f'{arguments.output} exists already: it is not overwritten')
     machine = load(arguments.machine)
     model = model_of(machine.kinematics, TOLERANCES)
     joints, poses = telling_poses(machine, model, NOISE, arguments.count)

@@ -1,0 +1,104 @@
+"""Slopes by differences, poses by the closure of the legs, and the machine files they become."""
+
+import numpy as np
+import pytest
+import yaml
+
+from hexapod_control.identification.leg_model import Tolerances
+from hexapod_control.identification.machine_values import geometry_lines
+from hexapod_control.identification.model_of import model_of
+from hexapod_control.load import KINDS
+from hexapod_control.workspace import sample
+from hexarm.machines import load, read
+from manipulator.errors import InvalidInput, NoSolution
+from manipulator.identification.device_frames import DeviceFrames
+from manipulator.pose import Pose
+
+MACHINES = ['robocake', 'stewart_6_3', 'stewart_6_6']
+BUILT = Tolerances(5e-4, np.radians(1.0))
+
+
+@pytest.fixture(params=MACHINES, scope='module')
+def case(request):
+    machine = load(request.param)
+    poses = sample(machine, 20, np.random.default_rng(3), machine.kinematics.characteristic_length)
+    model = model_of(machine.kinematics, BUILT)
+    errors = np.array([p.tolerance for p in model.parameters]) / 3
+    values = errors * np.random.default_rng(4).standard_normal(len(errors))
+    return (
+        request.param,
+        machine.kinematics,
+        model,
+        values,
+        machine.kinematics.inverse(poses),
+        poses,
+    )
+
+
+def test_without_errors_the_model_stands_where_the_machine_does(case):
+    _, _, model, values, joints, poses = case
+    found = model.predict(0 * values, joints, poses.moved(np.full(6, 1e-3)))
+    assert np.abs(poses.twist_to(found)).max() < 1e-9
+
+
+def test_the_identified_machine_written_and_read_stands_where_the_model_does(case):
+    name, _, model, values, joints, poses = case
+    lines = ['geometry:', *geometry_lines(model.identified(values))]
+    geometry = yaml.safe_load('\n'.join(lines))['geometry']
+    file = read(name)
+    built, _ = KINDS[file.kind](geometry, file.limits)
+    told = model.predict(values, joints, poses)
+    for k in range(len(joints)):
+        pose = built.forward(joints[k] + model.joint_offsets(values), poses[k]).pose
+        miss = told[k].twist_to(pose)
+        assert np.abs(miss).max() < 2e-6
+
+
+def test_slopes_are_what_differences_say(case):
+    _, _, model, values, joints, poses = case
+    here = model.predict(values, joints, poses)
+    slopes = model.slopes(values, joints, here)
+    assert slopes.shape == (20, 6, len(model.parameters))
+    step = 1e-6
+    for k in range(len(values)):
+        change = np.zeros_like(values)
+        change[k] = step
+        ahead, behind = (model.predict(values + s * change, joints, here) for s in (1, -1))
+        numeric = behind.twist_to(ahead) / (2 * step)
+        assert np.abs(numeric - slopes[..., k]).max() < 1e-5 * (1 + np.abs(slopes[..., k]).max())
+
+
+def test_slopes_of_the_device_are_what_differences_say(case):
+    _, _, model, values, joints, poses = case
+    frames = DeviceFrames(
+        Pose.from_xyz_rpy([0.5, -0.2, 0.3], [0.3, -0.4, 2.0]),
+        Pose.from_xyz_rpy([0.02, 0.01, 0.03], [0.1, 0.2, -0.5]),
+    )
+    at = np.random.default_rng(5).standard_normal(12) * 0.1
+    own = model.slopes(values, joints, poses)
+    slopes = frames.slopes(at, poses, own)
+    step = 1e-6
+    for k in range(12):
+        change = np.zeros(12)
+        change[k] = step
+        ahead, behind = (frames.moved(at + s * change).seen(poses) for s in (1, -1))
+        numeric = behind.twist_to(ahead) / (2 * step)
+        assert np.abs(numeric - slopes[..., len(values) + k]).max() < 1e-7
+    now = frames.moved(at)
+    twist = own[:, :, 0]
+    ahead, behind = (now.seen(poses.moved(s * step * twist)) for s in (1, -1))
+    numeric = behind.twist_to(ahead) / (2 * step)
+    assert np.abs(numeric - slopes[..., 0]).max() < 1e-6
+
+
+def test_joints_that_close_nowhere_are_refused(case):
+    _, _, model, values, joints, poses = case
+    values = values.copy()
+    values[:18] += np.tile([0.5, 0.0, 0.0, -0.5, 0.0, 0.0], 3)
+    with pytest.raises(NoSolution):
+        model.predict(values, joints, poses)
+
+
+def test_serial_arms_are_refused_in_words():
+    with pytest.raises(InvalidInput, match='serial arms not yet'):
+        model_of(load('arm_6r').kinematics, BUILT)
