@@ -1,0 +1,111 @@
+"""What is asked of another library about the UR5, in turns with ours, and what counts as solved."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from arm_control.numerical import Numerical
+from bench.row import Row, interleaved_medians
+from hexarm.machines import load
+from manipulator.arrays import Array
+from manipulator.pose import Pose
+
+ROUNDS, PROBLEMS = 1000, 200
+STARTS = {'start within ±0.2 rad': 0.2, 'start anywhere': np.pi}
+SOLVED = 1e-5  # metres, radians
+
+
+@dataclass(frozen=True)
+class ArmLibrary:
+    """A library's UR5: joints to pose (4, 4) and Jacobian (6, 6), pose and start to joints.
+
+    The Jacobian's rows are v of the tool point, then ω, in base axes.
+    """
+
+    name: str
+    forward: Callable[[Array], Array]
+    jacobian: Callable[[Array], Array] | None
+    inverse: Callable[[Array, Array], Array] | None
+
+
+def compared(library: ArmLibrary) -> list[Row]:
+    """All that this library can do, and how far it agrees with ours."""
+    found = [agreement_row(library), *speed_rows(library)]
+    return found + (inverse_rows(library.name, library.inverse) if library.inverse else [])
+
+
+def ours() -> list[Row]:
+    """The same problems for our inverses."""
+    arm = load('ur5').kinematics
+    numerical = Numerical(arm.chain, arm.characteristic_length, arm.limits.low, arm.limits.high)
+
+    def closed_form(pose: Array, near: Array) -> Array:
+        return arm.inverse(Pose(pose[:3, 3], pose[:3, :3]), near)
+
+    def newton(pose: Array, near: Array) -> Array:
+        branches = numerical.branches(Pose(pose[:3, 3], pose[:3, :3]), near)
+        return branches[np.isfinite(branches[:, 0]).argmax()]
+
+    return [
+        *inverse_rows('ours, closed form (nearest of 8 branches)', closed_form),
+        *inverse_rows('ours, numerical (33 starts at once)', newton),
+    ]
+
+
+def agreement_row(library: ArmLibrary) -> Row:
+    arm = load('ur5').kinematics
+    worst = 0.0
+    for q in np.random.default_rng(1).uniform(-np.pi, np.pi, (100, 6)):
+        worst = max(worst, np.abs(library.forward(q) - square(arm.chain.forward(q))).max())
+        if library.jacobian is not None:
+            worst = max(worst, np.abs(library.jacobian(q) - arm.chain.jacobian(q)).max())
+    what = 'pose and Jacobian' if library.jacobian else 'pose'
+    name = f'{library.name}: {what} differ from ours' if library.jacobian else (
+        f'{library.name}: {what} differs from ours'
+    )
+    return Row(name, f'{worst:.1e} m or rad', '≤ 1e-9', bool(worst <= 1e-9))
+
+
+def speed_rows(library: ArmLibrary) -> list[Row]:
+    chain = load('ur5').kinematics.chain
+    joints = np.random.default_rng(2).uniform(-np.pi, np.pi, (ROUNDS, 6))
+    pairs = {'forward': (library.forward, chain.forward)}
+    if library.jacobian is not None:
+        pairs['Jacobian'] = (library.jacobian, chain.jacobian)
+    found = []
+    for what, pair in pairs.items():
+        theirs, own = interleaved_medians([lambda k, f=f: f(joints[k]) for f in pair], ROUNDS)
+        text = f'{1e6 * theirs:.1f} µs, ours {1e6 * own:.1f} µs = {own / theirs:.2f}×'
+        found.append(Row(f'{library.name}: {what}', text))
+    return found
+
+
+def inverse_rows(name: str, inverse: Callable[[Array, Array], Array]) -> list[Row]:
+    """Median time, against our closed form in turns, and how many problems were solved."""
+    arm, random = load('ur5').kinematics, np.random.default_rng(3)
+    found = []
+    for where, spread in STARTS.items():
+        goals = random.uniform(-np.pi, np.pi, (PROBLEMS, 6))
+        starts = goals + random.uniform(-spread, spread, (PROBLEMS, 6))
+        poses = arm.chain.forward(goals)
+        squares = [square(poses[k]) for k in range(PROBLEMS)]
+        answers: list[Array] = []
+        seconds, own = interleaved_medians(
+            [
+                lambda k: answers.append(inverse(squares[k], starts[k])),
+                lambda k: arm.inverse(poses[k], starts[k]),
+            ],
+            PROBLEMS,
+        )
+        reached = arm.chain.forward(np.nan_to_num(np.array(answers)))
+        solved = (np.abs(poses.twist_to(reached)) < SOLVED).all(axis=1).mean()
+        text = f'{1e6 * seconds:.0f} µs, {100 * solved:.1f} % solved, ours {own / seconds:.2f}×'
+        found.append(Row(f'{name}: inverse, {where}', text))
+    return found
+
+
+def square(pose: Pose) -> Array:
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = pose.rotation, pose.position
+    return matrix
