@@ -14,11 +14,17 @@ test: $(ENV)/ready
 lint: $(ENV)/ready
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy
 
-bench: $(ENV)/ready
-	@$(BIN)/python -m bench
+bench: $(ENV)/peers   # a quiet computer, please: some ten minutes
+	@$(BIN)/python -m bench $(if $(WRITE),--write $(WRITE))
 
 soak: $(ENV)/ready
 	@SOAK_SECONDS=600 $(BIN)/python -m pytest -s test/graph/test_soak.py
+
+# The libraries that the bench compares with; without them their rows say so.
+$(ENV)/peers: $(ENV)/ready
+	@echo 'Installing the libraries to compare with: about half a minute, once.'
+	@$(BIN)/python -m pip install --disable-pip-version-check -e '.[bench]' >$(ENV)/peers.log 2>&1 \
+	  && touch $@ || echo 'They could not all be installed, see $(ENV)/peers.log: the table says which are missing.' >&2
 
 $(ENV)/ready: setup.py pyproject.toml environment.sh
 	@./environment.sh $(ENV)

@@ -36,6 +36,15 @@ setup(
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.5', 'matplotlib>=3.8'],
         'panel': ['viser>=1.0'],
         'terminal': ['rich>=13'],
+        # Libraries that `make bench` compares with: docs/performance.md.
+        'bench': [
+            'reachy-mini-rust-kinematics>=1.0',
+            'pin>=3.0',
+            'roboticstoolbox-python>=1.2',
+            'ikpy>=3.4',
+            'mink>=1.0',
+            'daqp>=0.5',
+        ],
         'test': [
             'pytest>=8',
             'hypothesis>=6.100',
@@ -46,6 +55,7 @@ setup(
             'types-PyYAML>=6.0',
             'colcon-core>=0.18',
             'colcon-ros>=0.5',
+            'pin>=3.0',  # Pinocchio: the arms' poses and Jacobians against another's
             'setuptools>=70.1,<80',  # builds wheels by itself, and still what colcon calls
         ],
     },

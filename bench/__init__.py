@@ -1,1 +1,1 @@
-"""What is measured, and against what: `python -m bench` runs everything and prints one table."""
+"""What is measured, and against whom: `python -m bench` runs everything and prints one table."""

@@ -1,31 +1,35 @@
-"""Runs all bench modules, or those named, and prints one table; status 1 for a goal missed."""
+"""Runs all bench modules, or those named, and prints one table; status 1 for a goal missed.
 
-import importlib
-import pkgutil
+`--write FILE` makes the page FILE (Markdown) of the same run.
+"""
+
+import argparse
 import sys
+from pathlib import Path
 
-import bench
-
-
-def main(names: list[str]) -> int:
-    found = []
-    for module in pkgutil.iter_modules(bench.__path__):
-        if names and module.name not in names:
-            continue
-        if module.name != '__main__':
-            rows = getattr(importlib.import_module(f'bench.{module.name}'), 'rows', None)
-            found += rows() if rows else []
-    widths = [max(len(text) for text in column) for column in zip(*map(cells, found), strict=True)]
-    for row in found:
-        print(
-            '  '.join(text.ljust(w) for text, w in zip(cells(row), widths, strict=True)).rstrip()
-        )
-    return 0 if all(row.reached for row in found) else 1
+from bench.computer import this_computer
+from bench.page import page, table
+from bench.section import measured, names
 
 
-def cells(row):
-    goal = f'goal {row.goal}' if row.goal else ''
-    return row.name, row.value, goal, '' if row.reached else 'MISSED'
+def main(arguments: list[str]) -> int:
+    known = names()
+    parser = argparse.ArgumentParser(prog='python -m bench', description=__doc__)
+    parser.add_argument('names', nargs='*', metavar='NAME', help=', '.join(known))
+    parser.add_argument('--write', type=Path, metavar='FILE', help='the page to write')
+    options = parser.parse_args(arguments)
+    unknown = [name for name in options.names if name not in known]
+    if unknown:
+        parser.error(f'nothing measures {", ".join(unknown)}; there are {", ".join(known)}')
+    chosen, computer, sections = options.names or known, this_computer(), []
+    for count, name in enumerate(chosen, start=1):
+        print(f'[{count}/{len(chosen)}] {name}', file=sys.stderr, flush=True)
+        sections.append(measured(name))
+    print(table(computer, sections))
+    if options.write:
+        options.write.write_text(page(computer, sections))
+        print(f'written: {options.write}')
+    return 0 if all(row.reached for section in sections for row in section.rows) else 1
 
 
 if __name__ == '__main__':

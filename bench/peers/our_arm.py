@@ -1,8 +1,8 @@
-"""Our UR5 on the problems that the arm libraries get."""
+"""Our UR5's inverses, on the problems that the other libraries get."""
 
-from bench.peers.arm_library import ours
+from bench.peers.arm_library import our_rows
 from bench.row import Row
 
 
 def rows() -> list[Row]:
-    return ours()
+    return our_rows()
