@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -45,11 +46,11 @@ class Frames:
             )
         return replace(self, T_platform_pivot=Pose(position, np.eye(3)))
 
-    @property
+    @cached_property
     def are_plain(self) -> bool:
-        """Whether work is base and the pivot is the platform's origin."""
+        """Whether work is base and the pivot is the platform's origin; asked at every jog tick."""
         both = (self.T_base_work, self.T_platform_pivot)
-        return all(np.array_equal(Pose.identity().twist_to(pose), np.zeros(6)) for pose in both)
+        return all(not pose.position.any() and (pose.rotation == np.eye(3)).all() for pose in both)
 
     def platform(self, T_work_pivot: Pose) -> Pose:
         """T_base_platform when the pivot is there."""
