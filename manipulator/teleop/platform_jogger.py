@@ -34,13 +34,18 @@ class PlatformJogger:
 
     def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
         """See `Jogger`; the largest of SCALES that can be driven and braked, else it brakes."""
-        constraints = self.machine.constraints.stretched_to(motion.pose, motion.joints)
+        constraints = self.machine.constraints
         wanted = SCALES[:, None] * twist
         aims = towards(motion.twist, wanted, self.machine.motion, dt)
         held_by = ''
         for first, last in ((0, 1), (1, len(SCALES))):
             ways = self._ways(motion, aims[first:last], dt)
             is_fit = ways.fits(self.machine, constraints, motion, dt)
+            if first == 0 and not is_fit[0]:
+                # Stretched limits let more through: they matter where something is in the way.
+                constraints = constraints.stretched_to(motion.pose, motion.joints)
+                if constraints is not self.machine.constraints:
+                    is_fit = ways.fits(self.machine, constraints, motion, dt)
             if is_fit.any():
                 chosen = int(np.argmax(is_fit))
                 scale = float(SCALES[first + chosen])
