@@ -24,7 +24,7 @@ soak: $(ENV)/ready
 $(ENV)/peers: $(ENV)/ready
 	@echo 'Installing the libraries to compare with: about half a minute, once.'
 	@$(BIN)/python -m pip install --disable-pip-version-check -e '.[bench]' >$(ENV)/peers.log 2>&1 \
-	  && touch $@ || echo 'They could not all be installed, see $(ENV)/peers.log: the table says which are missing.' >&2
+	  && touch $@ || echo 'They could not be installed, see $(ENV)/peers.log: the table says which are missing.' >&2
 
 $(ENV)/ready: setup.py pyproject.toml environment.sh
 	@./environment.sh $(ENV)
