@@ -110,8 +110,8 @@ def speed_rows(
         against('forward from home, until it rests', forward, to_rest),
         against(f'forward from home, their {OWN_STEPS} steps', forward, three),
         Row(
-            f'off then: ours, resting, after {OWN_STEPS} steps',
-            f'{ours_off:.0e} at most, {rest_off:.0e}, {three_off:.0e} m or rad (medians)',
+            f'pose error: ours, theirs at rest, theirs after {OWN_STEPS} steps',
+            f'{ours_off:.0e} (worst), {rest_off:.0e}, {three_off:.0e} (medians) m or rad',
         ),
     ]
 
