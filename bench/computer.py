@@ -18,6 +18,7 @@ def this_computer() -> dict[str, str]:
         'processor': f'{processor()}, {os.cpu_count()} cores',
         'load averages at the start': f'{load} (above 0.5, others were at work: repeat it)',
         'system': f'{platform.system()} {platform.release()}',
+        'threads of linear algebra': os.environ.get('OPENBLAS_NUM_THREADS', 'as many as cores'),
         'Python, numpy': f'{platform.python_version()}, {np.__version__}',
     }
 

@@ -9,8 +9,8 @@ from bench.section import Section
 HEAD = """\
 # Performance
 
-The last run of `python -m bench --write docs/performance.md`, which makes this page: run it again
-rather than edit it. `make bench` installs the libraries compared with and prints the same table.
+The last run of `make bench WRITE=docs/performance.md`, which makes this page: run it again rather
+than edit it. `make bench` alone prints the same table.
 
 Times are medians of calls taken in turns, so that what else the computer does falls on all alike.
 "× a 6×6 solve" is the time over that of one 6×6 `numpy.linalg.solve` in the same turns; "ours …
