@@ -58,8 +58,12 @@ class Mover:
             sys.exit(self.status.message)
 
     def is_heard(self):
-        """Whether every listener is connected, the machine among them: others may only watch."""
-        listeners = self.node.get_subscriptions_info_by_topic(self.goals.topic_name)
+        """Whether all who can hear goals are connected, the machine among them; others watch."""
+        listeners = [
+            listener
+            for listener in self.node.get_subscriptions_info_by_topic(self.goals.topic_name)
+            if listener.qos_profile.durability == DurabilityPolicy.VOLATILE
+        ]
         is_there = 'trajectory' in [listener.node_name for listener in listeners]
         return is_there and self.goals.get_subscription_count() >= len(listeners)
 

@@ -11,6 +11,7 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Path
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 from std_srvs.srv import SetBool, Trigger
@@ -141,8 +142,12 @@ class Client:
         self._await_result(lambda: self.motion('goal_stamp') != before, seconds)
 
     def _reaches(self, publisher: Any, listener: str) -> bool:
-        """Whether every listener is connected, that node among them: others may only watch."""
-        found = self.node.get_subscriptions_info_by_topic(publisher.topic_name)
+        """Whether every listener that can be is connected, that node among them; others watch."""
+        found = [
+            one
+            for one in self.node.get_subscriptions_info_by_topic(publisher.topic_name)
+            if one.qos_profile.durability == DurabilityPolicy.VOLATILE
+        ]
         is_there = any(one.node_name == listener for one in found)
         return is_there and bool(publisher.get_subscription_count() >= len(found))
 

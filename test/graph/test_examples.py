@@ -127,7 +127,7 @@ def test_axis_tour_visits_both_sides_of_every_axis(start, poses, client):
     process = start('axis_tour', '--way', 0.003, '--angle', 0.06, '--pause', 0.1)
     client.wait('the end of the tour', lambda: process.poll() is not None, 60.0)
     status, said = end(process)
-    assert status == 0
+    assert status == 0, said
     tour = ['x', 'y', 'z', 'roll', 'pitch', 'yaw']
     assert [line.split()[0] for line in said.splitlines()] == tour
     for axis, centre in enumerate((0.0, 0.0, 0.04119)):

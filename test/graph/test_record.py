@@ -20,6 +20,7 @@ from rosbags.typesys import Stores, get_typestore
 from sensor_msgs.msg import JointState
 
 from manipulator.nodes.messages import seconds
+from manipulator.nodes.qos import LATCHED as LATCHED_QUALITIES
 from manipulator.pose import Pose
 
 pytestmark = pytest.mark.graph
@@ -158,6 +159,14 @@ def test_namespace_without_a_machine_says_so_and_leaves_no_file(hexarm, tmp_path
     said = ends_with(hexarm('record', 'nobody', '-o', str(path), '--for', '1.5'), 1)
     assert 'nothing was heard in /nobody: is the graph running, on this ROS domain?' in said
     assert not path.exists()
+
+
+def test_listener_that_no_goal_can_reach_keeps_nobody_waiting(user):
+    user.enable()
+    odd = user.node.create_subscription(PoseStamped, 'goal_pose', print, LATCHED_QUALITIES)
+    user.spin(1.0)
+    user.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.046)))
+    user.node.destroy_subscription(odd)
 
 
 def test_recorder_of_commands_is_not_taken_for_the_machine(user, hexarm, tmp_path):
