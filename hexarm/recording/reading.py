@@ -9,18 +9,35 @@ from mcap.exceptions import EndOfFile, InvalidMagic, McapError
 from mcap.records import Channel, Message, Schema
 from mcap.stream_reader import StreamReader
 from mcap_ros2.decoder import DecoderFactory
+from zstandard import ZstdError
 
 from manipulator.errors import InvalidInput
 
 TORN = (EndOfFile, struct.error)
 """What mcap's reader raises where the file ends within a record."""
 
+DAMAGED = (
+    *(McapError, ZstdError, struct.error, ValueError, LookupError, NameError, AttributeError),
+    *(TypeError, RuntimeError, ArithmeticError, MemoryError),
+)
+"""What mcap, its decompressors and its decoder raise for bytes that were changed."""
+
 
 def messages(path: Path, is_wanted: Callable[[str], bool]) -> Iterator[tuple[str, float, Any]]:
     """Topic, time of receipt (s) and message of each wanted topic, in the order of the file.
 
-    Takes a bag's folder, too. InvalidInput for what is no MCAP recording of ROS 2 messages.
+    Takes a bag's folder, too. InvalidInput for what is no MCAP recording of ROS 2 messages, or
+    damaged.
     """
+    try:
+        yield from _decoded(path, is_wanted)
+    except InvalidInput:
+        raise
+    except DAMAGED as error:
+        raise InvalidInput(f'{path} is damaged: {error}') from error
+
+
+def _decoded(path: Path, is_wanted: Callable[[str], bool]) -> Iterator[tuple[str, float, Any]]:
     factory = DecoderFactory()
     schemas: dict[int, Schema] = {}
     channels: dict[int, Channel] = {}
@@ -53,12 +70,10 @@ def _records(path: Path) -> Iterator[Any]:
     try:
         with path.open('rb') as file:
             try:
-                yield from StreamReader(file).records
+                yield from StreamReader(file, validate_crcs=True).records
             except TORN:
                 return
     except OSError as error:
         raise InvalidInput(f'{path}: {error.strerror or error}') from error
     except InvalidMagic as error:
         raise InvalidInput(f'{path} is no MCAP file') from error
-    except McapError as error:
-        raise InvalidInput(f'{path} is damaged: {error}') from error

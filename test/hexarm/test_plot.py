@@ -164,6 +164,22 @@ def test_recording_that_was_torn_off_is_read_to_the_tear(tmp_path, capsys):
     assert plotted(capsys, torn, '--csv', tmp_path)['setpoints'] == 500
 
 
+def test_recording_with_changed_bytes_is_told_from_a_good_one(recording, tmp_path, capsys):
+    good, path = recording.read_bytes(), tmp_path / 'changed.mcap'
+    rng = np.random.default_rng(3)
+    refused = 0
+    for _ in range(40):
+        changed = bytearray(good)
+        changed[rng.integers(100, len(good))] ^= int(rng.integers(1, 256))
+        path.write_bytes(changed)
+        status = main(['plot', str(path), '--csv', str(tmp_path)])
+        said = capsys.readouterr()
+        assert status in (0, 2)
+        refused += status == 2
+        assert status == 0 or said.err.startswith('hexarm: ')
+    assert refused > 10
+
+
 def test_of_several_machines_one_is_chosen(tmp_path, capsys):
     path = write(tmp_path / 'two.mcap', ('hexapod', 'lab/arm'))
     assert main(['plot', str(path)]) == 2
