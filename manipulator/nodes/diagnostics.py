@@ -6,6 +6,8 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
+from manipulator.nodes.steady_timer import SteadyTimer
+
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 
 Report = tuple[bytes, str, Mapping[str, object]]
@@ -32,7 +34,7 @@ class Diagnostics:
         self._publisher = node.create_publisher(
             DiagnosticArray, '/diagnostics', QoSProfile(depth=10)
         )
-        self._timer = node.create_timer(1.0, self._publish)
+        self._timer = SteadyTimer(node, 1.0, self._publish)
 
     def _publish(self) -> None:
         level, message, values = self._report()

@@ -12,6 +12,7 @@ from manipulator.nodes.diagnostics import ERROR, OK, Diagnostics, Report
 from manipulator.nodes.evdev_pad import Device, EvdevPad, find_pad, input_devices
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import MEASUREMENT
+from manipulator.nodes.steady_timer import SteadyTimer
 
 DEVICE = 'path of the pad (/dev/input/event*, /dev/input/by-id/*); empty: the first one found'
 LOOK_AGAIN = 1.0
@@ -31,8 +32,8 @@ class Gamepad(Node):
         self._problem = ''
         self._publisher = self.create_publisher(Joy, topic, MEASUREMENT)
         self._look()
-        self._timer = self.create_timer(1.0 / rate, self._tick)
-        self._search = self.create_timer(LOOK_AGAIN, self._look)
+        self._timer = SteadyTimer(self, 1.0 / rate, self._tick)
+        self._search = SteadyTimer(self, LOOK_AGAIN, self._look)
         self._diagnostics = Diagnostics(self, self._report, (topic,))
 
     def close(self) -> None:

@@ -12,6 +12,7 @@ from manipulator.nodes.diagnostics import OK, WARN, Diagnostics, Report
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.jog_topics import JogTopics
 from manipulator.nodes.parameters import declare
+from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.teleop.gamepad import Gamepad
 from manipulator.teleop.joy_reader import JoyReader
 
@@ -35,7 +36,7 @@ class JoyTeleop(Node):
         self._joy = Intake(self, 'joy', self._on_joy)
         self._topics = JogTopics(self, 'joy')
         self.create_subscription(Joy, topic, self._joy, qos_profile_sensor_data)
-        self._timer = self.create_timer(1.0 / rate, self._tick)
+        self._timer = SteadyTimer(self, 1.0 / rate, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/joy',))
 
     def close(self) -> None:

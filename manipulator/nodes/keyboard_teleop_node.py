@@ -8,6 +8,7 @@ from rclpy.node import Node
 from manipulator.nodes.diagnostics import OK, Diagnostics, Report
 from manipulator.nodes.jog_topics import JogTopics
 from manipulator.nodes.parameters import declare
+from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.terminal import Terminal
 from manipulator.teleop.keyboard import HELP, Keyboard, keys_of
 
@@ -26,7 +27,7 @@ class KeyboardTeleop(Node):
         self._terminal = terminal
         self._keyboard = Keyboard(linear, angular)
         self._topics = JogTopics(self, 'keyboard')
-        self._timer = self.create_timer(1.0 / rate, self._tick)
+        self._timer = SteadyTimer(self, 1.0 / rate, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/keyboard',))
         terminal.show(f'{HELP}\n')
         self._show()

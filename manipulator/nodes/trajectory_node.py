@@ -26,6 +26,7 @@ from manipulator.nodes.messages import (
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.path_goals import PathGoals
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
+from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
 from manipulator.trajectory.goal import Goal
@@ -59,7 +60,7 @@ class TrajectoryNode(Node):
         self._paths = PathGoals(self, self._pilot, self._dt, self._say)
         self._teleop_topics = TeleopTopics(self, self._teleop)
         self._answers = TrajectoryServices(self, self._pilot, self._teleop, self._dt)
-        self._timer = self.create_timer(self._dt, self._tick)
+        self._timer = SteadyTimer(self, self._dt, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('setpoint', 'pose'))
 
     def close(self) -> None:

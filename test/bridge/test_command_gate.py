@@ -85,6 +85,32 @@ def test_a_sender_whose_clock_is_off_by_an_hour_is_heard_and_reported(gate):
     assert gate.has_notable_offset
 
 
+def is_admitted(gate, stamp, receipt):
+    try:
+        admit(gate, stamp=stamp, receipt=receipt)
+    except ManipulatorError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize('step', [3600.0, -3600.0])
+def test_a_clock_that_is_set_makes_no_gap_as_long_as_the_deadline(gate, step):
+    times = NOW + 0.01 * np.arange(200)
+    stamps = np.where(times < NOW + 1.0, times, times + step)
+    pairs = zip(stamps.tolist(), times.tolist(), strict=True)
+    heard = [receipt for stamp, receipt in pairs if is_admitted(gate, stamp, receipt)]
+    assert max(np.diff(heard)) <= 0.1
+
+
+@pytest.mark.parametrize(('step', 'old'), [(3600.0, -1.0), (3600.0, 3599.0), (-3600.0, -3601.0)])
+def test_old_commands_do_not_pass_because_the_clock_was_set(gate, step, old):
+    for k in range(200):
+        receipt = NOW + 0.01 * k
+        is_admitted(gate, receipt if k < 100 else receipt + step, receipt)
+        if k > 120:
+            assert not is_admitted(gate, receipt + old, receipt + 0.002)
+
+
 def test_the_first_command_must_start_where_the_joints_are(gate):
     wanted = PARK.copy()
     wanted[1] += math.radians(4)
