@@ -28,6 +28,7 @@ class SideNode(Node):
     def close(self) -> None:
         """Ends the thread and leaves the graph; waits for a callback that is under way."""
         self._is_closing = True
+        self._executor_aside.wake()
         self._thread.join()
         self._executor_aside.shutdown()
         self.destroy_node()

@@ -2,15 +2,15 @@
 
 #include <avr/wdt.h>
 #include <stdbool.h>
-#include <string.h>
 
 #include "clock.h"
+#include "command.h"
 #include "cycle.h"
 #include "link.h"
 #include "machine.h"
 #include "motion.h"
 #include "safety.h"
-#include "table.h"
+#include "supply.h"
 
 #define HELLO_PERIOD_MS 250
 #define HOST_SILENCE_MS 500
@@ -61,22 +61,12 @@ static void accept(uint16_t sequence)
     is_echo_old = false;
 }
 
-/* The counts in a payload, as values; their number, or 0 where they are none. */
-static uint8_t read_counts(const uint8_t *payload, uint8_t length, uint16_t counts[MAX_JOINTS])
-{
-    if (length % 2 || length > 2 * MAX_JOINTS)
-        return 0;
-    for (uint8_t i = 0; i < length / 2; i++)
-        counts[i] = get16(payload + 2 * i);
-    return length / 2;
-}
-
 static void take_setpoint(const Frame *frame)
 {
     uint16_t counts[MAX_JOINTS];
     uint8_t joints = 0;
     if (frame->length > 2)
-        joints = read_counts(frame->payload + 2, frame->length - 2, counts);
+        joints = command_counts(frame->payload + 2, frame->length - 2, counts);
     if (!joints) {
         refuse((Fault){FAULT_MALFORMED, NO_JOINT, frame->type});
         return;
@@ -93,85 +83,9 @@ static void take_setpoint(const Frame *frame)
         refuse(fault);
 }
 
-static float get_float(const uint8_t *at)
-{
-    float value;
-    memcpy(&value, at, sizeof value); /* little endian, as the chip is */
-    return value;
-}
-
-static uint8_t arm(const Frame *frame)
-{
-    uint16_t park[MAX_JOINTS];
-    uint8_t joints = read_counts(frame->payload, frame->length, park);
-    return safety_arm(park, joints);
-}
-
-static uint8_t take_row(const Frame *frame)
-{
-    uint16_t counts[MAX_JOINTS];
-    uint8_t joints = read_counts(frame->payload + 2, frame->length - 2, counts);
-    return table_row(get16(frame->payload), counts, joints);
-}
-
-static uint8_t obey(const Frame *frame)
-{
-    const uint8_t *payload = frame->payload;
-    bool changes_program = frame->type >= TYPE_CYCLE_AXIS && frame->type <= TYPE_TABLE_END;
-    if (changes_program && safety_is_playing())
-        return RESULT_NO_PROGRAM; /* not the one that is being played */
-    switch (frame->type) {
-    case TYPE_ARM:
-        return arm(frame);
-    case TYPE_DISARM:
-        return safety_disarm();
-    case TYPE_CLEAR:
-        return safety_clear();
-    case TYPE_CYCLE_AXIS:
-        return cycle_set(payload[0], get_float(payload + 1), get16(payload + 5),
-                         get_float(payload + 7));
-    case TYPE_TABLE_BEGIN:
-        return table_begin(get16(payload), get16(payload + 2));
-    case TYPE_TABLE_ROW:
-        return take_row(frame);
-    case TYPE_TABLE_END:
-        return table_end(get16(payload));
-    case TYPE_PLAY:
-        return safety_play(payload[0], payload[1]);
-    case TYPE_FINISH:
-        return safety_finish();
-    default:
-        return safety_stop();
-    }
-}
-
-static bool are_counts(uint8_t length)
-{
-    return length && length % 2 == 0 && length <= 2 * MAX_JOINTS;
-}
-
-static bool is_well_formed(const Frame *frame)
-{
-    switch (frame->type) {
-    case TYPE_ARM:
-        return are_counts(frame->length);
-    case TYPE_CYCLE_AXIS:
-        return frame->length == 11;
-    case TYPE_TABLE_BEGIN:
-        return frame->length == 4;
-    case TYPE_TABLE_ROW:
-        return frame->length > 2 && are_counts(frame->length - 2);
-    case TYPE_TABLE_END:
-    case TYPE_PLAY:
-        return frame->length == 2;
-    default:
-        return frame->length == 0;
-    }
-}
-
 static void take_command(const Frame *frame)
 {
-    if (!is_well_formed(frame)) {
+    if (!command_is_well_formed(frame)) {
         refuse((Fault){FAULT_MALFORMED, NO_JOINT, frame->type});
         return;
     }
@@ -180,7 +94,7 @@ static void take_command(const Frame *frame)
     if (last_command.type == frame->type && last_command.sequence == frame->sequence) {
         result = last_command.result;
     } else if (is_new(frame->sequence)) {
-        result = obey(frame);
+        result = command_obey(frame);
         accept(frame->sequence);
         last_command.type = frame->type;
         last_command.sequence = frame->sequence;
@@ -242,7 +156,7 @@ static void say_state(void)
     *at++ = safety_mode();
     *at++ = safety_flags();
     *at++ = safety_fault();
-    at = put16(at, safety_battery_mv());
+    at = put16(at, supply_mv());
     at = put16(at, link_bad_frames());
     at = put16(at, link_overruns());
     at = put16(at, refused);

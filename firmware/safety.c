@@ -1,16 +1,14 @@
 #include "safety.h"
 
-#include "battery.h"
 #include "buttons.h"
 #include "clock.h"
 #include "machine.h"
 #include "motion.h"
 #include "play.h"
 #include "servo.h"
+#include "start.h"
+#include "supply.h"
 
-#define UNDERVOLTAGE_DELAY_MS 500
-
-static const uint16_t MINIMUM_MV = MINIMUM_BATTERY_MV; /* 0 where no battery is watched */
 static const Fault NO_FAULT = {FAULT_NONE, NO_JOINT, 0};
 
 static uint8_t mode = MODE_DISARMED;
@@ -19,9 +17,6 @@ static bool is_deadline_passed;
 static bool has_deadline;
 static uint32_t deadline_us;
 static bool is_driven; /* by setpoints whose deadline has not passed */
-static uint16_t millivolts;
-static bool is_undervoltage;
-static uint32_t low_since_ms;
 static uint16_t park_counts[JOINT_COUNT];
 static uint32_t energise_ms;
 static uint8_t program_after_arming; /* 0: none; the start button asked for it */
@@ -33,7 +28,7 @@ static void expect_setpoint_within(uint16_t ms)
     is_deadline_passed = false;
 }
 
-/* Armed and without a setpoint: good for as long as the longest deadline, whatever came before. */
+/* Armed, with no setpoint yet: good for as long as the longest deadline. */
 static void wait_armed(void)
 {
     mode = MODE_ARMED;
@@ -44,9 +39,7 @@ static void wait_armed(void)
 static void hold(uint8_t new_mode)
 {
     motion_halt();
-    has_deadline = false;
-    is_deadline_passed = false;
-    is_driven = false;
+    has_deadline = is_deadline_passed = is_driven = false;
     program_after_arming = 0;
     mode = new_mode;
     if (new_mode == MODE_ARMED)
@@ -95,7 +88,7 @@ uint8_t safety_arm(const uint16_t *park, uint8_t joints)
 {
     if (is_latched())
         return latched_result();
-    if (is_undervoltage)
+    if (supply_is_low())
         return RESULT_UNDERVOLTAGE;
     if (joints != JOINT_COUNT)
         return RESULT_WRONG_JOINTS;
@@ -110,6 +103,14 @@ uint8_t safety_arm(const uint16_t *park, uint8_t joints)
         hold(MODE_ARMING);
     }
     return RESULT_OK;
+}
+
+uint8_t safety_arm_to_play(const uint16_t *start, uint8_t program)
+{
+    uint8_t result = safety_arm(start, JOINT_COUNT);
+    if (result == RESULT_OK)
+        program_after_arming = program;
+    return result;
 }
 
 uint8_t safety_disarm(void)
@@ -132,7 +133,7 @@ uint8_t safety_clear(void)
         return RESULT_OK;
     if (buttons_is_stop())
         return RESULT_STOPPED;
-    if (is_undervoltage)
+    if (supply_is_low())
         return RESULT_UNDERVOLTAGE;
     fault = FAULT_NONE;
     if (!motion_is_all_on())
@@ -153,41 +154,6 @@ uint8_t safety_play(uint8_t program, bool is_loop)
     return result;
 }
 
-uint8_t safety_finish(void)
-{
-    play_finish();
-    return RESULT_OK;
-}
-
-/* What the start button plays: what was uploaded, else what is in flash, else the cycle. */
-static uint8_t program_to_start(void)
-{
-    static const uint8_t CHOICE[] = {PROGRAM_TABLE, PROGRAM_FLASH_TABLE, PROGRAM_CYCLE};
-    for (uint8_t i = 0; i < sizeof CHOICE; i++)
-        if (play_has(CHOICE[i]) == RESULT_OK)
-            return CHOICE[i];
-    return 0;
-}
-
-/* Without a host: arm where the program begins, play it in a loop, end it; or forget a stop.
- * A machine that a host drives is the host's. */
-static void press_start(void)
-{
-    uint8_t program = program_to_start();
-    if (is_latched()) {
-        safety_clear();
-    } else if (safety_is_playing()) {
-        play_finish();
-    } else if (is_following()) {
-        if (!is_driven)
-            safety_play(program, true);
-    } else if (mode == MODE_DISARMED && program) {
-        uint16_t start[JOINT_COUNT];
-        if (play_start_counts(program, start) && safety_arm(start, JOINT_COUNT) == RESULT_OK)
-            program_after_arming = program;
-    }
-}
-
 static void watch_deadline(void)
 {
     if (!has_deadline || (int32_t)(clock_us() - deadline_us) < 0)
@@ -204,28 +170,19 @@ void safety_watch(void)
     if (buttons_is_stop() && mode != MODE_STOPPED)
         safety_stop();
     if (buttons_take_start() && !buttons_is_stop())
-        press_start();
+        start_press();
     watch_deadline();
 }
 
-/* Refuses to arm at once, but only a lasting undervoltage stops what moves. */
-static Fault watch_battery(void)
+/* What is low refuses to arm at once, but only what stays low stops what moves. */
+static Fault watch_supply(void)
 {
-    uint32_t now_ms = clock_period_ms();
-    millivolts = battery_mv();
-    if (millivolts >= MINIMUM_MV) {
-        is_undervoltage = false;
-        return NO_FAULT;
-    }
-    if (!is_undervoltage)
-        low_since_ms = now_ms;
-    is_undervoltage = true;
-    bool is_lasting = now_ms - low_since_ms >= UNDERVOLTAGE_DELAY_MS;
-    if (!is_lasting || is_latched() || mode == MODE_DISARMED)
+    supply_watch();
+    if (!supply_is_exhausted() || is_latched() || mode == MODE_DISARMED)
         return NO_FAULT;
     hold(MODE_FAULT);
     fault = FAULT_UNDERVOLTAGE;
-    return (Fault){FAULT_UNDERVOLTAGE, NO_JOINT, millivolts};
+    return (Fault){FAULT_UNDERVOLTAGE, NO_JOINT, supply_mv()};
 }
 
 static void energise_next(void)
@@ -263,11 +220,16 @@ static Fault play(void)
 
 Fault safety_pass_period(void)
 {
-    Fault begun = watch_battery();
+    Fault begun = watch_supply();
     energise_next();
     if (begun.code == FAULT_NONE && safety_is_playing())
         begun = play();
     return begun;
+}
+
+bool safety_is_driven(void)
+{
+    return is_driven;
 }
 
 uint8_t safety_mode(void)
@@ -278,15 +240,10 @@ uint8_t safety_mode(void)
 uint8_t safety_flags(void)
 {
     return (is_deadline_passed ? FLAG_DEADLINE_PASSED : 0) |
-           (is_undervoltage ? FLAG_UNDERVOLTAGE : 0) | (motion_is_slewing() ? FLAG_SLEWING : 0);
+           (supply_is_low() ? FLAG_UNDERVOLTAGE : 0) | (motion_is_slewing() ? FLAG_SLEWING : 0);
 }
 
 uint8_t safety_fault(void)
 {
     return fault;
-}
-
-uint16_t safety_battery_mv(void)
-{
-    return millivolts;
 }

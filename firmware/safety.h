@@ -20,11 +20,11 @@ Fault safety_follow(uint16_t deadline_ms, const uint16_t *counts, uint8_t joints
 
 /* Each does what is asked, or says why not and changes nothing: enum Result. */
 uint8_t safety_arm(const uint16_t *park, uint8_t joints);
+uint8_t safety_arm_to_play(const uint16_t *start, uint8_t program); /* as soon as armed, in a loop */
 uint8_t safety_disarm(void);
 uint8_t safety_stop(void);
 uint8_t safety_clear(void);
 uint8_t safety_play(uint8_t program, bool is_loop);
-uint8_t safety_finish(void);
 
 /* Deadline and buttons; call in every round of the loop. */
 void safety_watch(void);
@@ -33,7 +33,10 @@ void safety_watch(void);
 Fault safety_pass_period(void);
 
 bool safety_is_playing(void);
+
+/* Setpoints come, and the deadline of the last one has not passed. */
+bool safety_is_driven(void);
+
 uint8_t safety_mode(void);
 uint8_t safety_flags(void);
 uint8_t safety_fault(void);
-uint16_t safety_battery_mv(void);
