@@ -15,6 +15,7 @@ from bridge.events import (
     Opened,
     StateReceived,
 )
+from bridge.latencies import percentiles_ms
 from bridge.machine_status import MachineStatus, machine_status
 from bridge.messages import NO_JOINT, Arm, Fault, Known, Mode, State
 from bridge.session import Session
@@ -95,6 +96,26 @@ class LinkMonitor:
         """A command that was not followed."""
         self.refusals += 1
         self.last_refusal = reason
+
+    def report(self) -> dict[str, object]:
+        """What /diagnostics tells of the link and the board."""
+        session, state = self.session, self.session.state
+        values: dict[str, object] = {
+            'link': session.phase.value,
+            **percentiles_ms('round_trip', session.round_trips.seconds),
+            'frames_sent': session.setpoints_sent,
+            'refusals': self.refusals,
+            'last_refusal': self.last_refusal,
+            'bad_frames_received': session.reader.bad_frames + session.reader.overruns,
+        }
+        if state is not None:
+            values |= {
+                'battery_v': 1e-3 * state.battery_mv,
+                'board_bad_frames': state.bad_frames,
+                'board_overruns': state.overruns,
+                'board_refusals': state.refused,
+            }
+        return values
 
     def _note_state(self, state: State, now: float) -> None:
         if state.mode is Mode.DISARMED:

@@ -20,7 +20,7 @@ from bridge.events import (
     StateReceived,
 )
 from bridge.gripper import Gripper
-from bridge.latencies import Latencies, percentiles_ms
+from bridge.latencies import Latencies
 from bridge.link_monitor import LinkMonitor
 from bridge.link_thread import LinkThread, Ticket
 from bridge.machine_status import MachineStatus
@@ -227,27 +227,15 @@ class SerialBridge(Node):
     def _report(self) -> Report:
         if not self._link.is_alive():
             raise RuntimeError('the thread of the serial link has died')
-        current, state, reader = self._monitor.status, self._session.state, self._session.reader
+        current = self._monitor.status
         age = time.monotonic() - self._command_at if self._command_at is not None else None
         values: dict[str, object] = {
-            'link': self._session.phase.value,
             'port': self._port,
-            **percentiles_ms('round_trip', self._session.round_trips.seconds),
             **self._setpoint_to_frame.report('setpoint_to_frame'),
             **self._receipt_to_frame.report('receipt_to_frame'),
-            'frames_sent': self._session.setpoints_sent,
             'last_command_age_s': 'none yet' if age is None else age,
-            'refusals': self._monitor.refusals,
-            'last_refusal': self._monitor.last_refusal,
-            'bad_frames_received': reader.bad_frames + reader.overruns,
+            **self._monitor.report(),
         }
         if self._gate.has_notable_offset:
             values['joint_command_clock_offset_s'] = self._gate.clock_offset
-        if state is not None:
-            values |= {
-                'battery_v': 1e-3 * state.battery_mv,
-                'board_bad_frames': state.bad_frames,
-                'board_overruns': state.overruns,
-                'board_refusals': state.refused,
-            }
         return LEVELS[current.level], current.reason or current.word, values
