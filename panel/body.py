@@ -1,88 +1,24 @@
 """The machine as solids in a viser scene: once as measured, once as commanded."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from manipulator.arrays import Array
 from manipulator.kinematics import Kinematics
 from manipulator.skeleton import Stroke
-from panel.bars import Bars, bars_between, wxyz_of
-from panel.margins import colour
+from panel.bars import wxyz_of
 from panel.meshes import bar, hull, plate, sphere
+from panel.pieces import PLAIN, Colours, Pieces, colours, pieces
 from panel.view import Stance
-
-RADII = {'body': 0.012, 'crank': 0.022, 'rod': 0.014, 'platform': 0.016, 'link': 0.055}
-"""Of bars, by part, as shares of the machine's size."""
-
-PLAIN = {'body': (58, 68, 82), 'platform': (62, 104, 168), 'link': (62, 104, 168)}
-"""Parts whose colour says nothing; cranks, rods and joints are coloured by their margins."""
 
 STILL = 2e-5
 """Metres and radians below which a change is not drawn."""
 
-PLATE = 0.03
+PLATE, PLATE_OPACITY = 0.02, 0.6
+"""Thickness by the machine's size; the way driven and the reach are seen through it."""
+
+GHOST_OPACITY = 0.28
 GHOST = (120, 190, 255)
-COLUMNS = ('crank', 'rod')
-
-Colours = NDArray[np.uint8]
-
-
-@dataclass(frozen=True, eq=False)
-class Pieces:
-    """Every bar and every ball of a stance: what part it is of, and whose margin it shows.
-
-    owners name a leg or joint, '' for parts that show none; parts repeat per piece.
-    """
-
-    bars: Bars
-    balls: Array
-    ball_radii: Array
-    parts: tuple[str, ...]
-    owners: tuple[str, ...]
-    ball_owners: tuple[str, ...]
-
-
-def pieces(strokes: tuple[Stroke, ...], size: float) -> Pieces:
-    """Bars along every stroke and balls at the ends of what turns; metres."""
-    starts, ends, radii, parts, owners = [], [], [], [], []
-    balls, ball_radii, ball_owners = [], [], []
-    counts: dict[str, int] = {}
-    for stroke in strokes:
-        counts[stroke.part] = counts.get(stroke.part, 0) + 1
-        owner = f'leg {counts[stroke.part]}' if stroke.part in COLUMNS else ''
-        radius = RADII[stroke.part] * size
-        tapers = np.linspace(1.0, 0.45, len(stroke.points)) if stroke.part == 'link' else None
-        for k, (a, b) in enumerate(zip(stroke.points[:-1], stroke.points[1:], strict=True)):
-            starts.append(a)
-            ends.append(b)
-            radii.append(radius if tapers is None else radius * tapers[k])
-            parts.append(stroke.part)
-            owners.append(owner)
-        for k, point in enumerate(stroke.points):
-            balls.append(point)
-            ball_radii.append(1.35 * radius if tapers is None else 1.3 * radius * tapers[k])
-            is_joint = tapers is not None and 0 < k < len(stroke.points) - 1
-            ball_owners.append(f'joint {k}' if is_joint else owner)
-    return Pieces(
-        bars_between(np.array(starts), np.array(ends), np.array(radii)),
-        np.array(balls),
-        np.array(ball_radii),
-        tuple(parts),
-        tuple(owners),
-        tuple(ball_owners),
-    )
-
-
-def colours(parts: tuple[str, ...], owners: tuple[str, ...], left: dict[str, float]) -> Colours:
-    """(n, 3): by margin where the piece has an owner, else the part's own."""
-    found = [
-        colour(left.get(owner, 1.0)) if owner else PLAIN.get(part, GHOST)
-        for part, owner in zip(parts, owners, strict=True)
-    ]
-    return np.array(found, dtype=np.uint8)
 
 
 class Body:
@@ -98,7 +34,7 @@ class Body:
         home = kinematics.home
         joints = kinematics.inverse(home)
         found = self._pieces(Stance(home, joints))
-        look: dict[str, Any] = {'opacity': 0.28 if is_ghost else None, 'lod': 'off'}
+        look: dict[str, Any] = {'opacity': GHOST_OPACITY if is_ghost else None, 'lod': 'off'}
         look |= {'cast_shadow': not is_ghost, 'receive_shadow': not is_ghost}
         vertices, faces = bar()
         self._bars = scene.add_batched_meshes_simple(
@@ -144,7 +80,7 @@ class Body:
     def _pieces(self, stance: Stance) -> Pieces:
         strokes = self._kinematics.skeleton(stance.pose, stance.joints)
         scaled = tuple(Stroke(s.part, s.points * self._scale) for s in strokes)
-        return pieces(scaled, 1.0)
+        return pieces(scaled)
 
     def _bar_colours(self, found: Pieces, left: dict[str, float]) -> Colours:
         if self._is_ghost:
@@ -170,6 +106,7 @@ class Body:
         inside = stance.pose.inverse().transform(outline) * self._scale
         vertices, faces = plate(inside, PLATE)
         look = {key: value for key, value in look.items() if key != 'lod'}
+        look['opacity'] = GHOST_OPACITY if self._is_ghost else PLATE_OPACITY
         tint = GHOST if self._is_ghost else PLAIN['platform']
         return scene.add_mesh_simple(f'{name}/plate', vertices, faces, color=tint, side='double',
                                      flat_shading=True, **look)  # fmt: skip

@@ -15,17 +15,20 @@ from panel.bars import wxyz_of
 from panel.body import Body
 from panel.margins import shares
 from panel.meshes import hull
-from panel.view import View
+from panel.view import Stance, View
 
 TRAIL = 600
 STILL = 1e-4
+APART = 5e-3
+"""Of the machine's size, or radians, from which the commanded machine is drawn beside it."""
+
 TRAIL_STEP = 0.004
 TRAIL_COLOUR, HULL_COLOUR = (255, 200, 87), (90, 130, 190)
 REACH_LOOKS: dict[str, dict[str, Any]] = {
     'solid': {'opacity': 0.07},
     'net': {'wireframe': True, 'opacity': 0.16},
 }
-CAMERA = np.array([1.5, -1.7, 1.05])
+CAMERA = np.array([1.2, -1.4, 0.95])
 
 
 class Scene:
@@ -58,8 +61,9 @@ class Scene:
             pivot = view.measured.pose @ view.frames.T_platform_pivot
             self._place(self._pivot, pivot)
             self._remember(pivot.position * self._scale)
-        self._commanded.set_visible(view.commanded is not None)
-        if view.commanded is not None:
+        is_apart = view.commanded is not None and self._are_apart(view.commanded, view.measured)
+        self._commanded.set_visible(is_apart)
+        if is_apart and view.commanded is not None:
             self._commanded.show(view.commanded, {})
 
     def show_goal(self, goal: Pose) -> None:
@@ -98,6 +102,13 @@ class Scene:
         if self._trail_handle is not None:
             self._trail_handle.remove()
             self._trail_handle = None
+
+    def _are_apart(self, commanded: Stance, measured: Stance | None) -> bool:
+        """Whether both can be told apart: a ghost in the same place only dulls the colours."""
+        if measured is None:
+            return True
+        way = np.abs(commanded.pose.twist_to(measured.pose))
+        return bool(way[:3].max() * self._scale > APART or way[3:].max() > APART)
 
     def _remember(self, point: Array) -> None:
         if self._trail and np.linalg.norm(point - self._trail[-1]) < TRAIL_STEP:

@@ -3,6 +3,7 @@
 import os
 import shutil
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -40,6 +41,12 @@ computer must not come to its end meanwhile."""
 MOVING = 3e-4
 """Radians between two reports of a servo's true angle, 20 ms apart, from which it moves."""
 
+CIRCLE = {
+    'cycle.amplitude': '[0.006, 0.006, 0.0, 0.0, 0.0, 0.0]',
+    'cycle.phase': '[0.0, 1.5708, 0.0, 0.0, 0.0, 0.0]',
+}
+"""A cycle on which some servo is always on its way: nothing else would tell when it stops."""
+
 
 @pytest.fixture(scope='module')
 def browser():
@@ -60,8 +67,12 @@ def panel(patient_robocake):
 def hexapod_graph(patient_robocake, panel, tmp_path_factory):
     """The hexapod's processes and its panel."""
     link = tmp_path_factory.mktemp('port') / 'board'
-    nodes = [*machine_graph('hexapod', patient_robocake, 'fake', link), panel]
-    with Graph(nodes, 'hexapod') as graph:
+    nodes = machine_graph('hexapod', patient_robocake, 'fake', link)
+    nodes = [
+        replace(node, parameters=node.parameters | CIRCLE) if node.entry == 'trajectory' else node
+        for node in nodes
+    ]
+    with Graph([*nodes, panel], 'hexapod') as graph:
         yield graph
 
 

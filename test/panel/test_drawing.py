@@ -6,10 +6,10 @@ import pytest
 from hexarm.machines import load
 from manipulator.rotation import from_quaternion
 from panel.bars import bars_between
-from panel.body import pieces
 from panel.buttons import state_line
 from panel.margins import GOOD, NARROW, NONE_LEFT, colour, shares
 from panel.meshes import bar, hull, plate, sphere
+from panel.pieces import pieces
 from panel.readout import diagnostics_text
 from panel.view import NodeReport, View
 
@@ -44,7 +44,7 @@ def test_every_leg_or_joint_shows_its_margin(name):
     machine = load(name)
     home = machine.kinematics.home
     joints = machine.kinematics.inverse(home)
-    found = pieces(machine.kinematics.skeleton(home, joints), 1.0)
+    found = pieces(machine.kinematics.skeleton(home, joints))
     owners = {o for o in (*found.owners, *found.ball_owners) if o}
     assert len(owners) == 6
     assert owners <= set(shares(machine, home, joints))
