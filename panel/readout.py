@@ -2,7 +2,9 @@
 
 from panel.view import NodeReport
 
-SIGNS = ('🟢', '🟡', '🔴', '🔴')
+SIGNS = ('✓', '⚠', '✗', '✗')
+"""By the level of a DiagnosticStatus; signs that every system's letters have."""
+
 SILENT = 3.0
 """Seconds after which a node that reports once a second is said to be silent."""
 

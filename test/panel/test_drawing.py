@@ -69,7 +69,7 @@ def test_colours_go_from_red_over_amber_to_green():
 def test_what_a_node_says_cannot_become_markup():
     report = NodeReport('ik', 1, 'a|b <img src=x>', {'last_refusal': '**leg** 3 |'}, 0.2)
     text = diagnostics_text((report,))
-    assert '🟡' in text
+    assert '⚠' in text
     assert '\\<img' in text
     assert '\\*\\*leg\\*\\* 3 \\|' in text
     silent = NodeReport('ik', 0, 'running', {}, 5.0)
