@@ -22,6 +22,7 @@ from manipulator.errors import LinkError, Refused
 
 CONNECT_WITHIN, ARM_WITHIN, ANSWER_WITHIN = 6.0, 10.0, 1.0
 LOOK_EVERY = 0.02
+TRIES = 3
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
@@ -115,10 +116,16 @@ class ServoLine:
         self._ask(Clear())
 
     def _ask(self, command: Command) -> None:
-        try:
-            self._link.request(command).result(ANSWER_WITHIN)
-        except NoAnswer as error:
-            raise Refused('the board does not answer') from error
+        """Asks again where it failed: a computer that is busy may lose an answer."""
+        for tries_left in reversed(range(TRIES)):
+            try:
+                self._link.request(command).result(ANSWER_WITHIN)
+                break
+            except NoAnswer as error:
+                raise Refused('the board does not answer') from error
+            except Refused:
+                if not tries_left:
+                    raise
 
     def _await_board(self) -> None:
         if not self._is_ready.wait(CONNECT_WITHIN):

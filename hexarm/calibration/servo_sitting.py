@@ -9,7 +9,7 @@ from bridge.servo_config import ServoConfig
 from bridge.servo_walk import ServoWalk, Stage
 from hexarm.calibration.servo_line import ServoLine
 from hexarm.calibration.servo_screen import CONSENT, HELP, STOPPED, question, status
-from manipulator.errors import LinkError, ManipulatorError
+from manipulator.errors import LinkError, ManipulatorError, Refused
 from manipulator.nodes.terminal import Terminal
 from manipulator.teleop.key_names import key_names
 
@@ -70,13 +70,19 @@ class Sitting:
             return walk
         if self.line.mode is Mode.STOPPED:
             if 'c' in keys:
-                self.line.clear()
+                self._clear()
             return walk.stood(self._pulses())
         for key in keys:
             walk = walk.press(key)
         walk = walk.advance(dt)
         self.line.move(walk.counts)
         return walk
+
+    def _clear(self) -> None:
+        try:
+            self.line.clear()
+        except Refused as error:  # the stop button is pressed, or the battery low
+            self.terminal.show(f'\r\x1b[Knot cleared: {error}\n')
 
     def _keys(self) -> tuple[str, ...]:
         """What was pressed since the last call, as long as there is a person and a board."""

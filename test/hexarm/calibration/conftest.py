@@ -16,6 +16,7 @@ import pytest
 from bridge.board_thread import BoardThread, FakeMachine
 from bridge.fake_line import FakeLine
 from bridge.servo_config import BoardConfig
+from bridge.servo_walk import STEPS_US
 from hexarm import machines
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -23,14 +24,10 @@ PATIENCE = 30.0
 RIGHT, LEFT = '\x1b[C', '\x1b[D'
 
 
-class Person:
-    """Types, reads the screen, and sees where the servos of the real machine stand."""
+class Screen:
+    """`hexarm calibrate servos` on a terminal of its own."""
 
-    def __init__(self, truth, folder, machine, *words):
-        self.machine = FakeMachine.from_config(truth, boot_s=0.1, hysteresis=0.0)
-        port = folder / 'board'
-        self.board = BoardThread(self.machine, FakeLine(port), lambda positions: None)
-        self.board.start()
+    def __init__(self, machine, port, *words):
         self.keys, screen = pty.openpty()
         command = [sys.executable, '-m', 'hexarm', 'calibrate', 'servos', str(machine)]
         self.process = subprocess.Popen(
@@ -43,14 +40,6 @@ class Person:
         )
         os.close(screen)
         self.said = ''
-
-    @property
-    def pulses(self):
-        return self.machine.board.pulses
-
-    @property
-    def positions(self):
-        return self.machine.servos.positions
 
     def type(self, keys):
         os.write(self.keys, keys.encode())
@@ -73,29 +62,6 @@ class Person:
         self.await_that(words, lambda: words in self.said)
         self.said = self.said[self.said.index(words) + len(words) :]
 
-    def begin(self):
-        self.await_words('ENTER energises')
-        self.type('\r')
-        self.await_words('crank_1, direction')
-
-    def jog_to(self, channel, pulse_us):
-        """By the arrow keys, a step at a time, until the pulse is there."""
-        while abs(self.pulses[channel] / 2 - pulse_us) > 0.25:
-            before = self.pulses[channel]
-            wanted = RIGHT if before / 2 < pulse_us else LEFT
-            self.type(wanted)
-            with contextlib.suppress(AssertionError):
-                self.await_that('a move', lambda old=before: self.pulses[channel] != old)
-            self.await_rest(channel)
-
-    def await_rest(self, channel):
-        last = None
-        while self.pulses[channel] != last:
-            last = self.pulses[channel]
-            for _ in range(8):
-                self.read()
-                time.sleep(0.01)
-
     def await_end(self):
         self.await_that('the end', lambda: self.process.poll() is not None)
         self.read()
@@ -107,6 +73,57 @@ class Person:
         self.process.wait(10)
         with contextlib.suppress(OSError):
             os.close(self.keys)
+
+
+class Person(Screen):
+    """Types, reads the screen, and sees where the servos of the real machine stand."""
+
+    def __init__(self, truth, folder, file, *words):
+        self.file, self.port = file, folder / 'board'
+        self.step = STEPS_US.index(20.0)
+        self.machine = FakeMachine.from_config(truth, boot_s=0.1, hysteresis=0.0)
+        self.board = BoardThread(self.machine, FakeLine(self.port), lambda positions: None)
+        self.board.start()
+        super().__init__(file, self.port, *words)
+
+    @property
+    def pulses(self):
+        return self.machine.board.pulses
+
+    @property
+    def positions(self):
+        return self.machine.servos.positions
+
+    def another(self):
+        """Somebody else who wants the same board."""
+        return Screen(self.file, self.port)
+
+    def begin(self):
+        self.await_words('ENTER energises')
+        self.type('\r')
+        self.await_words('crank_1, direction')
+
+    def jog_to(self, channel, pulse_us):
+        """By the arrow keys, in steps that fit, until the pulse is there."""
+        while (way := pulse_us - self.pulses[channel] / 2) != 0.0:
+            fitting = sum(step <= max(abs(way), STEPS_US[0]) for step in STEPS_US) - 1
+            self.type(('+' if fitting > self.step else '-') * abs(fitting - self.step))
+            self.step = fitting
+            before = self.pulses[channel]
+            self.type(RIGHT if way > 0 else LEFT)
+            self.await_that('a move', lambda old=before: self.pulses[channel] != old)
+            self.await_rest(channel)
+
+    def await_rest(self, channel):
+        last = None
+        while self.pulses[channel] != last:
+            last = self.pulses[channel]
+            for _ in range(8):
+                self.read()
+                time.sleep(0.01)
+
+    def close(self):
+        super().close()
         self.board.close()
 
 

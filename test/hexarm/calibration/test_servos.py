@@ -10,6 +10,8 @@ import pytest
 from bridge.messages import Mode
 from bridge.servo_config import BoardConfig
 from hexarm import machines
+from hexarm.calibration.fake_servos import FakeServos, mounted_wrongly
+from hexarm.calibration.servo_values import changed_values
 from hexarm.main import main
 
 WRONG = {
@@ -34,7 +36,6 @@ def test_after_a_sitting_the_file_holds_the_true_values_and_nothing_else_has_cha
         person.type('\r')
         person.await_words(f'{name}, scale')
         if channel == 1:
-            person.type('+')
             person.jog_to(channel, 1560.0)
             angle = np.degrees(person.positions[channel])
             assert angle == pytest.approx(110.0, abs=0.5)
@@ -72,17 +73,20 @@ def test_space_stops_and_nothing_moves_until_it_is_cleared(sit_down):
     assert person.pulses == there
 
 
-@pytest.mark.parametrize('end', ['ctrl-c', 'terminate', 'terminal'])
+@pytest.mark.parametrize('end', ['ctrl-c', 'terminate', 'terminal', 'after a stop'])
 def test_servos_go_off_however_the_sitting_ends(sit_down, end):
     person, file = sit_down({})
     before = file.read_text()
     person.begin()
     person.type('\x1b[C')
     person.await_that('a move', lambda: person.pulses[0] > 3000)
+    if end == 'after a stop':
+        person.type(' ')
+        person.await_that('a stop', lambda: person.machine.board.mode is Mode.STOPPED)
     if end == 'terminal':
         os.close(person.keys)
     else:
-        number = signal.SIGINT if end == 'ctrl-c' else signal.SIGTERM
+        number = signal.SIGTERM if end == 'terminate' else signal.SIGINT
         os.kill(person.process.pid, number)
     person.process.wait(20)
     assert person.pulses == (None,) * 6
@@ -122,6 +126,26 @@ def test_without_consent_no_servo_gets_a_pulse(sit_down):
     assert person.await_end() == 0
     assert 'nothing was written' in person.said
     assert person.pulses == (None,) * 6
+
+
+@pytest.mark.parametrize('name', sorted(machines.shipped()))
+def test_a_fake_board_can_be_tried_with_every_machine(name):
+    config = BoardConfig.from_machine(machines.read(name))
+    wrong = mounted_wrongly(config, 7)
+    changed = changed_values(config.servos.joints, wrong.servos.joints)
+    assert {place[-1] for place in changed} == {'sign', 'centre_us'}
+    with FakeServos(wrong) as fake:
+        assert os.path.exists(fake.port)
+    assert not os.path.exists(fake.port)
+
+
+def test_a_port_that_another_program_holds_is_said_kindly(sit_down):
+    person, _ = sit_down({})
+    person.await_words('ENTER energises')
+    other = person.another()
+    assert other.await_end() == 1
+    assert 'end hexarm up' in other.said
+    other.close()
 
 
 @pytest.mark.parametrize(
