@@ -4,11 +4,11 @@ A state machine without terminal, port or clock. Only the servo at hand moves, s
 further than one step ahead of itself and never beyond the pulse range of the machine file.
 """
 
-import enum
 from dataclasses import dataclass, replace
 
 from bridge.calibration import COUNTS_PER_US
 from bridge.servo_config import ServoConfig
+from bridge.servo_stages import AFTER, Stage
 from manipulator.errors import ConfigError
 
 SPEED_US_S = 150.0
@@ -22,27 +22,6 @@ LEAST_SPAN_US = 100.0
 MOST_SCALE_CHANGE = 2.0
 LONGER, SHORTER = ('right', 'up', 'd'), ('left', 'down', 'a')
 NUMBER = '0123456789.-'
-
-
-class Stage(enum.Enum):
-    """What is asked of the person now."""
-
-    DIRECTION = 'direction'
-    CENTRE = 'centre'
-    SCALE = 'scale'
-    RANGE = 'range'
-    RETURN = 'return'
-    REVIEW = 'review'
-    WRITE = 'write'
-    LEAVE = 'leave'
-
-
-AFTER = {
-    Stage.DIRECTION: Stage.CENTRE,
-    Stage.CENTRE: Stage.SCALE,
-    Stage.SCALE: Stage.RANGE,
-    Stage.RANGE: Stage.RETURN,
-}
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """What the person at the terminal reads while walking through the servos."""
 
-from bridge.servo_walk import STEPS_US, ServoWalk, Stage
+from bridge.servo_stages import Stage
+from bridge.servo_walk import STEPS_US, ServoWalk
 
 HELP = """\
  →/← or d/a  longer, shorter pulse     +/-  step    s  skip    b  this servo again

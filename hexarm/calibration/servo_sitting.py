@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from bridge.messages import Mode
 from bridge.servo_config import ServoConfig
-from bridge.servo_walk import ServoWalk, Stage
+from bridge.servo_stages import Stage
+from bridge.servo_walk import ServoWalk
 from hexarm.calibration.servo_line import ServoLine
 from hexarm.calibration.servo_screen import CONSENT, HELP, STOPPED, question, status
 from manipulator.errors import LinkError, ManipulatorError, Refused
