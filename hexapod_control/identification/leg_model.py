@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hexapod_control.geometry import LEGS
+from hexapod_control.geometry import LEGS, RotaryGeometry
 from hexapod_control.leg_jacobian import leg_jacobian
+from hexapod_control.linear_geometry import LinearGeometry
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution
 from manipulator.identification.model import Parameter
@@ -45,6 +46,10 @@ class LegModel(ABC):
     @abstractmethod
     def parameters(self) -> tuple[Parameter, ...]:
         """Six a kind and leg, or eighteen for points: leg by leg, then x, y, z."""
+
+    @abstractmethod
+    def identified(self, values: Array) -> RotaryGeometry | LinearGeometry:
+        """The geometry with these values."""
 
     @abstractmethod
     def legs(self, values: Array, joints: Array) -> Legs:

@@ -15,4 +15,4 @@ def model_of(kinematics: Kinematics, tolerances: Tolerances) -> RotaryModel | Li
         return RotaryModel(kinematics.geometry, tolerances)
     if isinstance(kinematics, LinearPlatform):
         return LinearModel(kinematics.geometry, tolerances)
-    raise InvalidInput('only parallel platforms can be identified, serial arms not yet')
+    raise InvalidInput(f'no model to identify for a {type(kinematics).__name__}')

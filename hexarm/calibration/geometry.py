@@ -7,10 +7,9 @@ import numpy as np
 
 from bridge.servo_config import BoardConfig
 from hexapod_control.identification.leg_model import Tolerances
-from hexapod_control.identification.machine_values import geometry_lines
-from hexapod_control.identification.model_of import model_of
 from hexarm.answers import Answer, add_machine, answering
 from hexarm.calibration.geometry_report import for_programs, in_words
+from hexarm.calibration.machine_model import machine_model, new_geometry
 from hexarm.calibration.machine_writer import MachineWriter
 from hexarm.calibration.pose_table import measurements
 from hexarm.machines import load, read
@@ -74,7 +73,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
         float(np.radians(_positive('--tolerance-deg', arguments.tolerance_deg))),
     )
     noise = Noise(1e-3 * arguments.noise_mm, float(np.radians(arguments.noise_deg)))
-    model = model_of(kinematics, tolerances)
+    model = machine_model(kinematics, tolerances)
     table = measurements(arguments.measurements, kinematics.joint_names, kinematics.joint_unit)
     groups = [p.group for p in model.parameters]
     free = arguments.free or [*dict.fromkeys(groups), 'device', 'marker']
@@ -83,7 +82,9 @@ def answer(arguments: argparse.Namespace) -> Answer:
     if writer is not None:
         values = found.model_values
         offsets = model.joint_offsets(values)
-        text = with_section(writer.text, 'geometry', geometry_lines(model.identified(values)))
+        lines_of_geometry, text = new_geometry(model, values), writer.text
+        if lines_of_geometry:
+            text = with_section(text, 'geometry', lines_of_geometry)
         text = with_values(text, centres(file, kinematics.joint_names, offsets))
         problems = writer.write(text)
         lines += ['', f'{writer.target}: written']

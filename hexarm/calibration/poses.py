@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from hexapod_control.identification.leg_model import Tolerances
-from hexapod_control.identification.model_of import model_of
-from hexapod_control.workspace import sample
+from hexarm.calibration.machine_model import machine_model, random_poses
 from hexarm.calibration.pose_table import planned
 from hexarm.machines import load
 from manipulator.arrays import Array
@@ -45,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.output and Path(arguments.output).exists():
         raise InvalidInput(f'{arguments.output} exists already: it is not overwritten')
     machine = load(arguments.machine)
-    model = model_of(machine.kinematics, TOLERANCES)
+    model = machine_model(machine.kinematics, TOLERANCES)
     joints, poses = telling_poses(machine, model, NOISE, arguments.count)
     kinematics = machine.kinematics
     text = planned(kinematics.joint_names, kinematics.joint_unit, joints, poses)
@@ -67,10 +66,10 @@ def telling_poses(machine: Machine, model: Model, noise: Noise, count: int) -> t
     """
     kinematics = machine.kinematics
     length = kinematics.characteristic_length
-    poses = sample(machine, max(CANDIDATES, 4 * count), np.random.default_rng(1), length)
-    margins = kinematics.sigma_min(poses, kinematics.inverse(poses))
-    poses = poses[margins >= np.quantile(margins, KEPT_FROM_SINGULARITY)]
-    joints = kinematics.inverse(poses)
+    joints, poses = random_poses(machine, max(CANDIDATES, 4 * count), np.random.default_rng(1))
+    margins = kinematics.sigma_min(poses, joints)
+    kept = margins >= np.quantile(margins, KEPT_FROM_SINGULARITY)
+    joints, poses = joints[kept], poses[kept]
     own = model.slopes(np.zeros(len(model.parameters)), joints, poses)
     slopes = DeviceFrames.known().slopes(np.zeros(COUNT), poses, own)
     scale = scales((*model.parameters, *DeviceFrames.parameters()))

@@ -83,10 +83,10 @@ def _expected(
         whole = motion.copy()
         whole[is_frame] = answer
         direction = whole / scale
-        frame = 'the device' if 'anchor' in name or 'base' in name else 'the marker'
+        frame = 'the device' if 'anchor' in name or 'the base' in name else 'the marker'
         null, is_new = _without(null, direction / np.linalg.norm(direction))
         if is_new:
-            named.append(f'{name}, and {frame} with them')
+            named.append(f'{name}, made up for by {frame}')
     return tuple(named), null
 
 

@@ -99,6 +99,6 @@ def test_joints_that_close_nowhere_are_refused(case):
         model.predict(values, joints, poses)
 
 
-def test_serial_arms_are_refused_in_words():
-    with pytest.raises(InvalidInput, match='serial arms not yet'):
+def test_a_machine_that_is_no_platform_is_refused_in_words():
+    with pytest.raises(InvalidInput, match='no model to identify for a SerialArm'):
         model_of(load('arm_6r').kinematics, BUILT)

@@ -130,11 +130,9 @@ def test_a_table_that_cannot_be_used_is_refused_in_words(tmp_path, text, said, c
     [
         (['geometry', 'robocake', 'no.csv'], '--output my_robocake.yaml'),
         (['geometry', 'robocake', 'no.csv', '--dry-run'], 'no.csv cannot be read'),
-        (['geometry', 'arm_6r', 'no.csv', '--dry-run'], 'serial arms not yet'),
         (['geometry', 'robocake', 'no.csv', '--dry-run', '--noise-mm', '0'], 'position noise 0'),
         (['geometry', 'robocake', 'no.csv', '--dry-run', '--tolerance-mm', '-1'], '-1 outside'),
         (['poses', 'robocake', '--count', '0'], '--count 0 outside'),
-        (['poses', 'arm_6r'], 'serial arms not yet'),
         (['poses', 'robocake', '--count', '2', '-o', '/nowhere/x.csv'], 'cannot be written'),
     ],
 )

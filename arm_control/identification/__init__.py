@@ -1,0 +1,1 @@
+"""Serial arms as models whose parameters can be identified."""
