@@ -61,6 +61,7 @@ examples:
   hexarm up hexapod --port /dev/ttyACM0                the same with a real board
   hexarm ik robocake --xyz 0 0 0.045 --rpy 0 0 0.1     metres and radians
   hexarm check my_machine.yaml                         what is wrong with a machine file
+  hexarm calibrate servos robocake --output mine.yaml  signs and centres, on a fake board
 
 MACHINE is a shipped name (hexarm machines) or the path of a YAML file. Exit status: 0 good,
 1 failed, 2 refused or not understood. `hexarm COMMAND --help` tells more of a command.

@@ -29,13 +29,15 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 class ServoLine:
     """A context manager: connects when it is entered, and takes the power from the servos at exit.
 
-    is_off says afterwards whether the board has confirmed that.
+    is_off says afterwards whether the board has confirmed that. Where nobody asked to energise
+    them, they are left as they were: a board may be holding a platform up.
     """
 
     def __init__(self, port: str, config: BoardConfig) -> None:
         """LinkError: why the port cannot be used."""
         self.trouble = ''
         self.is_off = False
+        self.is_in_use = False
         self._is_energised = False
         self._config = config
         self._port: SerialPort | None = _opened(port, config.link.baud)
@@ -62,7 +64,7 @@ class ServoLine:
         """Servos off, as far as there is a board to obey; then the port is given back."""
         with _undisturbed():
             until = time.monotonic() + ANSWER_WITHIN
-            while not self.is_off and self.mode is not None and time.monotonic() < until:
+            while self._must_go_off and time.monotonic() < until:
                 try:
                     self._ask(Disarm())
                     self.is_off = True
@@ -75,6 +77,10 @@ class ServoLine:
         """The board's, None where there is none."""
         state = self._session.state
         return None if state is None else state.mode
+
+    @property
+    def _must_go_off(self) -> bool:
+        return self.is_in_use and not self.is_off and self.mode is not None
 
     @property
     def has_let_go(self) -> bool:
@@ -94,6 +100,7 @@ class ServoLine:
 
         Refused says why the board does not: stopped, a fault, the battery.
         """
+        self.is_in_use = True
         self._ask(Arm(counts))
         until = time.monotonic() + ARM_WITHIN
         while self.mode not in (Mode.ARMED, Mode.HOLDING):

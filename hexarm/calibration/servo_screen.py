@@ -1,5 +1,6 @@
 """What the person at the terminal reads while walking through the servos."""
 
+from bridge.messages import Mode
 from bridge.servo_stages import Stage
 from bridge.servo_walk import STEPS_US, ServoWalk
 
@@ -11,8 +12,14 @@ HELP = """\
 CONSENT = """\
 Take rods or load off the servos, or keep a hand at the plug: the first pulse moves each servo to
 its centre at full speed, one after the other. The graph (hexarm up) must not run meanwhile.
-{stopped}ENTER energises {count} servos, q leaves. """
-STOPPED = 'The board is stopped; energising clears that. '
+{found}ENTER energises {count} servos, q leaves. """
+FOUND = {
+    Mode.STOPPED: 'The board is stopped; energising clears that.\n',
+    Mode.FAULT: 'The board has a fault; energising clears that.\n',
+    Mode.ARMED: 'The servos have power already and stay where they are.\n',
+    Mode.HOLDING: 'The servos have power already and stay where they are.\n',
+}
+"""What is said before anything is energised, by the mode that the board is found in."""
 
 POSITIVE = {
     'rotary_hexapod': ' (the crank turns from its tangent upwards)',

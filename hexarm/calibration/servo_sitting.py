@@ -9,7 +9,7 @@ from bridge.servo_config import ServoConfig
 from bridge.servo_stages import Stage
 from bridge.servo_walk import ServoWalk
 from hexarm.calibration.servo_line import ServoLine
-from hexarm.calibration.servo_screen import CONSENT, HELP, STOPPED, question, status
+from hexarm.calibration.servo_screen import CONSENT, FOUND, HELP, question, status
 from manipulator.errors import LinkError, ManipulatorError, Refused
 from manipulator.nodes.terminal import Terminal
 from manipulator.teleop.key_names import key_names
@@ -56,8 +56,8 @@ class Sitting:
         return walk
 
     def _has_consent(self) -> bool:
-        stopped = STOPPED if self.line.mode in LATCHED else ''
-        self.terminal.show(CONSENT.format(stopped=stopped, count=len(self.servos)))
+        found = '' if self.line.mode is None else FOUND.get(self.line.mode, '')
+        self.terminal.show(CONSENT.format(found=found, count=len(self.servos)))
         while True:
             time.sleep(TICK)
             keys = self._keys()

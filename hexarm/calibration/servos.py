@@ -100,6 +100,8 @@ def _eyes(fake: FakeServos, config: BoardConfig) -> Callable[[int], str]:
 
 
 def _farewell(line: ServoLine) -> str:
+    if not line.is_in_use:
+        return 'the servos were left as they were'
     if line.is_off:
         return 'servos off'
     return 'the board has not confirmed that the servos are off: pull their plug'

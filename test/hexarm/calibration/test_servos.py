@@ -7,7 +7,7 @@ import signal
 import numpy as np
 import pytest
 
-from bridge.messages import Mode
+from bridge.messages import Arm, Mode
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.calibration.fake_servos import FakeServos, mounted_wrongly
@@ -126,6 +126,16 @@ def test_without_consent_no_servo_gets_a_pulse(sit_down):
     assert person.await_end() == 0
     assert 'nothing was written' in person.said
     assert person.pulses == (None,) * 6
+
+
+def test_a_platform_that_the_board_holds_up_is_not_dropped_without_consent(sit_down):
+    person, _ = sit_down({})
+    person.board.do(lambda: person.machine.board._modes.obey(Arm((3000,) * 6), 0))
+    person.await_words('ENTER energises')
+    person.type('q')
+    assert person.await_end() == 0
+    assert 'left as they were' in person.said
+    assert person.pulses == (3000.0,) * 6
 
 
 @pytest.mark.parametrize('name', sorted(machines.shipped()))
