@@ -2,7 +2,7 @@
 
 from bridge.messages import Mode
 from bridge.servo_stages import Stage
-from bridge.servo_walk import STEPS_US, ServoWalk
+from bridge.servo_walk import ServoWalk
 
 HELP = """\
  →/← or d/a  longer, shorter pulse     +/-  step    s  skip    b  this servo again
@@ -52,8 +52,7 @@ def question(walk: ServoWalk, positive: str) -> str:
 
 def status(walk: ServoWalk, stopped: bool, seen: str) -> str:
     """The line that is rewritten all the time."""
-    step = STEPS_US[STEPS_US.index(walk.step)]
     typed = '' if walk.typed is None else f'  ={walk.typed}_'
     notice = 'STOPPED, c clears it' if stopped else walk.notice
     told = f'  {notice}' if notice else ''
-    return f' {walk.servo.name}  {walk.pulse:7.1f} µs  step {step:g}{seen}{typed}{told}'
+    return f' {walk.servo.name}  {walk.pulse:7.1f} µs  step {walk.step:g}{seen}{typed}{told}'
