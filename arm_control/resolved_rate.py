@@ -22,6 +22,9 @@ NOISE = 1e-9
 """Part of the fastest joint's rate below which another joint's is rounding."""
 STANDING = 1e-9
 """rad/s."""
+ROUNDING = 1e-6
+"""Radians by which a jog stays off the end of each range: who solves its pose again for the joints
+must not find one beyond it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +92,8 @@ class ResolvedRate:
         wanted = np.asarray(twist, dtype=np.float64)
         if wanted.shape != (6,) or not np.isfinite(wanted).all() or not 0 < dt < np.inf:
             raise InvalidInput(f'twist {wanted.tolist()} over {dt} s, needs six finite, positive')
-        scaled_jacobian = self.arm.chain.jacobian(state.joints) * self._unit[:, None]
+        midway = state.joints + 0.5 * dt * state.rates
+        scaled_jacobian = self.arm.chain.jacobian(midway) * self._unit[:, None]
         scaled_twist = wanted * self._unit
         inverse = DampedInverse.of(scaled_jacobian, self.onset)
         rates, to_high, to_low = _without_noise(inverse.rates(scaled_twist)), *self._room(state)
@@ -103,14 +107,15 @@ class ResolvedRate:
                 scale, _ = self._scale(rates, to_high, to_low, dt)
         following = self._followed(state.rates, scale * rates, to_high, to_low, dt)
         # Only rounding is cut off here: what the stops do is in `following` already.
-        highest = np.maximum(self.arm.limits.high, state.joints)
-        lowest = np.minimum(self.arm.limits.low, state.joints)
+        highest = np.maximum(self.arm.limits.high - ROUNDING, state.joints)
+        lowest = np.minimum(self.arm.limits.low + ROUNDING, state.joints)
         joints = np.minimum(np.maximum(state.joints + dt * following, lowest), highest)
         after = JogState(frozen(joints), frozen(following))
         return JogStep(after, scale, held_by, inverse.sigma_min)
 
     def _room(self, state: JogState) -> tuple[Array, Array]:
-        return self.arm.limits.high - state.joints, state.joints - self.arm.limits.low
+        high, low = self.arm.limits.high - ROUNDING, self.arm.limits.low + ROUNDING
+        return high - state.joints, state.joints - low
 
     def _scale(self, rates: Array, to_high: Array, to_low: Array, dt: float) -> tuple[float, str]:
         """The part of `rates` that every joint can drive, and brake before its stop.

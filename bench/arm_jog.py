@@ -69,7 +69,8 @@ def driven(
     poses = deque([forward(TILTED)] * (DELAY_TICKS + 1))
     held_mode = jog_mode(name, Feedback.for_delay(DELAY_TICKS * TICK), point).latched(poses[0])
     for command in twists:
-        twist, held_mode = held_mode.step(command, poses[-1 - DELAY_TICKS])
+        late, commanded = poses[-1 - DELAY_TICKS], forward(state.joints).position
+        twist, held_mode = held_mode.step(command, late, commanded)
         state = jog.step(state, within_speed(twist, jog.motion)[0], TICK).state
         poses.append(forward(np.round(state.joints / steps) * steps))
     return list(poses)

@@ -20,10 +20,13 @@ from bridge.messages import ResetCause
 from bridge.plant import Plant
 from bridge.servo import Servos
 from bridge.servo_config import BoardConfig
+from bridge.steppers import Steppers
 from manipulator.arrays import Array
 
 STEP, LONGEST_STEP = 0.01, 0.05
 """Seconds; where this process stalls for longer, the board's time stands still meanwhile."""
+
+DRIVES: dict[str, type[Servos]] = {'servos': Servos, 'steppers': Steppers}
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,8 @@ class FakeMachine:
         """Unpowered at park; hysteresis in rad (or m); `solve` is what cycles are played by."""
         calibration = Calibration.from_config(config.servos)
         dead_band = COUNTS_PER_US * config.simulation.dead_band_us / np.abs(calibration.scale)
-        servos = Servos.at_rest(calibration.park, calibration.speed, dead_band, hysteresis)
+        drives = DRIVES[config.simulation.drives]
+        servos = drives.at_rest(calibration.park, calibration.speed, dead_band, hysteresis)
         settings = replace(BoardSettings.from_config(config, boot_s), solve=solve)
         board = Board(settings, round(1000 * config.simulation.battery_v))
         return cls(board, servos, calibration, config.simulation.joints == 'measured')

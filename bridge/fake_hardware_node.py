@@ -31,10 +31,16 @@ PRESETS: dict[str, Callable[[SimulationConfig], SimulationConfig]] = {
         told, hysteresis_deg=6 * told.hysteresis_deg, hysteresis_mm=6 * told.hysteresis_mm
     ),
     'stepper': lambda told: replace(
-        told, hysteresis_deg=0.0, hysteresis_mm=0.0, dead_band_us=0.0, joints='measured'
+        told,
+        hysteresis_deg=0.0,
+        hysteresis_mm=0.0,
+        dead_band_us=0.0,
+        joints='measured',
+        drives='steppers',
     ),
 }
-"""bad_day: six times the play, so 3° on a worn RoboCake. stepper: no play, but encoders."""
+"""bad_day: six times the play, so 3° on a worn RoboCake. stepper: no play, encoders, and a motion
+controller that interpolates all joints together."""
 PRESET = "'normal', 'bad_day' (six times the play) or 'stepper' (no play, measured joints)"
 
 

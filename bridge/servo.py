@@ -37,7 +37,11 @@ class Servos:
         """Follows `targets` for `dt` seconds; NaN means no pulse: that servo stays."""
         error = targets - self.motor
         is_moving = np.abs(error) > self.dead_band / 2
-        reach = self.speed * dt
-        self.motor = self.motor + np.where(is_moving, np.clip(error, -reach, reach), 0.0)
+        self.motor = self.motor + self._turned(np.where(is_moving, error, 0.0), self.speed * dt)
         half = self.hysteresis / 2
         self.positions = np.clip(self.positions, self.motor - half, self.motor + half)
+
+    def _turned(self, error: Array, reach: float) -> Array:
+        """How far the motors come, of `error` (n,); each at its own full speed."""
+        turned: Array = np.clip(error, -reach, reach)
+        return turned

@@ -104,13 +104,17 @@ class LinkConfig:
 
 @dataclass(frozen=True)
 class SimulationConfig:
-    """What the fake board's servos and battery do; joints: what the board tells of them."""
+    """What the fake board's servos and battery do; joints: what the board tells of them.
+
+    drives: servos, each at its own full speed, or steppers, which interpolate together.
+    """
 
     hysteresis_deg: float = quantity(0, 45, default=0.0)
     hysteresis_mm: float = quantity(0, 100, default=0.0)
     dead_band_us: float = quantity(0, 200, default=5.0)
     battery_v: float = quantity(0, 60, default=7.6)
     joints: Literal['commanded', 'measured'] = 'commanded'
+    drives: Literal['servos', 'steppers'] = 'servos'
 
 
 @dataclass(frozen=True)

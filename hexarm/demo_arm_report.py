@@ -56,11 +56,12 @@ class ArmResult:
         """The table, a line each."""
         degrees, millimetres = np.degrees(self.turned), 1e3 * self.missed
         for name, values, unit in (
-            (f'orientation held over {self.way:.2f} m, error rms, max', degrees, '°'),
-            ('point looked at missed by rms, max', millimetres, ' mm'),
+            (f'orientation held over {self.way:.2f} m, error at the end, rms, max', degrees, '°'),
+            ('point looked at missed by, at the end, rms, max', millimetres, ' mm'),
         ):
-            rms = np.sqrt(np.nanmean(values**2))
-            yield name, f'{rms:.3f}{unit}, {np.nanmax(values):.3f}{unit}'
+            kept = values[np.isfinite(values)]
+            figures = (kept[-1], np.sqrt(np.mean(kept**2)), kept.max())
+            yield name, ', '.join(f'{figure:.3f}{unit}' for figure in figures)
         yield 'stick released to standing still, longest', f'{1e3 * self.stop:.0f} ms'
 
 

@@ -25,6 +25,7 @@ class CommandCheck:
         self._machine = machine
         self._names = machine.kinematics.joint_names
         self._commanded: Array | None = None
+        self._last_step: Array | float = 0.0
         self._commanded_at = float('-inf')
         self._measured: Array | None = None
 
@@ -39,12 +40,21 @@ class CommandCheck:
         age = now - self._commanded_at
         is_fresh = self._commanded is not None and age < FORGET_AFTER
         near = self._commanded if is_fresh else self._measured
-        joints = self._machine.kinematics.inverse(T_base_platform, near)
+        joints = self._machine.kinematics.inverse(T_base_platform, self._ahead(near, is_fresh))
         self._check_limits(T_base_platform, joints, near)
         if near is not None:
             self._check_step(joints, near, age if is_fresh else 0.0)
+        self._last_step = joints - near if is_fresh and near is not None else 0.0
         self._commanded, self._commanded_at = joints, now
         return joints
+
+    def _ahead(self, near: Array | None, is_fresh: bool) -> Array | None:
+        """Where the joints go on to if they keep their speed.
+
+        A jogged arm drives through postures where two branches meet, as a stretched elbow. Beside
+        them the nearest branch is the one that turns back; only the motion tells which is meant.
+        """
+        return near + self._last_step if is_fresh and near is not None else near
 
     def _check_limits(self, pose: Pose, joints: Array, near: Array | None) -> None:
         constraints = self._machine.constraints

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -24,10 +23,20 @@ class FramesConfig:
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """T_base_work, and T_platform_pivot, which has the platform's axes."""
+    """T_base_work, and T_platform_pivot, which has the platform's axes.
+
+    are_plain: work is base and the pivot is the platform's origin.
+    """
 
     T_base_work: Pose = field(default_factory=Pose.identity)
     T_platform_pivot: Pose = field(default_factory=Pose.identity)
+    are_plain: bool = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Looks once whether there is anything to convert."""
+        both = (self.T_base_work, self.T_platform_pivot)
+        ways = [Pose.identity().twist_to(pose) for pose in both]
+        object.__setattr__(self, 'are_plain', not np.any(ways))
 
     @classmethod
     def from_config(cls, config: FramesConfig) -> 'Frames':
@@ -46,16 +55,14 @@ class Frames:
             )
         return replace(self, T_platform_pivot=Pose(position, np.eye(3)))
 
-    @cached_property
-    def are_plain(self) -> bool:
-        """Whether work is base and the pivot is the platform's origin; asked at every jog tick."""
-        both = (self.T_base_work, self.T_platform_pivot)
-        return all(not pose.position.any() and (pose.rotation == np.eye(3)).all() for pose in both)
-
     def platform(self, T_work_pivot: Pose) -> Pose:
         """T_base_platform when the pivot is there."""
+        if self.are_plain:
+            return T_work_pivot
         return self.T_base_work @ T_work_pivot @ self.T_platform_pivot.inverse()
 
     def pivot(self, T_base_platform: Pose) -> Pose:
         """T_work_pivot when the platform is there."""
+        if self.are_plain:
+            return T_base_platform
         return self.T_base_work.inverse() @ T_base_platform @ self.T_platform_pivot

@@ -127,7 +127,7 @@ def _driven(
     poses = [forward(START)]
     held = jog_mode(name, Feedback.for_delay(TICK), point).latched(poses[0])
     for _ in range(MODE_TICKS):
-        twist, held = held.step(command, poses[-1])
+        twist, held = held.step(command, poses[-1], poses[-1].position)
         state = jog.step(state, within_speed(twist, jog.motion)[0], TICK).state
         poses.append(forward(state.joints))
     return poses

@@ -10,8 +10,8 @@ from manipulator.frames import Frames
 from manipulator.pose import Pose
 
 AXES: dict[str, Callable[[Frames, Pose], Array | None]] = {
-    '': lambda frames, pose: frames.T_base_work.rotation.T,
-    'base': lambda frames, pose: frames.T_base_work.rotation.T,
+    '': lambda frames, pose: None if frames.are_plain else frames.T_base_work.rotation.T,
+    'base': lambda frames, pose: None if frames.are_plain else frames.T_base_work.rotation.T,
     'work': lambda frames, pose: None,
     'pivot': lambda frames, pose: None,
     'tool': lambda frames, pose: pose.rotation,

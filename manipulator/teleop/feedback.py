@@ -3,8 +3,6 @@
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 
@@ -18,28 +16,29 @@ MAX_GAIN = 10.0
 class Feedback:
     """velocity = gain · error, bounded: gain in 1/s, the bounds in m/s and rad/s.
 
-    delay (seconds) is how old the measured poses are. The bounds let a mode that begins far from
-    its reference approach it gently.
+    The bounds let a mode that begins far from its reference approach it gently.
     """
 
     gain: float
-    delay: float = 0.0
     linear_bound: float = 0.05
     angular_bound: float = 0.5
 
     def __post_init__(self) -> None:
-        """Raises InvalidInput for gains and bounds that are not positive, and a negative delay."""
+        """Raises InvalidInput for gains and bounds that are not positive."""
         for name in ('gain', 'linear_bound', 'angular_bound'):
             value = getattr(self, name)
             if not 0 < value < math.inf:
                 raise InvalidInput(f'{name} is {value}, needs a positive number')
-        if not 0 <= self.delay < math.inf:
-            raise InvalidInput(f'delay is {self.delay} s, needs a number from 0 up')
 
     @classmethod
     def for_delay(cls, delay: float) -> 'Feedback':
-        """With the gain that a delay of so many seconds, measurement to motion, allows."""
-        return cls(min(MAX_GAIN, GAIN_TIMES_DELAY / max(delay, 1e-9)), delay)
+        """With the gain that a delay of so many seconds, measurement to motion, allows.
+
+        Raises InvalidInput for a delay that is negative or not finite.
+        """
+        if not 0 <= delay < math.inf:
+            raise InvalidInput(f'delay is {delay} s, needs a number from 0 up')
+        return cls(min(MAX_GAIN, GAIN_TIMES_DELAY / max(delay, 1e-9)))
 
     def linear(self, error: Array) -> Array:
         """Velocity (3,) in m/s towards a point that is `error` metres away."""
@@ -51,5 +50,5 @@ class Feedback:
 
 
 def _bounded(velocity: Array, bound: float) -> Array:
-    speed = float(np.linalg.norm(velocity))
+    speed = math.hypot(*velocity.tolist())
     return velocity if speed <= bound else velocity * (bound / speed)

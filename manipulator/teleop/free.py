@@ -14,6 +14,6 @@ class Free:
         """Needs no reference."""
         return self
 
-    def step(self, command: Array, pose: Pose) -> 'tuple[Array, Free]':
+    def step(self, command: Array, measured: Pose, commanded: Array) -> 'tuple[Array, Free]':
         """The command itself."""
         return command, self

@@ -28,7 +28,9 @@ class OrientationHeld:
     feedback: Feedback
     rotation: Array
 
-    def step(self, command: Array, pose: Pose) -> 'tuple[Array, OrientationHeld]':
+    def step(
+        self, command: Array, measured: Pose, commanded: Array
+    ) -> 'tuple[Array, OrientationHeld]':
         """The command's velocity and the turn back to the orientation; its own turn is lost."""
-        error = so3.log(self.rotation @ pose.rotation.T)
+        error = so3.log(self.rotation @ measured.rotation.T)
         return np.concatenate([command[:3], self.feedback.angular(error)]), self

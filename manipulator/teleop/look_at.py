@@ -31,30 +31,25 @@ class LookAt:
             raise Refused(
                 f'look-at point is {distance:.4g} m from the tool, needs at least {NEAREST} m'
             )
-        return PointHeld(self.feedback, frozen(self.point), distance, frozen(np.zeros(3)))
+        return PointHeld(self.feedback, frozen(self.point), distance)
 
 
 @dataclass(frozen=True, eq=False)
 class PointHeld:
-    """`distance` (metres) from tool to point is held while the operator does not translate.
-
-    velocity (3,) is the last one commanded: it tells where the tool is by now, when the measured
-    pose is late. Without it the sight would trail behind by the change of its turn in the delay.
-    """
+    """`distance` (metres) from tool to point is held while the operator does not translate."""
 
     feedback: Feedback
     point: Array
     distance: float
-    velocity: Array
 
-    def step(self, command: Array, pose: Pose) -> 'tuple[Array, PointHeld]':
+    def step(self, command: Array, measured: Pose, commanded: Array) -> 'tuple[Array, PointHeld]':
         """Translation as commanded; turns about the line of sight roll, all others orbit.
 
-        With d the unit vector to the point, r away, the tool follows ω = −d × v / r. The whole
-        velocity is scaled so that the tool comes no nearer than NEAREST.
+        With d the unit vector to the point, r away from the commanded position, the tool follows
+        ω = −d × v / r. The whole velocity is scaled so that it comes no nearer than NEAREST.
         """
-        seen, d_seen = _sight(self.point - pose.position)
-        ahead, d = _sight(self.point - pose.position - self.feedback.delay * self.velocity)
+        seen, d_seen = _sight(self.point - measured.position)
+        ahead, d = _sight(self.point - commanded)
         roll = (command[3:] @ d) * d
         velocity = command[:3] + np.cross(command[3:] - roll, -ahead * d)
         distance = self.distance
@@ -63,10 +58,10 @@ class PointHeld:
         else:
             velocity = velocity + self.feedback.linear((seen - distance) * d)
         velocity = velocity * self._approach(float(velocity @ d), ahead)
-        aim_error = turn_between(pose.rotation @ np.array(TOOL_AXIS), d_seen)
+        aim_error = turn_between(measured.rotation @ np.array(TOOL_AXIS), d_seen)
         follow = -np.cross(d, velocity) / max(ahead, NEAREST)
         twist = np.concatenate([velocity, roll + follow + self.feedback.angular(aim_error)])
-        return twist, replace(self, distance=distance, velocity=frozen(velocity))
+        return twist, replace(self, distance=distance)
 
     def _approach(self, speed: float, distance: float) -> float:
         """The part of the velocity that the way left allows."""

@@ -34,9 +34,11 @@ class DirectionHeld:
     feedback: Feedback
     direction: Array
 
-    def step(self, command: Array, pose: Pose) -> 'tuple[Array, DirectionHeld]':
+    def step(
+        self, command: Array, measured: Pose, commanded: Array
+    ) -> 'tuple[Array, DirectionHeld]':
         """The command's velocity and its turn about the direction; other turns are the loop's."""
-        approach = pose.rotation @ np.array(TOOL_AXIS)
+        approach = measured.rotation @ np.array(TOOL_AXIS)
         back = self.feedback.angular(turn_between(approach, self.direction))
         turn = (command[3:] @ self.direction) * self.direction + back
         return np.concatenate([command[:3], turn]), self

@@ -1,5 +1,7 @@
 """A commanded twist within the machine's limits of speed and acceleration."""
 
+import math
+
 import numpy as np
 
 from manipulator.arrays import Array
@@ -13,11 +15,12 @@ def within_speed(twist: Array, motion: MotionLimits) -> tuple[Array, float]:
     Raises InvalidInput unless it is six finite numbers.
     """
     wanted = np.asarray(twist, dtype=np.float64)
-    if wanted.shape != (6,) or not np.isfinite(wanted).all():
-        raise InvalidInput(f'twist {wanted.tolist()} is not six finite numbers')
+    parts = wanted.ravel().tolist()
+    if wanted.shape != (6,) or not all(map(math.isfinite, parts)):
+        raise InvalidInput(f'twist {parts} is not six finite numbers')
     part = max(
-        float(np.linalg.norm(wanted[:3])) / motion.linear.speed,
-        float(np.linalg.norm(wanted[3:])) / motion.angular.speed,
+        math.hypot(*parts[:3]) / motion.linear.speed,
+        math.hypot(*parts[3:]) / motion.angular.speed,
         1.0,
     )
     return wanted / part, 1.0 / part

@@ -38,9 +38,9 @@ class AxisHeld:
     axis: Array
     start: Pose
 
-    def step(self, command: Array, pose: Pose) -> 'tuple[Array, AxisHeld]':
+    def step(self, command: Array, measured: Pose, commanded: Array) -> 'tuple[Array, AxisHeld]':
         """The command's turn about the axis, and the way back to the point and the axis."""
-        swing = turn_but_about(self.axis, self.start.rotation @ pose.rotation.T)
+        swing = turn_but_about(self.axis, self.start.rotation @ measured.rotation.T)
         turn = (command[3:] @ self.axis) * self.axis + self.feedback.angular(swing)
-        shift = self.feedback.linear(self.start.position - pose.position)
+        shift = self.feedback.linear(self.start.position - measured.position)
         return np.concatenate([shift, turn]), self

@@ -11,7 +11,7 @@ from manipulator.pose import Pose
 from manipulator.teleop.command_frames import in_work_axes
 from manipulator.teleop.jog_mode import Held, JogMode
 from manipulator.teleop.jogger import JogMotion
-from manipulator.teleop.speed_limits import within_speed
+from manipulator.teleop.speed_limits import towards, within_speed
 
 SAY_AGAIN_AFTER = 0.5
 """Seconds between two changes of what is said to hold a jog back."""
@@ -41,6 +41,7 @@ class Jogging:
         self._dt = dt
         self._mode: JogMode | None = None
         self._held: Held | None = None
+        self._command = STILL
         self._obstacle_said = ''
         self._ticks_to_silence = 0
 
@@ -51,24 +52,33 @@ class Jogging:
         none.
         """
         twist, scale, refusal = STILL, 1.0, ''
-        if wish is not None:
-            try:
-                wanted = self._through_mode(wish, measured or self.motion.pose)
-            except Refused as error:
-                self._held, refusal = None, str(error)
-            else:
-                twist, scale = within_speed(wanted, self._machine.motion)
+        try:
+            if wish is not None or self._command.any():
+                twist, scale = self._through_mode(wish, measured or self.motion.pose)
+        except Refused as error:
+            self._held, self._command, refusal = None, STILL, str(error)
         self.motion = self._jogger.step(self.motion, rate * twist, self._dt)
         self._say(refusal or self._obstacle(scale, rate), rate * scale * self.motion.scale)
 
-    def _through_mode(self, wish: Wish, pose: Pose) -> Array:
-        """The mode's twist; its reference is taken where it begins."""
-        command = in_work_axes(wish.twist, wish.frame, pose, self._machine.frames)
-        if self._held is None or self._mode is not wish.mode:
-            self._held = wish.mode.latched(pose)
-            self._mode = wish.mode
-        twist, self._held = self._held.step(command, pose)
-        return twist
+    def _through_mode(self, wish: Wish | None, pose: Pose) -> tuple[Array, float]:
+        """The mode's twist within speed, and the part of the wish that it is.
+
+        What is wished comes and goes within the accelerations before it meets the mode, so that
+        the mode holds on while the machine speeds up, turns around and brakes.
+        """
+        motion, wanted, scale = self._machine.motion, STILL, 1.0
+        if wish is not None:
+            command = in_work_axes(wish.twist, wish.frame, pose, self._machine.frames)
+            wanted, scale = within_speed(command, motion)
+            if self._held is None or self._mode is not wish.mode:
+                self._held, self._mode = wish.mode.latched(pose), wish.mode
+        self._command = towards(self._command, wanted, motion, self._dt)
+        if self._held is None:
+            return STILL, scale
+        midway = self.motion.pose.position + 0.5 * self._dt * self.motion.twist[:3]
+        twist, self._held = self._held.step(self._command, pose, midway)
+        kept, part = within_speed(twist, motion)
+        return kept, scale * part
 
     def _obstacle(self, scale: float, rate: float) -> str:
         if rate == 0.0:

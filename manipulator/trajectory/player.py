@@ -18,13 +18,11 @@ from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.jogging import Jogging, Wish
 from manipulator.trajectory.motion_status import MotionStatus
+from manipulator.trajectory.pace import Pace
 from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import Hold, MotionState, Plan
-from manipulator.trajectory.plan_modes import MODES
 from manipulator.trajectory.planner import check_cycle, plan_to
-
-SPEEDING_UP_RATE = 2.0
-"""Change of rate per second when a cycle begins, a pause ends or the override is raised."""
+from manipulator.trajectory.playing import Playing
 
 
 class Player:
@@ -36,15 +34,8 @@ class Player:
         self.joints = joints
         self._machine = machine
         self._dt = dt
-        self._braking_step = machine.motion.braking_rate * dt
-        self._plan: Plan = Hold(pose)
-        self._time = 0.0
-        self._stamp = 0.0
-        self._rate = 1.0
-        self._override = 1.0
-        self.is_paused = False
-        self._is_blind = False
-        self._is_stopping = False
+        self._pace = Pace(machine.motion.braking_rate, dt)
+        self._playing = Playing(Hold(pose))
         self._newest: Goal | None = None
         self._next: Goal | Cycle | TimedPath | None = None
         self.expected: float | None = None
@@ -58,7 +49,7 @@ class Player:
         if self._jogging is not None:
             motion = self._jogging.motion
             return MotionState(motion.pose, motion.twist, np.zeros(6))
-        return self._plan.at(self._time)
+        return self._playing.state
 
     @property
     def newest_stamp(self) -> float:
@@ -71,24 +62,18 @@ class Player:
         for waiting in (self._newest, self._next):
             if isinstance(waiting, Goal):
                 return waiting.pose
-        is_move = MODES[type(self._plan)] == 'move'
-        return self._plan.at(self._plan.duration).pose if is_move else None
+        return self._playing.end.pose if self._playing.mode == 'move' else None
 
     @property
     def is_at_rest(self) -> bool:
         """Whether nothing moves and nothing is about to."""
         is_jogged = self._jogging is not None or self._wish is not None
-        return isinstance(self._plan, Hold) and self._newest is None and not is_jogged
+        return self._is_holding and not is_jogged
 
     @property
     def is_busy(self) -> bool:
         """Whether a goal or a cycle is being driven, or waits."""
-        return not isinstance(self._plan, Hold) or self._newest is not None
-
-    @property
-    def _wanted_rate(self) -> float:
-        is_held = self.is_paused or self._is_blind or self._is_stopping
-        return 0.0 if is_held else self._override
+        return not self._is_holding
 
     def pursue(self, goal: Goal) -> None:
         """Takes a goal up at the next tick; of several the newest wins. Refused during a jog."""
@@ -113,7 +98,7 @@ class Player:
         """
         if wish is not None and self._wish is None and self.is_busy:
             self._newest = self._next = None
-            self._is_stopping = not isinstance(self._plan, Hold)
+            self._pace.is_stopping = not self._playing.is_hold
         self.expected = self.expected if wish is None else None
         self._wish = wish
 
@@ -130,38 +115,35 @@ class Player:
         check_cycle(self._machine, cycle, self.joints, self._dt)
         start = cycle.at(0.0).pose
         self._begin(plan_to(self._machine, self.state, start, self.joints, self._dt), stamp=0.0)
-        self._newest, self._next, self._is_stopping, self.expected = None, cycle, False, None
+        self._newest = self.expected = None
+        self._next, self._pace.is_stopping = cycle, False
 
     def stop(self) -> None:
         """Brakes along the way, then holds; what was to come is dropped."""
         self._newest = self._next = self._wish = self.expected = None
-        if self._jogging is not None:
-            self._is_stopping = True
-        elif isinstance(self._plan, Hold):
-            self._report('stopped', self._stamp)
+        if self._jogging is None and self._playing.is_hold:
+            self._report('stopped', self._playing.stamp)
         else:
-            self._is_stopping = True
+            self._pace.is_stopping = True
 
     def pause(self, is_paused: bool) -> None:
         """Brakes along the way and stays, or goes on."""
-        self.is_paused = is_paused
+        self._pace.is_paused = is_paused
 
     def blind(self, is_blind: bool) -> None:
         """As `pause`, apart from the user's own: nobody knows where the joints are."""
-        self._is_blind = is_blind
+        self._pace.is_blind = is_blind
 
     def override(self, rate: float) -> None:
         """Runs everything at `rate` times its speed; Refused outside [0, 1]."""
-        if not 0.0 <= rate <= 1.0:
-            raise Refused(f'speed override {rate:g} outside [0, 1]')
-        self._override = rate
+        self._pace.override(rate)
 
     def step(self) -> Pose:
         """Advances by one tick and returns the pose to command."""
         if self._jogging is not None or (self._wish is not None and self._is_holding):
             return self._step_jog()
-        if isinstance(self._plan, Hold):
-            self._rate = self._wanted_rate
+        if self._playing.is_hold:
+            self._pace.jump()
         if self._newest is not None:
             goal, self._newest = self._newest, None
             self._take(goal)
@@ -171,14 +153,14 @@ class Player:
         try:
             self.joints = self._machine.kinematics.inverse(pose, self.joints)
         except Unreachable as error:
-            self._begin(Hold(before), self._stamp)
-            self._report('stopped', self._stamp, str(error))
+            self._begin(Hold(before), self._playing.stamp)
+            self._report('stopped', self._playing.stamp, str(error))
             return before
         return pose
 
     @property
     def _is_holding(self) -> bool:
-        return isinstance(self._plan, Hold) and self._newest is None
+        return self._playing.is_hold and self._newest is None
 
     def _refuse_while_jogged(self) -> None:
         if self._wish is not None:
@@ -188,11 +170,12 @@ class Player:
         if self._jogging is None:
             self._jogging = Jogging(self._machine, self.state.pose, self.joints, self._dt)
         jogging = self._jogging
-        jogging.step(self._wish, self._wanted_rate, self._measured)
+        jogging.step(self._wish, self._pace.wanted, self._measured)
         self.joints = jogging.motion.joints
-        if jogging.motion.is_at_rest and (self._wish is None or self._is_stopping):
-            result = 'stopped' if self._is_stopping else 'idle'
-            self._jogging, self._is_stopping = None, False
+        is_stopping = self._pace.is_stopping
+        if jogging.motion.is_at_rest and (self._wish is None or is_stopping):
+            result = 'stopped' if is_stopping else 'idle'
+            self._jogging, self._pace.is_stopping = None, False
             self._begin(Hold(jogging.motion.pose), 0.0)
             self._report(result, 0.0)
         else:
@@ -201,7 +184,7 @@ class Player:
 
     def _take(self, goal: Goal) -> None:
         """Goes there at once if it can be joined in motion, else stops first and then goes."""
-        if self._is_stopping and self._rate > 0.0:
+        if self._pace.is_stopping and self._pace.rate > 0.0:
             self._next = goal
             return
         state = self.state
@@ -213,50 +196,46 @@ class Player:
             if state.is_at_rest:
                 self._report('refused', goal.stamp, str(error))
             else:
-                self._next, self._is_stopping = goal, True
+                self._next, self._pace.is_stopping = goal, True
         else:
             self._next = goal.then
             self._begin(move, goal.stamp)
 
     def _begin(self, plan: Plan, stamp: float) -> None:
-        self._plan, self._time, self._stamp = plan, 0.0, stamp
-        if not isinstance(plan, Hold):
+        self._playing = Playing(plan, stamp)
+        if not self._playing.is_hold:
             self._report('moving', stamp)
 
     def _report(self, result: str, stamp: float, reason: str = '') -> None:
-        self.status = MotionStatus(MODES[type(self._plan)], result, stamp, reason)
+        self.status = MotionStatus(self._playing.mode, result, stamp, reason)
 
     def _advance(self) -> None:
-        rise = min(SPEEDING_UP_RATE * self._dt, self._braking_step)
-        self._rate = min(
-            self._rate + rise, max(self._rate - self._braking_step, self._wanted_rate)
-        )
-        self._time += self._rate * self._dt
-        if self._is_stopping and self._rate <= 0.0:
+        self._pace.advance()
+        self._playing.time += self._pace.rate * self._dt
+        if self._pace.is_stopping and self._pace.rate <= 0.0:
             self._settle('stopped')
-        elif self._time >= self._plan.duration and not isinstance(self._plan, Hold):
+        elif self._playing.is_over:
             self._settle('reached')
-        elif isinstance(self._plan, TimedPath) and self.status.result == 'moving':
-            self.status = replace(self.status, percent=self._plan.percent(self._time))
+        elif self.status.result == 'moving':
+            self.status = replace(self.status, percent=self._playing.percent)
 
     def _settle(self, result: str) -> None:
         """The plan is over: hold its last pose, or begin what waits."""
         following, self._next = self._next, None
-        wish = self._wish if result == 'stopped' else None
-        reason = '' if wish is None else f'{wish.source} took the machine over'
-        stamp = self._stamp
+        stamp = self._playing.stamp
         self._begin(Hold(self.state.pose), stamp)
-        self._is_stopping = False
-        self._rate = self._wanted_rate
+        self._pace.is_stopping = False
+        self._pace.jump()
         if isinstance(following, Cycle):
-            self._rate = 0.0
+            self._pace.rate = 0.0
             self._begin(following, stamp)
         elif isinstance(following, TimedPath):
             self._follow(following, stamp)
         elif isinstance(following, Goal):
             self._take(following)
         else:
-            self._report(result, stamp, reason)
+            wish = self._wish if result == 'stopped' else None
+            self._report(result, stamp, f'{wish.source} took the machine over' if wish else '')
 
     def _follow(self, path: TimedPath, stamp: float) -> None:
         if np.abs(self.joints - path.joints).max() > BRANCH_JUMP:

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from bridge.board import Board
-from bridge.board_settings import BoardSettings
+from bridge.board_thread import FakeMachine
 from bridge.calibration import Calibration
 from bridge.command_gate import CommandGate
 from bridge.events import FaultReported, StateReceived
@@ -43,27 +42,33 @@ class Sent:
 
 
 class Loop:
-    """Ticks of 10 ms from the user's wishes to the board's pulses and back, in one time."""
+    """Ticks of 10 ms from the user's wishes to the board's pulses and back, in one time.
+
+    times_of_a_tick: the steps in which the board's thread lets a tick pass; true_joints are heard
+    after each. While `is_stalled` no setpoint gets through, as when ik is kept from running.
+    """
 
     def __init__(self, name):
         self.machine = machines.load(name)
         config = BoardConfig.from_machine(machines.read(name))
         self.calibration = Calibration.from_config(config.servos)
-        self.board = Board(BoardSettings.from_config(config, boot_s=0.0))
-        self.board.battery_mv = round(1000 * config.simulation.battery_v)
+        self.fake = FakeMachine.from_config(config, boot_s=0.0, hysteresis=config.hysteresis)
+        self.board = self.fake.board
         self.session = Session(len(self.calibration.names))
         self.monitor = LinkMonitor(self.session, self.calibration)
         self.gate = CommandGate(self.calibration, 1e-3 * config.link.setpoint_deadline_ms)
         self.check = CommandCheck(self.machine)
         self.pilot = Pilot(self.machine, DT, tolerance=0.2)
-        self.teleop = Teleop(self.pilot, delay=0.0)
+        self.teleop = Teleop(self.pilot, delay=0.06)
         self.park = self.calibration.counts(self.calibration.park)
         names = self.machine.kinematics.joint_names
         self._order = [self.calibration.names.index(n) for n in names]
         self._measured = None
         self._is_followed = False
         self.tick = 0
-        self.sent, self.refusals = [], []
+        self.sent, self.refusals, self.true_joints = [], [], []
+        self.times_of_a_tick = lambda: [DT]
+        self.is_stalled = False
         self.session.opened(self.now)
 
     @property
@@ -98,14 +103,17 @@ class Loop:
 
     def _step(self):
         self.tick += 1
-        self.board.step(DT)
+        for dt in self.times_of_a_tick():
+            self.fake.step(dt)
+            self.true_joints.append(self.fake.servos.positions[self._order])
         self._hear(self.session.receive(self.board.take_output(), self.now))
         self._hear(self.session.tick(self.now))
         self._is_followed = self._is_followed and self.monitor.status.word == 'enabled'
-        self.pilot.note_machine_state(self.monitor.status.word, self._is_followed)
+        word, is_measured = self.monitor.status.word, self.monitor.is_measured
+        self.pilot.note_machine_state(word, self._is_followed, is_measured)
         self.teleop.drive(self.now)
         pose = self.pilot.step()
-        if pose is not None and self._may_send():
+        if pose is not None and self._may_send() and not self.is_stalled:
             self._send(pose)
         self.board.feed(self.session.take_output())
 

@@ -15,16 +15,16 @@ COMMAND = np.array([0.1, -0.05, 0.02, 0.3, -0.2, 0.1])
 
 @pytest.mark.parametrize('name', [name for name in MODES if name != 'parallel'])
 def test_without_command_a_latched_mode_stands(name):
-    twist, _ = jog_mode(name, FEEDBACK, POINT).latched(POSE).step(np.zeros(6), POSE)
+    twist, _ = jog_mode(name, FEEDBACK, POINT).latched(POSE).step(np.zeros(6), POSE, POSE.position)
     assert np.abs(twist).max() < 1e-7
 
 
 @pytest.mark.parametrize('name', MODES)
 def test_stepping_changes_no_mode(name):
     held = jog_mode(name, FEEDBACK, POINT).latched(POSE)
-    first, _ = held.step(COMMAND, POSE)
-    held.step(-COMMAND, POSE.moved(0.1 * COMMAND))
-    again, _ = held.step(COMMAND, POSE)
+    first, _ = held.step(COMMAND, POSE, POSE.position)
+    held.step(-COMMAND, POSE.moved(0.1 * COMMAND), POSE.moved(0.1 * COMMAND).position)
+    again, _ = held.step(COMMAND, POSE, POSE.position)
     assert np.array_equal(first, again)
 
 
@@ -33,13 +33,13 @@ def test_a_disturbance_dies_out(name):
     held = jog_mode(name, FEEDBACK, POINT).latched(POSE)
     pose = POSE.moved([0.01, -0.01, 0.02, 0.05, -0.04, 0.06])
     for _ in range(300):
-        twist, held = held.step(np.zeros(6), pose)
+        twist, held = held.step(np.zeros(6), pose, pose.position)
         pose = pose.moved(0.01 * twist)
-    assert np.abs(held.step(np.zeros(6), pose)[0]).max() < 1e-4
+    assert np.abs(held.step(np.zeros(6), pose, pose.position)[0]).max() < 1e-4
 
 
 def test_free_drives_the_command():
-    twist, _ = jog_mode('free', FEEDBACK).latched(POSE).step(COMMAND, POSE)
+    twist, _ = jog_mode('free', FEEDBACK).latched(POSE).step(COMMAND, POSE, POSE.position)
     assert np.array_equal(twist, COMMAND)
 
 
@@ -60,7 +60,7 @@ def _with_approach(direction):
 def test_look_at_is_fed_forward_so_that_the_sight_follows_at_once():
     held = jog_mode('look_at', FEEDBACK, POINT).latched(POSE)
     for command in (COMMAND, [0.1, 0, 0, 0, 0, 0], [0, 0, 0, 0.5, 0.2, -0.1]):
-        twist, _ = held.step(np.array(command), POSE)
+        twist, _ = held.step(np.array(command), POSE, POSE.position)
         moved = POSE.moved(1e-6 * twist)
         sight = (POINT - moved.position) / np.linalg.norm(POINT - moved.position)
         assert np.abs(moved.rotation[:, 2] - sight).max() < 1e-11
@@ -69,7 +69,7 @@ def test_look_at_is_fed_forward_so_that_the_sight_follows_at_once():
 def test_look_at_orbits_with_the_turn_as_commanded():
     held = jog_mode('look_at', FEEDBACK, POINT).latched(POSE)
     across = POSE.rotation[:, 0]
-    twist, _ = held.step(np.concatenate([np.zeros(3), 0.5 * across]), POSE)
+    twist, _ = held.step(np.concatenate([np.zeros(3), 0.5 * across]), POSE, POSE.position)
     assert np.abs(twist[3:] - 0.5 * across).max() < 1e-9
     assert np.linalg.norm(twist[:3]) == pytest.approx(0.5 * 0.3)
 
@@ -78,17 +78,17 @@ def test_look_at_holds_the_distance_at_which_translation_ended():
     held, pose = jog_mode('look_at', FEEDBACK, POINT).latched(POSE), POSE
     back_off = np.concatenate([-0.1 * POSE.rotation[:, 2], np.zeros(3)])
     for _ in range(100):
-        twist, held = held.step(back_off, pose)
+        twist, held = held.step(back_off, pose, pose.position)
         pose = pose.moved(0.01 * twist)
     assert held.distance == pytest.approx(0.4, abs=2e-3)
-    twist, held = held.step(np.zeros(6), pose)
+    twist, held = held.step(np.zeros(6), pose, pose.position)
     assert np.linalg.norm(twist) < 0.01
 
 
 def test_look_at_rolls_about_the_sight():
     held = jog_mode('look_at', FEEDBACK, POINT).latched(POSE)
     along = POSE.rotation[:, 2]
-    twist, _ = held.step(np.concatenate([np.zeros(3), 0.5 * along]), POSE)
+    twist, _ = held.step(np.concatenate([np.zeros(3), 0.5 * along]), POSE, POSE.position)
     assert np.abs(twist - np.concatenate([np.zeros(3), 0.5 * along])).max() < 1e-9
 
 
