@@ -8,6 +8,7 @@ from arm_control.branches import nearest_branch, unwrapped
 from arm_control.chain import Chain
 from arm_control.inverse_method import InverseMethod, fitting_method
 from arm_control.joint_limits import JOINT_NAMES, JointLimits
+from arm_control.nearby import nearby_joints
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
@@ -85,6 +86,10 @@ class SerialArm:
     def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
         """As `inverse`, with NaN for poses out of reach."""
         start = self._near(near)
+        if pose.position.ndim == 1 and start.ndim == 1:
+            joints = nearby_joints(self.chain, pose, start)
+            if ((joints >= self.limits.low) & (joints <= self.limits.high)).all():
+                return joints
         branches = self.inverse_all(pose, start)
         return nearest_branch(branches, start, self.limits.low, self.limits.high)
 

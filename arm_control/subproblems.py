@@ -72,7 +72,7 @@ def perpendicular(k: Array) -> Array:
 
 
 def _dot(a: Array, b: Array) -> Array:
-    result: Array = np.einsum('...i,...i->...', *np.broadcast_arrays(a, b))
+    result: Array = np.einsum('...i,...i->...', a, b)
     return result
 
 

@@ -35,9 +35,14 @@ def tick_rows(name: str) -> list[Row]:
     solve, one = interleaved_medians([lambda k: np.linalg.solve(matrices[k], right), tick], ROUNDS)
     p99 = float(np.percentile(taken, 99)) * 1e-6
     return [
-        Row(f'{name}: one jog tick of the player', f'{one / solve:.0f} × a 6×6 solve'),
+        tick_row(name, one / solve),
         Row(f'{name}: one jog tick of the player, CPU at p99', f'{p99:.3f} ms', '≤ 1', p99 <= 1),
     ]
+
+
+def tick_row(name: str, ratio: float) -> Row:
+    shown = f'{name}: one jog tick of the player', f'{ratio:.0f} × a 6×6 solve'
+    return Row(*shown, '≤ 25', ratio <= 25) if name.startswith('arm') else Row(*shown)
 
 
 def jogged(name: str) -> tuple[Player, list[Wish]]:

@@ -34,7 +34,19 @@ def answer(arguments: argparse.Namespace) -> Answer:
     joints = np.array(arguments.joints)
     if len(joints) != len(names):
         raise InvalidInput(f'{len(joints)} joint positions, {arguments.machine} has {len(names)}')
+    check_unit(machine, joints)
     return every_mode(machine, joints) if arguments.all else from_home(machine, joints)
+
+
+def check_unit(machine: Machine, joints: Array) -> None:
+    """Refuses angles of more than a turn, which no machine has: they are meant in degrees."""
+    beyond = np.flatnonzero(np.abs(joints) > 2 * np.pi + 1e-3)
+    if machine.kinematics.joint_unit == 'rad' and beyond.size:
+        name, value = machine.kinematics.joint_names[beyond[0]], joints[beyond[0]]
+        raise InvalidInput(
+            f'{name}: {value:g} rad is more than a turn; angles are in radians, and {value:g}° '
+            f'are {np.radians(value):.4g}'
+        )
 
 
 def from_home(machine: Machine, joints: Array) -> Answer:

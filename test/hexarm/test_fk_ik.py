@@ -105,3 +105,10 @@ def test_linear_legs_have_one_branch(ask):
 def test_joints_that_no_machine_has_are_refused_with_status_2(capsys, words):
     assert main(['fk', 'stewart_6_6', *words, '--all', '--json']) == 2
     assert 'error' in json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize('machine', ['robocake', 'ur5'])
+def test_degrees_are_told_from_radians(machine, capsys):
+    assert main(['fk', machine, '0', '0', '90', '0', '0', '0']) == 2
+    assert '90 rad is more than a turn' in capsys.readouterr().err
+    assert main(['fk', 'ur5', '0', '-6.28', '0', '0', '0', '0']) == 0
