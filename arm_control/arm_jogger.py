@@ -1,15 +1,20 @@
 """The resolved-rate step as the `Jogger` of a serial arm, in the user's frames."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from arm_control.resolved_rate import JogState, ResolvedRate
+from arm_control.resolved_rate import AT_ONCE, JogState, JogStep, ResolvedRate
 from manipulator.arrays import Array, frozen
 from manipulator.frames import Frames
 from manipulator.pose import Pose
 from manipulator.teleop.jogger import JogMotion
-from manipulator.teleop.speed_limits import towards
+from manipulator.teleop.speed_limits import ticks_for, towards
+
+SHARE_BEFORE_STOPS = 0.5
+"""Of the tool's acceleration, what braking before a stop counts on; the rest is for bends: a joint
+may turn ever faster while the tool goes straight on."""
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,14 +30,25 @@ class ArmJogger:
 
     def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
         """See `Jogger`; in a corner of the joint ranges the direction bends, so as to get out."""
-        wanted = towards(motion.twist, twist, self.jog.motion, dt)
+        limits = self.jog.motion
+        wanted = towards(motion.twist, twist, limits, dt)
+        ticks = max(float(ticks_for(wanted, limits, dt)), 1.0)
+        step = self._stepped(motion, wanted, dt, SHARE_BEFORE_STOPS / (ticks * dt))
+        driven = step.scale * wanted
+        if ticks_for(driven - motion.twist, limits, dt) > 1.0 + ROUNDING:
+            # No part of what is wanted can be reached as gently as the tool asks for.
+            straight = towards(motion.twist, np.zeros(6), limits, dt)
+            braked = self._stepped(motion, straight, dt)
+            driven, step = braked.scale * straight, replace(step, state=braked.state)
+        state = step.state
+        pose = self.frames.pivot(self.jog.arm.chain.forward(state.joints))
+        return JogMotion(pose, state.joints, frozen(driven), state.rates, step.scale, step.held_by)
+
+    def _stepped(
+        self, motion: JogMotion, twist: Array, dt: float, slowing: float = AT_ONCE
+    ) -> JogStep:
         state = JogState(motion.joints, motion.rates)
-        step = self.jog.step(state, self._of_tool(wanted, motion.pose), dt)
-        pose = self.frames.pivot(self.jog.arm.chain.forward(step.state.joints))
-        driven = frozen(step.scale * wanted)
-        return JogMotion(
-            pose, step.state.joints, driven, step.state.rates, step.scale, step.held_by
-        )
+        return self.jog.step(state, self._of_tool(twist, motion.pose), dt, slowing)
 
     def _of_tool(self, twist: Array, T_work_pivot: Pose) -> Array:
         """The tool's twist in base axes, for the pivot's in work axes: v − ω × r."""

@@ -22,6 +22,8 @@ NOISE = 1e-9
 """Part of the fastest joint's rate below which another joint's is rounding."""
 STANDING = 1e-9
 """rad/s."""
+AT_ONCE = 1e12
+"""1/s, for a twist that may fall as fast as the joints can brake."""
 ROUNDING = 1e-6
 """Radians by which a jog stays off the end of each range: who solves its pose again for the joints
 must not find one beyond it."""
@@ -84,9 +86,11 @@ class ResolvedRate:
         ):
             object.__setattr__(self, name, value)
 
-    def step(self, state: JogState, twist: Array, dt: float) -> JogStep:
+    def step(self, state: JogState, twist: Array, dt: float, slowing: float = AT_ONCE) -> JogStep:
         """The state dt seconds later, for a twist (6,) of the tool in base axes.
 
+        slowing: the part of itself (1/s) by which the twist may fall before a stop. Joints that
+        could brake harder begin earlier.
         Raises InvalidInput for a twist or dt that is not finite or not positive.
         """
         wanted = np.asarray(twist, dtype=np.float64)
@@ -97,14 +101,14 @@ class ResolvedRate:
         scaled_twist = wanted * self._unit
         inverse = DampedInverse.of(scaled_jacobian, self.onset)
         rates, to_high, to_low = _without_noise(inverse.rates(scaled_twist)), *self._room(state)
-        scale, held_by = self._scale(rates, to_high, to_low, dt)
+        scale, held_by = self._scale(rates, to_high, to_low, dt, slowing)
         if scale == 0.0:
             near_singular = inverse.sigma_min < self.onset
             if near_singular or is_dead(inverse, to_low <= CORNER, to_high <= CORNER):
                 stops = to_low <= AT_STOP, to_high <= AT_STOP
                 slide = sliding_rates(scaled_jacobian, scaled_twist, 0.5 * self.onset, *stops)
                 rates, held_by = _without_noise(slide), 'corner'
-                scale, _ = self._scale(rates, to_high, to_low, dt)
+                scale, _ = self._scale(rates, to_high, to_low, dt, slowing)
         following = self._followed(state.rates, scale * rates, to_high, to_low, dt)
         # Only rounding is cut off here: what the stops do is in `following` already.
         highest = np.maximum(self.arm.limits.high - ROUNDING, state.joints)
@@ -117,14 +121,16 @@ class ResolvedRate:
         high, low = self.arm.limits.high - ROUNDING, self.arm.limits.low + ROUNDING
         return high - state.joints, state.joints - low
 
-    def _scale(self, rates: Array, to_high: Array, to_low: Array, dt: float) -> tuple[float, str]:
+    def _scale(
+        self, rates: Array, to_high: Array, to_low: Array, dt: float, slowing: float
+    ) -> tuple[float, str]:
         """The part of `rates` that every joint can drive, and brake before its stop.
 
         A joint at rate v with room r can brake when v·dt + v²/(2a) ≤ r.
         """
         room = np.where(rates > 0, to_high, to_low)
         room = np.where(room <= AT_STOP, 0.0, room)
-        a = self._acceleration
+        a = np.minimum(self._acceleration, slowing * np.abs(rates))
         braking = np.sqrt((a * dt) ** 2 + 2 * a * room) - a * dt
         allowed = np.minimum(self._speed, braking)
         parts = allowed / np.maximum(np.abs(rates), STANDING)

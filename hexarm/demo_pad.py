@@ -16,7 +16,7 @@ CROSS = 6
 FORWARD, LEFT, UP = 1, 0, 4
 """Axes of the sticks, by what they move in config/joystick_xbox.yaml."""
 TREMBLE = 0.01
-"""A hand is never still; a pad that sends the same for a second counts as frozen."""
+"""A hand is never still; a pad that sends the same for 0.2 s counts as frozen."""
 
 
 class ScriptedPad:
