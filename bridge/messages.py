@@ -20,7 +20,7 @@ class Mode(enum.IntEnum):
 
     DISARMED = 0  # no pulses
     ARMING = 1  # servo after servo is energised at the park pose
-    ARMED = 2  # follows setpoints, holds until the first one
+    ARMED = 2  # follows setpoints, waits 2 s for the first one
     HOLDING = 3  # the last setpoint's deadline passed; the next one is followed again
     STOPPED = 4  # STOP: holds where it is, until CLEAR
     FAULT = 5  # holds where it is, until CLEAR

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bridge.pulse_drive import PulseDrive
@@ -25,6 +25,7 @@ def test_nothing_goes_out_before_a_channel_is_energised():
     assert not drive.is_all_on
 
 
+@settings(deadline=None)
 @given(TARGETS, TARGETS)
 def test_all_channels_move_by_one_factor_and_none_above_its_speed(start, target):
     drive = energised(start)

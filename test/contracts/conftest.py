@@ -87,12 +87,24 @@ class BoardDriver:
 BOARDS = {'python': Board, 'chip': SimulatedBoard}
 
 
+def skip_without_tools():
+    missing = firmware_build.missing_tools()
+    if missing and os.environ.get('REQUIRE_ALL') != '1':
+        pytest.skip(f'not installed: {", ".join(missing)}')
+
+
+@pytest.fixture
+def make_both():
+    """A BoardDriver of each board, for settings that differ from the usual ones."""
+    skip_without_tools()
+    return lambda **changes: [BoardDriver(board, **changes) for board in BOARDS.values()]
+
+
 @pytest.fixture(params=BOARDS)
 def make_driver(request):
     """A BoardDriver for settings that differ from the usual ones."""
-    missing = firmware_build.missing_tools() if request.param == 'chip' else []
-    if missing and os.environ.get('REQUIRE_ALL') != '1':
-        pytest.skip(f'not installed: {", ".join(missing)}')
+    if request.param == 'chip':
+        skip_without_tools()
     return lambda **changes: BoardDriver(BOARDS[request.param], **changes)
 
 
