@@ -6,6 +6,7 @@ to the bridge alone, and a board that starts again has forgotten.
 
 import os
 import re
+import tempfile
 import threading
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,9 +21,10 @@ def stop_file(bridge: str, port: str, environment: Mapping[str, str] = os.enviro
     """
     if not Path(port).is_relative_to('/dev'):
         return Path(f'{port}.stop')
-    home = environment.get('XDG_STATE_HOME') or Path.home() / '.local' / 'state'
+    home = environment.get('HOME') or tempfile.gettempdir()
+    state = environment.get('XDG_STATE_HOME') or Path(home, '.local', 'state')
     name = re.sub(r'[^\w.-]+', '_', f'stop{bridge}{port}')
-    return Path(home) / 'hexarm' / name[-LONGEST_NAME:]
+    return Path(state) / 'hexarm' / name[-LONGEST_NAME:]
 
 
 class StopMemory:
@@ -31,7 +33,8 @@ class StopMemory:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._lock = threading.Lock()
-        self._is_kept = path.exists()
+        # What may not even be looked at was not written by us.
+        self._is_kept = os.access(path, os.F_OK)
 
     @property
     def is_kept(self) -> bool:

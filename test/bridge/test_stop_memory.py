@@ -1,3 +1,6 @@
+import tempfile
+from pathlib import Path
+
 import pytest
 
 from bridge.stop_memory import StopMemory, stop_file
@@ -28,6 +31,11 @@ def test_two_machines_do_not_share_it(tmp_path):
 
 def test_of_a_fake_board_it_stands_beside_its_port(tmp_path):
     assert stop_file('/a/serial_bridge', f'{tmp_path}/board') == tmp_path / 'board.stop'
+
+
+def test_a_user_without_a_home_has_it_too():
+    path = stop_file('/a/serial_bridge', '/dev/a', {})
+    assert path == Path(tempfile.gettempdir(), '.local/state/hexarm/stop_a_serial_bridge_dev_a')
 
 
 def test_a_long_port_name_makes_no_file_that_cannot_be(tmp_path):
