@@ -19,7 +19,15 @@ from manipulator.pose import Pose
 
 pytestmark = pytest.mark.graph
 
-NODES = ('trajectory', 'path_listener', 'ik', 'pose', 'serial_bridge')
+NODES = (
+    'trajectory',
+    'path_listener',
+    'ik',
+    'pose',
+    'serial_bridge',
+    'serial_bridge_stop',
+    'serial_bridge_programs',
+)
 OURS = '/hexapod/'
 KINEMATICS = load('robocake').kinematics
 AT_HOME = KINEMATICS.inverse(KINEMATICS.home)
@@ -106,7 +114,7 @@ def test_every_topic_that_the_documents_name_is_tried(senders):
     names = {topic.removeprefix(OURS) for topic in senders}
     wanted = {'goal_pose', 'goal_path', 'pose', 'joint_states', 'setpoint', 'joint_command'}
     wanted |= {'cmd_vel', 'cmd_vel/joy', 'speed_override', 'pivot', 'look_at', 'jog_mode'}
-    assert names >= wanted | {'machine_state', 'emergency_stop'}
+    assert names >= wanted | {'machine_state', 'emergency_stop', 'joint_table'}
 
 
 def test_no_field_of_any_message_kills_a_node_moves_the_machine_or_fills_the_log(senders, user):
