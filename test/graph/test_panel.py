@@ -96,10 +96,7 @@ def page(two_pages):
 @pytest.fixture
 def machine(user, two_pages):
     """What the machine does, heard from outside; at home and able to move."""
-    if user.machine_state.message == 'stopped':
-        user.trigger('serial_bridge/clear_fault')
-    if user.machine_state.message != 'enabled':
-        user.enable()
+    make_ready(user)
     user.wait('standing still', lambda: user.motion('mode') == 'hold', 10.0)
     user.home()
     heard = Heard(user)
@@ -107,6 +104,14 @@ def machine(user, two_pages):
     heard.close()
     for page in two_pages:
         page.mouse.up()
+
+
+def make_ready(user):
+    """Enabled, whatever the test before, or a computer that was too busy for the line, left."""
+    if user.machine_state.message == 'stopped':
+        user.trigger('serial_bridge/clear_fault')
+    if user.machine_state.message != 'enabled':
+        user.enable()
 
 
 class Heard:
@@ -176,6 +181,7 @@ def jog(page, machine, pad, push, axis, metres):
     """
     give_up = time.monotonic() + 40.0
     while time.monotonic() < give_up:
+        make_ready(machine.client)
         hold(page, pad, *push)
         machine.client.spin(0.3)
         while not machine.has_moved(axis, metres) and said(page) == 'moving while you hold':
