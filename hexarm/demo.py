@@ -169,6 +169,7 @@ def report(result: Result, arm_result: 'ArmResult', arm: Machine, picture: Path)
             print(f'  {name:<52} {value}')
     draw(result, arm_result, arm, picture)
     print(f'\nThe picture is in {picture}.')
+    print('To drive it yourself, in a browser: hexarm up hexapod --panel')
 
 
 def say(text: str) -> None:

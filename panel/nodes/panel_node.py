@@ -23,7 +23,7 @@ from panel.nodes.asking import Asking
 from panel.nodes.hearing import Hearing
 from panel.nodes.joystick_socket import JoystickSocket
 from panel.nodes.newest_worker import NewestWorker
-from panel.nodes.web_server import address, start_server
+from panel.nodes.web_server import address, start_server, stop_server
 from panel.page import Page
 from panel.reachable import reachable_ranges
 from panel.view import View
@@ -80,7 +80,7 @@ class PanelNode(Node):
     def close(self) -> None:
         """Lets go of the machine, then of the pages."""
         self._topics.close()
-        self._server.stop()
+        stop_server(self._server)
 
     def _tick(self) -> None:
         self._asking.put()
