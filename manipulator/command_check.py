@@ -13,6 +13,11 @@ FORGET_AFTER = 0.25
 SHORTEST_STEP, LONGEST_STEP = 0.02, 0.1
 """A joint may step as far as its speed allows within this time (messages may bunch up)."""
 
+STANDING = 1e-9
+"""rad or m a command below which joints stand: the step is rounding and must not be repeated."""
+IN_STEP = 2.0
+"""Between two commands, at most this many times as long as between the two before, or as short."""
+
 
 class CommandCheck:
     """One machine's last word on what may be commanded; times are monotonic, in seconds.
@@ -26,6 +31,7 @@ class CommandCheck:
         self._names = machine.kinematics.joint_names
         self._commanded: Array | None = None
         self._last_step: Array | float = 0.0
+        self._last_age = 0.0
         self._commanded_at = float('-inf')
         self._measured: Array | None = None
 
@@ -33,28 +39,33 @@ class CommandCheck:
         """Where the joints are (n,), in rad or m; None when that is not known of all of them."""
         self._measured = joints
         if joints is None:
-            self._commanded = None
+            self._commanded, self._last_step = None, 0.0
 
     def admit(self, T_base_platform: Pose, now: float) -> Array:
         """The joints (n,) to command; Unreachable or LimitViolated says why there are none."""
         age = now - self._commanded_at
         is_fresh = self._commanded is not None and age < FORGET_AFTER
         near = self._commanded if is_fresh else self._measured
-        joints = self._machine.kinematics.inverse(T_base_platform, self._ahead(near, is_fresh))
+        joints = self._machine.kinematics.inverse(T_base_platform, self._ahead(near, age))
         self._check_limits(T_base_platform, joints, near)
         if near is not None:
             self._check_step(joints, near, age if is_fresh else 0.0)
         self._last_step = joints - near if is_fresh and near is not None else 0.0
+        self._last_age = age
         self._commanded, self._commanded_at = joints, now
         return joints
 
-    def _ahead(self, near: Array | None, is_fresh: bool) -> Array | None:
+    def _ahead(self, near: Array | None, age: float) -> Array | None:
         """Where the joints go on to if they keep their speed.
 
         A jogged arm drives through postures where two branches meet, as a stretched elbow. Beside
         them the nearest branch is the one that turns back; only the motion tells which is meant.
         """
-        return near + self._last_step if is_fresh and near is not None else near
+        is_fresh = age < FORGET_AFTER
+        is_regular = is_fresh and age < IN_STEP * self._last_age and self._last_age < IN_STEP * age
+        if near is None or not is_regular or np.abs(self._last_step).max() < STANDING:
+            return near
+        return near + self._last_step * (age / self._last_age)
 
     def _check_limits(self, pose: Pose, joints: Array, near: Array | None) -> None:
         constraints = self._machine.constraints

@@ -64,3 +64,14 @@ def test_machine_beyond_a_limit_may_come_back_but_not_go_on():
     with pytest.raises(LimitViolated):
         check.admit(raised(-0.0191), 100.01)
     check.admit(raised(-0.0189), 100.02)
+
+
+def test_arm_that_has_come_to_rest_is_commanded_the_very_same_again():
+    arm = load('arm_6r')
+    home, check = arm.kinematics.home, CommandCheck(arm)
+    check.note_joints(arm.kinematics.inverse(home))
+    for k in range(20):
+        first = check.admit(home.moved([1e-4 * min(k, 10), 0, 0, 0, 0, 0]), 100.0 + 0.01 * k)
+    for k in range(20, 30):
+        again = check.admit(home.moved([1e-3, 0, 0, 0, 0, 0]), 100.0 + 0.01 * k)
+        assert np.array_equal(again, first)
