@@ -59,6 +59,11 @@ class SerialArm:
         """Radians."""
         return 'rad'
 
+    @property
+    def joins_branches(self) -> bool:
+        """A jog drives from branch to branch where they meet; a platform's crank may never."""
+        return True
+
     def inverse_all(self, pose: Pose, near: Array | None = None) -> Array:
         """Every branch (..., k, 6), by whole turns nearest to `near` within the joint ranges.
 

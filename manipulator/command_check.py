@@ -29,6 +29,7 @@ class CommandCheck:
     def __init__(self, machine: Machine) -> None:
         self._machine = machine
         self._names = machine.kinematics.joint_names
+        self._joins_branches = getattr(machine.kinematics, 'joins_branches', False)
         self._commanded: Array | None = None
         self._last_step: Array | float = 0.0
         self._last_age = 0.0
@@ -60,7 +61,10 @@ class CommandCheck:
 
         A jogged arm drives through postures where two branches meet, as a stretched elbow. Beside
         them the nearest branch is the one that turns back; only the motion tells which is meant.
+        The cranks of a platform do turn back there.
         """
+        if not self._joins_branches:
+            return near
         is_fresh = age < FORGET_AFTER
         is_regular = is_fresh and age < IN_STEP * self._last_age and self._last_age < IN_STEP * age
         if near is None or not is_regular or np.abs(self._last_step).max() < STANDING:
