@@ -58,11 +58,8 @@ class BoardPrograms(SideNode):
         self.create_service(Trigger, f'{name}/finish_program', self._on_finish)
 
     def _on_table(self, serialized: bytes) -> None:
-        if len(serialized) > MOST_BYTES:
-            self._say(f'joint_table refused: {len(serialized)} bytes, at most {MOST_BYTES}')
-            return
-        message = deserialize_message(serialized, JointTrajectory)
         try:
+            message = _decoded(serialized)
             table = count_table(*_columns(message, self._calibration.names), self._calibration)
         except ManipulatorError as error:
             self._say(f'joint_table refused: {error}')
@@ -147,6 +144,16 @@ class BoardPrograms(SideNode):
     def _say(self, text: str) -> None:
         self.get_logger().info(text)
         self._status.publish(String(data=text))
+
+
+def _decoded(serialized: bytes) -> JointTrajectory:
+    """InvalidInput where the message is too large, or none at all."""
+    if len(serialized) > MOST_BYTES:
+        raise InvalidInput(f'{len(serialized)} bytes, at most {MOST_BYTES}')
+    try:
+        return deserialize_message(serialized, JointTrajectory)
+    except RuntimeError as error:  # what rclpy's own error derives from
+        raise InvalidInput(f'{len(serialized)} bytes that are no JointTrajectory') from error
 
 
 def _columns(message: JointTrajectory, names: Sequence[str]) -> tuple[Array, Array]:

@@ -163,3 +163,8 @@ def test_a_table_of_megabytes_is_not_even_decoded(calm):
     rows = [JointTrajectoryPoint(positions=[2.1] * 6)] * 20_000
     calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
     calm.wait('a refusal', lambda: any('at most 1000000' in text for text in calm.said), 10.0)
+
+
+def test_bytes_that_are_no_table_are_refused(calm):
+    calm.tables.publish(b'\0\1\0\0\xff')
+    calm.wait('a refusal', lambda: any('no JointTrajectory' in text for text in calm.said), 10.0)
