@@ -15,6 +15,7 @@ from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.jog_topics import NO_TWIST, JogTopics
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.pose import Pose
 from manipulator.reach.words import explained
 from manipulator.workspace.inside import surface
@@ -72,7 +73,7 @@ class PanelNode(Node):
         self._is_reach_asked = self._is_hull_drawn = False
         self._view = View()
         self.create_subscription(Float64, 'speed_override', self._on_speed, COMMAND)
-        self._timer = self.create_timer(TICK, self._tick)
+        self._timer = SteadyTimer(self, TICK, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/panel',))
         self.address = address(host, self._server.get_port())
         self.get_logger().info(f'the page is on {self.address}')
