@@ -6,12 +6,13 @@ from manipulator.arrays import Array
 from manipulator.errors import LimitViolated
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.step_allowance import StepAllowance
 
 FORGET_AFTER = 0.25
 """Seconds after which the last command no longer says where the joints are."""
 
-SHORTEST_STEP, LONGEST_STEP = 0.02, 0.1
-"""A joint may step as far as its speed allows within this time (messages may bunch up)."""
+SLACK, LONGEST_GAP = 0.02, 0.08
+"""Seconds of full speed that a joint may be ahead of the clock, and catch up with at once."""
 
 STANDING = 1e-9
 """rad or m a command below which joints stand: the step is rounding and must not be repeated."""
@@ -35,6 +36,7 @@ class CommandCheck:
         self._last_age = 0.0
         self._commanded_at = float('-inf')
         self._measured: Array | None = None
+        self._allowance = StepAllowance(SLACK, LONGEST_GAP)
 
     def note_joints(self, joints: Array | None) -> None:
         """Where the joints are (n,), in rad or m; None when that is not known of all of them."""
@@ -49,8 +51,10 @@ class CommandCheck:
         near = self._commanded if is_fresh else self._measured
         joints = self._machine.kinematics.inverse(T_base_platform, self._ahead(near, age))
         self._check_limits(T_base_platform, joints, near)
+        if not is_fresh:
+            self._allowance.restart(now)
         if near is not None:
-            self._check_step(joints, near, age if is_fresh else 0.0)
+            self._check_step(joints, near, now)
         self._last_step = joints - near if is_fresh and near is not None else 0.0
         self._last_age = age
         self._commanded, self._commanded_at = joints, now
@@ -80,15 +84,20 @@ class CommandCheck:
             constraints = constraints.stretched_to(start, near)
         constraints.check(pose, joints)
 
-    def _check_step(self, joints: Array, near: Array, age: float) -> None:
+    def _check_step(self, joints: Array, near: Array, now: float) -> None:
         """Refuses a jump away from the last command, unless it leads to where the joints are."""
-        time = min(max(age, SHORTEST_STEP), LONGEST_STEP)
-        bounds = np.broadcast_to(self._machine.motion.joint.speed * time, joints.shape)
+        time = self._allowance.seconds(now)
+        speed = np.broadcast_to(self._machine.motion.joint.speed, joints.shape)
         steps = np.abs(joints - near)
-        worst = int(np.argmax(steps / bounds))
-        allowed = float(bounds[worst])
-        if steps[worst] <= allowed or self._is_present(joints, bounds):
+        needed = steps / speed
+        worst = int(np.argmax(needed))
+        if needed[worst] <= time:
+            self._allowance.spend(float(needed[worst]), now)
             return
+        if self._is_present(joints, speed * SLACK):
+            self._allowance.restart(now)
+            return
+        allowed = float(speed[worst]) * time
         unit = self._machine.kinematics.joint_unit
         raise LimitViolated(
             f'{self._names[worst]} would jump by {steps[worst]:.4g} {unit}, at most '

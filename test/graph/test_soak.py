@@ -13,6 +13,7 @@ from std_msgs.msg import Bool, Float64
 from std_srvs.srv import SetBool
 
 from bench.rig import Rig
+from bridge.command_gate import LONGEST_GAP
 from bridge.faults import Faults
 from bridge.messages import Arm, Disarm, ResetCause, Setpoint
 from hexarm import machines
@@ -103,7 +104,8 @@ def check_frames(rig):
     for (before, a), (now, b) in itertools.pairwise(setpoints):
         if now - before < DEADLINE / 2:
             # The bridge's clock and ours, on a busy computer, differ by two periods at most.
-            assert (np.abs(b - a) <= speeds * (now - before + 3 * PERIOD) + 1).all()
+            caught_up = now - before + LONGEST_GAP + 3 * PERIOD
+            assert (np.abs(b - a) <= speeds * caught_up + 1).all()
     steps = [
         (later[0] - earlier[0], np.abs(np.subtract(later[1], earlier[1])))
         for earlier, later in itertools.pairwise(rig.recorder.changes())
