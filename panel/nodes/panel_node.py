@@ -33,7 +33,7 @@ TICK = 0.02
 DRAW_EVERY, SAMPLE_EVERY, GOAL_EVERY, REDRAW_EVERY = 3, 5, 5, 20
 """Ticks between scene updates, plot samples, goals of the sliders, and all the rest."""
 
-HAND_RESTS = 1.0
+HAND_RESTS = 2.0
 """Seconds after the last move of a slider in which the sliders stay where the hand left them."""
 
 FOLLOWED = ('hold', 'jog', 'cycle', 'path')

@@ -206,13 +206,14 @@ def test_sliders_move_the_machine_and_all_pages_show_it(two_pages, machine):
     thumb.focus()
     for _ in range(30):
         page.keyboard.press('ArrowRight')
-    machine.wait_until_moved(0, 0.0029)
-    fields = other.locator('input')
-    machine.client.wait('the other page', lambda: '3' in values_of(fields), 10.0)
+    machine.wait_until_moved(0, 0.002)
+    machine.client.wait('the other page', lambda: values_of(page) == values_of(other), 20.0)
+    assert 2.0 <= float(values_of(other)[1]) <= 3.0
 
 
-def values_of(fields):
-    return [field.input_value() for field in fields.all()]
+def values_of(page):
+    """What stands in the fields beside the sliders: speed, then x, y, z …"""
+    return [field.input_value() for field in page.get_by_role('textbox').all()]
 
 
 def test_release_stops(page, machine):
@@ -259,7 +260,8 @@ def press_both(first, second, machine):
     raise AssertionError(said(second))
 
 
-def test_stop_stops(page, machine, record_property):
+def test_stop_stops(page, machine):
+    """Within 0.3 s on a quiet computer, see docs/panel.md; a busy one is given more."""
     stop = page.get_by_role('button', name='STOP').bounding_box()
     machine.client.trigger('trajectory/start_cycle')
     machine.client.spin(1.0)
@@ -267,11 +269,12 @@ def test_stop_stops(page, machine, record_property):
     page.mouse.down()
     clicked = time.time()
     page.mouse.up()
-    taken = machine.seconds_to_rest(clicked)
-    record_property('seconds_from_click_to_rest', taken)
-    print(f'STOP: {taken:.3f} s from the click to the last movement of a servo')
-    assert taken < 1.0
-    assert machine.client.machine_state.message == 'stopped'
+    machine.client.wait(
+        'the stop', lambda: machine.client.machine_state.message == 'stopped', 10.0
+    )
+    reported, taken = time.time() - clicked, machine.seconds_to_rest(clicked)
+    print(f'STOP: board stopped {reported:.3f} s after the click, servos moved to {taken:.3f} s')
+    assert max(taken, reported) < 1.0
 
 
 @pytest.mark.parametrize('path', ['', '/joystick'])
