@@ -17,14 +17,15 @@ def without_viser(monkeypatch):
     )
 
 
-def test_a_port_that_is_taken_is_passed_over():
-    first = int(panel_process('robocake').parameters['port'])
+def test_a_port_that_is_taken_is_passed_over(monkeypatch):
     with socket.socket() as taken:
-        taken.bind(('127.0.0.1', first))
+        taken.bind(('127.0.0.1', 0))
         taken.listen()
-        second = panel_process('robocake')
-        assert int(second.parameters['port']) > first
-        assert panel_address(second).startswith('http://127.0.0.1:')
+        first = taken.getsockname()[1]
+        monkeypatch.setattr('hexarm.panel_process.FIRST_PORT', first)
+        panel = panel_process('robocake')
+    assert int(panel.parameters['port']) > first
+    assert panel_address(panel) == f'http://127.0.0.1:{panel.parameters["port"]}'
 
 
 def test_without_viser_the_demo_goes_on_and_says_what_is_missing(without_viser):
