@@ -15,6 +15,9 @@ from manipulator.errors import InvalidInput, Unreachable
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke, outline
 
+BRANCHES_MEET = 0.1
+"""Radians: so much nearer elbow in must be for a leg to be taken for bent that way."""
+
 
 @dataclass(frozen=True, eq=False)
 class RotaryHexapod(ParallelPlatform):
@@ -149,8 +152,13 @@ def _scaled(geometry: RotaryGeometry, directions: Array) -> Array:
 
 
 def _nearest(middle: Array, half: Array, near: Array) -> Array:
-    """Of middle ± half, modulo whole turns, the angles nearest to `near`; elbow out on a tie."""
+    """Of middle ± half, modulo whole turns, the angles nearest to `near`.
+
+    Elbow out where neither is nearer by BRANCHES_MEET: at the edge of the reach both branches
+    meet, and a machine that comes back from there bends its legs as it does at home.
+    """
     out = np.remainder(middle + half - near + np.pi, TURN) - np.pi
     inside = np.remainder(middle - half - near + np.pi, TURN) - np.pi
-    result: Array = near + np.where(np.abs(out) <= np.abs(inside), out, inside)
+    is_out = np.abs(out) <= np.abs(inside) + BRANCHES_MEET
+    result: Array = near + np.where(is_out, out, inside)
     return result

@@ -15,8 +15,14 @@ MARGIN = 1.01
 
 
 def check_goal(machine: Machine, goal: Pose, near: Array) -> None:
-    """Raises Unreachable, naming leg, value and limit, when the machine cannot stand there."""
-    machine.constraints.check(goal, machine.kinematics.inverse(goal, near))
+    """Raises Unreachable, naming leg, value and limit, when the machine cannot stand there.
+
+    On the branch nearest to `near` or on home's: which it is, the way there decides.
+    """
+    inverse, constraints = machine.kinematics.inverse, machine.constraints
+    joints = inverse(goal, near)
+    if not (constraints.admits(goal, joints) or constraints.admits(goal, inverse(goal))):
+        constraints.check(goal, joints)
 
 
 def check_cycle(machine: Machine, cycle: Cycle, near: Array, dt: float) -> None:

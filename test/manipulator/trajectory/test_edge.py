@@ -1,0 +1,67 @@
+"""From wherever a stick has led, the machine goes home again, and ik takes the same branch."""
+
+import numpy as np
+import pytest
+
+from hexarm.machines import load
+from manipulator.command_check import CommandCheck
+from manipulator.teleop.feedback import Feedback
+from manipulator.teleop.modes import jog_mode
+from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.jogging import Wish
+from manipulator.trajectory.player import Player
+
+TICK = 0.01
+FREE = jog_mode('free', Feedback.for_delay(0.0))
+AXES = [sign * np.eye(6)[axis] for axis in range(6) for sign in (1, -1)]
+RANDOM = list(np.random.default_rng(3).normal(size=(12, 6)))
+FULL = np.array([0.03, 0.03, 0.03, 0.5, 0.5, 0.5])
+
+
+class Driven:
+    """A player whose setpoints ik checks, tick by tick."""
+
+    def __init__(self, machine):
+        home = machine.kinematics.home
+        joints = machine.kinematics.inverse(home)
+        self.player, self.check = Player(machine, home, joints, TICK), CommandCheck(machine)
+        self.check.note_joints(joints)
+        self.now = 100.0
+
+    def run(self, seconds):
+        for _ in range(round(seconds / TICK)):
+            self.now += TICK
+            pose = self.player.step()
+            joints = self.check.admit(pose, self.now)
+            np.testing.assert_allclose(joints, self.player.joints, atol=1e-6)
+            self.check.note_joints(joints)
+        return pose
+
+
+@pytest.mark.parametrize('name', ['robocake', 'stewart_6_3'])
+@pytest.mark.parametrize('direction', AXES + RANDOM)
+def test_home_is_reached_from_the_edge_where_branches_meet(name, direction):
+    machine = load(name)
+    driven = Driven(machine)
+    driven.player.jog(Wish('cmd_vel/joy', FULL * direction / np.abs(direction).max(), '', FREE))
+    driven.run(4.0)
+    driven.player.jog(None)
+    edge = driven.run(0.5)
+    assert np.abs(edge.twist_to(machine.kinematics.home)).max() > 0.005
+    driven.player.pursue(Goal(machine.kinematics.home, 1.0))
+    there = driven.run(5.0)
+    assert driven.player.status.result == 'reached'
+    assert np.abs(there.twist_to(machine.kinematics.home)).max() < 1e-9
+
+
+def test_home_is_reached_from_where_a_crank_is_nearer_to_the_other_branch():
+    """Crank 5 stands at 0.8 rad: from there home's −0.38 is nearer than home's 2.09."""
+    machine = load('robocake')
+    driven = Driven(machine)
+    goal = machine.kinematics.home.moved([0.0155, 0, 0, 0, 0, 0])
+    assert machine.kinematics.inverse(goal).min() < 0.85
+    driven.player.pursue(Goal(goal, 1.0))
+    driven.run(2.0)
+    driven.player.pursue(Goal(machine.kinematics.home, 2.0))
+    driven.run(2.0)
+    assert driven.player.status.result == 'reached'
