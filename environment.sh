@@ -6,7 +6,7 @@ environment=$1
 stop() { echo "hexarm: $1" >&2; exit 1; }
 
 platform="$(uname -s) $(uname -m)"
-[ "$platform" = 'Linux x86_64' ] || stop "the ROS 2 wheels exist for x86-64 Linux only, this is $platform: install ROS 2 Jazzy on the system and use 'pip install .' (see README.md, \"On a ROS installation\")."
+[ "$platform" = 'Linux x86_64' ] || stop "the ROS 2 wheels exist for x86-64 Linux only, this is $platform: install ROS 2 Jazzy on the system and use 'pip install .' (see docs/installation.md)."
 
 fits='import sys; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 13))'
 python=''

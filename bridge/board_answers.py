@@ -4,7 +4,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as NoAnswer
 
-from bridge.messages import Command
+from bridge.messages import Command, Stop
 from manipulator.errors import Refused
 
 ANSWER_WITHIN = 1.0
@@ -20,11 +20,14 @@ class BoardAnswers:
 
     def ask(self, command: Command, done: str) -> tuple[bool, str]:
         """Whether the board obeyed within a second, and what to say: `done`, or why not."""
+        answer = self._request(command)
         try:
-            self._request(command).result(ANSWER_WITHIN)
+            answer.result(ANSWER_WITHIN)
         except Refused as error:
             trouble = self._trouble()
             return False, f'{error}{f": {trouble}" if trouble else ""}'
         except NoAnswer:
+            if not isinstance(command, Stop):
+                answer.cancel()  # what was said to have failed must not be sent later
             return False, f'no answer within {ANSWER_WITHIN:g} s'
         return True, done

@@ -9,7 +9,6 @@ from bridge.messages import Setpoint
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
 from manipulator.stamps import NOTABLE_OFFSET, StampGate
-from manipulator.step_allowance import StepAllowance
 
 PULSE_PERIOD = 0.02
 LONGEST_GAP = 0.05
@@ -19,10 +18,11 @@ START = 0.005
 class CommandGate:
     """Turns joint commands into setpoints; what must not move the machine is refused whole.
 
-    No jump: commands must not run ahead of what the servos slew at their rated speed, by more
-    than one pulse period of 0.02 s; what they lag behind, up to 0.05 s, may be caught up with at
-    once. Where there is no last command, or its deadline has passed, one must begin where the
-    joints are: within 0.005 s of their way.
+    No jump: a command must lie within what the servos slew, at their rated speed, in the time
+    since the last command (at most 0.05 s) and one pulse period of 0.02 s; what that one left
+    unused of a gap before it counts as well, for after a stall two come at once. Where there is
+    no last command, or its deadline has passed, it must begin where the joints are: within
+    0.005 s of their way.
     """
 
     def __init__(self, calibration: Calibration, deadline: float) -> None:
@@ -34,7 +34,7 @@ class CommandGate:
         self._order: list[int] = []
         self._last: Array | None = None
         self._last_at = float('-inf')
-        self._allowance = StepAllowance(PULSE_PERIOD, LONGEST_GAP)
+        self._unused = 0.0
 
     @property
     def clock_offset(self) -> float | None:
@@ -95,12 +95,12 @@ class CommandGate:
         return [list(names).index(name) for name in known]
 
     def _refuse_jump(self, wanted: Array, receipt: float, present: Array | None) -> None:
-        if self._last is not None and receipt - self._last_at <= self._deadline:
+        elapsed = receipt - self._last_at
+        if self._last is not None and elapsed <= self._deadline:
             start, where = self._last, 'the last command'
-            time = self._allowance.seconds(receipt)
+            time = PULSE_PERIOD + min(max(elapsed, 0.0) + self._unused, LONGEST_GAP)
         elif present is not None and np.all(np.isfinite(present)):
-            start, where, time = present, 'where the joint is', START
-            self._allowance.restart(receipt)
+            start, where, time, elapsed = present, 'where the joint is', START, 0.0
         else:
             raise Refused('where the joints are is not known yet')
         ways = np.abs(wanted - start)
@@ -112,4 +112,5 @@ class CommandGate:
                 f'{name}: {wanted[i]:.4g} {unit} would jump by {ways[i]:.4g} from {where}, '
                 f'at most {allowed:.4g}'
             )
-        self._allowance.spend(float(ways[i]) / self._calibration.speed, receipt)
+        needed = float(ways[i]) / self._calibration.speed
+        self._unused = max(elapsed - PULSE_PERIOD - needed, 0.0)

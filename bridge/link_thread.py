@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from bridge.events import Acknowledged, CommandFailed, Event
-from bridge.messages import Command, Setpoint
+from bridge.messages import Command, Setpoint, Stop
 from bridge.session import Session
 from manipulator.errors import LinkError, Refused
 
@@ -91,6 +91,8 @@ class LinkThread(threading.Thread):
     def request(self, command: Command) -> 'Future[None]':
         """Done when the board has obeyed; Refused says why it did not."""
         future: Future[None] = Future()
+        if isinstance(command, Stop):
+            self.session.is_stop_wanted = True  # no setpoint goes out from here on
         if not self.is_alive():
             future.set_exception(Refused('the thread of the serial link does not run'))
             return future
@@ -161,13 +163,18 @@ class LinkThread(threading.Thread):
     def _take_requests(self) -> None:
         while self._requests:
             command, future = self._requests.popleft()
+            if not future.set_running_or_notify_cancel():
+                continue
             try:
                 events = self.session.send_command(command, time.monotonic())
             except Refused as error:
                 future.set_exception(error)
                 continue
-            self._tell(events)
-            self._waiting.append((command, future))
+            try:
+                self._write()  # the frame first; what it displaced is told afterwards
+            finally:
+                self._tell(events)
+                self._waiting.append((command, future))
 
     def _take_setpoint(self) -> None:
         """Hands over the newest setpoint, unless it waited longer than it is good for."""

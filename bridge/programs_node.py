@@ -129,6 +129,8 @@ class BoardPrograms(SideNode):
         until = time.monotonic() + ANSWER_WITHIN
 
         def late() -> str:
+            if self._is_closing:
+                return 'the bridge ends'
             is_late = time.monotonic() > until
             return f'not all obeyed within {ANSWER_WITHIN:g} s, given up' if is_late else ''
 

@@ -76,7 +76,7 @@ class SerialBridge(Node):
         )
         self._answers = BoardAnswers(self._link.request, lambda: self._monitor.trouble)
         programs = BoardPrograms(self, self._calibration, self._link.request)
-        self._aside = StopNode(self, self._link, self._answers, self._remember), programs
+        self._aside = programs, StopNode(self, self._link, self._answers, self._remember)
         self._make_interfaces()
         for part in (self._link, *self._aside):
             part.start()
@@ -169,8 +169,10 @@ class SerialBridge(Node):
         match event:
             case StateReceived():
                 self._publish_joints()
-            case FaultReported() | CommandFailed():
+            case FaultReported():
                 self._warn(self._monitor.last_refusal)
+            case CommandFailed(command, reason):
+                self._warn(f'{type(command).__name__.upper()}: {reason}')
             case Disconnected(reason) | Incompatible(reason):
                 self._warn(reason)
         self._publish_status()

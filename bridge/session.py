@@ -131,7 +131,7 @@ class Session:
         pending = self._pending
         if pending is None or now - pending.sent_at < RETRY_AFTER:
             return []
-        is_too_often = pending.tries == MAX_TRIES
+        is_too_often = pending.tries % MAX_TRIES == 0
         reason = f'no answer from the board after {MAX_TRIES} tries'
         if is_too_often and not isinstance(pending.command, Stop):
             return self._fail_pending(reason)

@@ -8,10 +8,13 @@ import os
 import re
 import tempfile
 import threading
+import time
 from collections.abc import Mapping
 from pathlib import Path
 
 LONGEST_NAME = 200
+RETRY_AFTER = 2.0
+"""Seconds until a write that failed is tried again."""
 
 
 def stop_file(bridge: str, port: str, environment: Mapping[str, str] = os.environ) -> Path:
@@ -34,7 +37,8 @@ class StopMemory:
         self.path = path
         self._lock = threading.Lock()
         # What may not even be looked at was not written by us.
-        self._is_kept = os.access(path, os.F_OK)
+        self._is_kept = self._written = os.access(path, os.F_OK)
+        self._retry_at = float('-inf')
 
     @property
     def is_kept(self) -> bool:
@@ -44,12 +48,14 @@ class StopMemory:
     def keep(self, is_stop_wanted: bool) -> str:
         """Writes it down where it has changed; why that failed, or ''."""
         with self._lock:
-            if is_stop_wanted == self._is_kept:
-                return ''
             self._is_kept = is_stop_wanted
+            if is_stop_wanted == self._written or time.monotonic() < self._retry_at:
+                return ''
             try:
                 self._write(is_stop_wanted)
+                self._written = is_stop_wanted
             except OSError as error:
+                self._retry_at = time.monotonic() + RETRY_AFTER
                 return f'{self.path}: {error.strerror}: a restart forgets this STOP or CLEAR'
             return ''
 

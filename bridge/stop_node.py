@@ -32,12 +32,15 @@ class StopNode(SideNode):
 
     def _on_message(self, message: Bool) -> None:
         if message.data:
-            self._link.request(Stop()).add_done_callback(self._say_failed)
+            asked = self._link.request(Stop())
+            self._remember()
+            asked.add_done_callback(self._say_failed)
 
     def _say_failed(self, done: 'Future[None]') -> None:
-        self._remember()
-        if done.exception() is not None:
-            self.get_logger().error(f'STOP not obeyed yet, it is said again: {done.exception()}')
+        error = done.exception()
+        if error is not None:
+            text = f'STOP not obeyed yet, it is said again: {error}'
+            self.get_logger().error(text, throttle_duration_sec=1.0)
 
     def _on_service(
         self, request: Trigger.Request, response: Trigger.Response

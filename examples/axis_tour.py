@@ -12,6 +12,7 @@ with the leg, the value and the limit.
 
 import argparse
 import math
+import sys
 import time
 
 import rclpy
@@ -59,4 +60,7 @@ def main():
 
 
 if __name__ == '__main__':
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit(130)

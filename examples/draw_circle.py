@@ -10,6 +10,7 @@ follows within its limits of speed, acceleration and jerk. The deviation is that
 
 import argparse
 import math
+import sys
 import time
 
 import rclpy
@@ -61,4 +62,7 @@ def main():
 
 
 if __name__ == '__main__':
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        sys.exit(130)

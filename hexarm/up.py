@@ -1,6 +1,7 @@
 """`hexarm up hexapod`: a whole graph, servos enabled, until Ctrl-C; then it parks."""
 
 import argparse
+import contextlib
 import signal
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,7 +9,7 @@ from typing import TYPE_CHECKING
 from hexarm.graph import Graph, link_folder, machine_graph
 from hexarm.machines import load, read
 from hexarm.namespaces import NAMESPACE
-from hexarm.panel_process import panel_address, panel_process
+from hexarm.panel_process import panel_process, panel_words
 from manipulator.errors import ManipulatorError, Refused
 
 if TYPE_CHECKING:
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 ARM_KIND = 'serial_arm'
 SETTLES = 1.0
 """Seconds within which a STOP from before is said to the board, and obeyed."""
+LOOKS = 1.0
+"""Seconds in which a graph that runs already is found."""
+OURS = ('trajectory', 'ik', 'pose', 'serial_bridge', 'fake_hardware')
 SERVOS_OFF = ('not heard of', 'disconnected', 'booting', 'disarmed')
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
 
@@ -49,6 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     check(arguments.kind, machine, namespace)
     others = [panel_process(machine)] if arguments.panel else []
     stop = StopSignal()
+    refuse_second(namespace)
     with link_folder() as folder:
         nodes = machine_graph(arguments.kind, machine, arguments.port, Path(folder) / 'board')
         nodes += others
@@ -63,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
                     enable(client, namespace)
                     print(_welcome(namespace, machine, arguments.port), flush=True)
                     for panel in others:
-                        print(f'The panel is on {panel_address(panel)}', flush=True)
+                        print(f'The panel is on {panel_words(panel)}', flush=True)
                     _watch(client)
                 except Interrupted:
                     stop.is_set = False
@@ -80,6 +85,20 @@ def check(kind: str, machine: str, namespace: str) -> None:
     if (its_kind == ARM_KIND) != (kind == 'arm'):
         other = 'arm' if kind == 'hexapod' else 'hexapod'
         raise Refused(f'{machine} is a {its_kind}: hexarm up {other} --machine {machine}')
+
+
+def refuse_second(namespace: str) -> None:
+    """Raises Refused where a graph runs in this namespace: both would hear every call."""
+    from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
+
+    with Client(namespace) as client:
+        client.spin(LOOKS)
+        found = client.node.get_node_names_and_namespaces()
+    if any(name in OURS and space.strip('/') == namespace.strip('/') for name, space in found):
+        raise Refused(
+            f'a graph runs in /{namespace.strip("/")} already: end it, or take another '
+            '--namespace or ROS_DOMAIN_ID (other computers on the network count)'
+        )
 
 
 class StopSignal:
@@ -128,11 +147,15 @@ def enable(client: 'Client', namespace: str) -> None:
 
 def park(client: 'Client') -> None:
     """Goes home if it still can, and switches the servos off in any case."""
+    from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
+
     if client.machine_state.message in SERVOS_OFF:
         return
     try:
         if client.machine_state.message == 'enabled':
             print('parking', flush=True)
+            with contextlib.suppress(NotReady):
+                client.wait('the pose', lambda: client.motion('mode') not in ('', 'disabled'), 1.0)
             client.home()
     except Interrupted:
         print('interrupted again: not parked')

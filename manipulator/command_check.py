@@ -6,13 +6,16 @@ from manipulator.arrays import Array
 from manipulator.errors import LimitViolated
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.step_allowance import StepAllowance
 
 FORGET_AFTER = 0.25
 """Seconds after which the last command no longer says where the joints are."""
 
-SLACK, LONGEST_GAP = 0.02, 0.08
-"""Seconds of full speed that a joint may be ahead of the clock, and catch up with at once."""
+SHORTEST_STEP, LONGEST_STEP = 0.02, 0.1
+"""A joint may step as far as its speed allows within this time (messages may bunch up).
+
+A process that was held up hears one message late and the next right after it: what the first
+left unused of the time, the second may use.
+"""
 
 STANDING = 1e-9
 """rad or m a command below which joints stand: the step is rounding and must not be repeated."""
@@ -33,10 +36,9 @@ class CommandCheck:
         self._joins_branches = getattr(machine.kinematics, 'joins_branches', False)
         self._commanded: Array | None = None
         self._last_step: Array | float = 0.0
-        self._last_age = 0.0
+        self._last_age = self._unused = 0.0
         self._commanded_at = float('-inf')
         self._measured: Array | None = None
-        self._allowance = StepAllowance(SLACK, LONGEST_GAP)
 
     def note_joints(self, joints: Array | None) -> None:
         """Where the joints are (n,), in rad or m; None when that is not known of all of them."""
@@ -51,10 +53,9 @@ class CommandCheck:
         near = self._commanded if is_fresh else self._measured
         joints = self._machine.kinematics.inverse(T_base_platform, self._ahead(near, age))
         self._check_limits(T_base_platform, joints, near)
-        if not is_fresh:
-            self._allowance.restart(now)
         if near is not None:
-            self._check_step(joints, near, now)
+            self._check_step(joints, near, age if is_fresh else 0.0)
+            self._unused = self._left_by(joints - near, age) if is_fresh else 0.0
         self._last_step = joints - near if is_fresh and near is not None else 0.0
         self._last_age = age
         self._commanded, self._commanded_at = joints, now
@@ -84,20 +85,15 @@ class CommandCheck:
             constraints = constraints.stretched_to(start, near)
         constraints.check(pose, joints)
 
-    def _check_step(self, joints: Array, near: Array, now: float) -> None:
+    def _check_step(self, joints: Array, near: Array, age: float) -> None:
         """Refuses a jump away from the last command, unless it leads to where the joints are."""
-        time = self._allowance.seconds(now)
-        speed = np.broadcast_to(self._machine.motion.joint.speed, joints.shape)
+        time = min(max(age, SHORTEST_STEP) + self._unused, LONGEST_STEP)
+        bounds = np.broadcast_to(self._machine.motion.joint.speed * time, joints.shape)
         steps = np.abs(joints - near)
-        needed = steps / speed
-        worst = int(np.argmax(needed))
-        if needed[worst] <= time:
-            self._allowance.spend(float(needed[worst]), now)
+        worst = int(np.argmax(steps / bounds))
+        allowed = float(bounds[worst])
+        if steps[worst] <= allowed or self._is_present(joints, bounds):
             return
-        if self._is_present(joints, speed * SLACK):
-            self._allowance.restart(now)
-            return
-        allowed = float(speed[worst]) * time
         unit = self._machine.kinematics.joint_unit
         raise LimitViolated(
             f'{self._names[worst]} would jump by {steps[worst]:.4g} {unit}, at most '
@@ -107,6 +103,11 @@ class CommandCheck:
             (0.0, allowed),
             worst + 1,
         )
+
+    def _left_by(self, step: Array, age: float) -> float:
+        """Seconds that a step did not need of a gap between messages."""
+        needed = float(np.max(np.abs(step) / self._machine.motion.joint.speed))
+        return max(age - SHORTEST_STEP - needed, 0.0)
 
     def _is_present(self, joints: Array, tolerance: Array) -> bool:
         return self._measured is not None and bool(

@@ -56,7 +56,8 @@ class Pilot:
     def player(self) -> Player:
         """What takes commands; Refused while nobody may drive."""
         if self._player is None:
-            missing = 'its pose is not known' if self._state in DRIVABLE else 'enable it first'
+            missing = 'its pose is not known yet' if self._state in DRIVABLE else 'enable it first'
+            missing = 'clear the stop first' if self._state == 'stopped' else missing
             raise Refused(f'the machine is {self._state or "not heard of"}: {missing}')
         if not self._is_followed:
             raise Refused(CONNECTING.reason)

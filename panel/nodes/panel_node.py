@@ -42,7 +42,7 @@ FOLLOWED = ('hold', 'jog', 'cycle', 'path')
 ELSEWHERE = 1e-4
 REACH_GRID = (13, 24)
 HOST = 'address to serve the page on; 0.0.0.0 for every network: there is no login'
-PORT = 'port of the page; where it is taken, the next free one'
+PORT = 'port number of the page; where it is taken, the next free one'
 
 
 class PanelNode(Node):

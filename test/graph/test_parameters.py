@@ -18,8 +18,9 @@ NODES = re.findall(r"'(\w+) = (\w+)\.executables:(\w+)'", (ROOT / 'setup.py').re
 NAMESPACE = 'described'
 FOREIGN = ('use_sim_time', 'start_type_description_service', 'qos_overrides')
 """rclpy's own."""
-COMPANION = 'path_listener'
-"""A second node that a trajectory node starts for itself, with no parameters of its own."""
+PORTS = {'fake_hardware': 'link', 'serial_bridge': 'port'}
+COMPANIONS = ('path_listener', 'serial_bridge_stop', 'serial_bridge_programs')
+"""Nodes that others start for themselves, with no parameters of their own."""
 
 
 @pytest.fixture(scope='module')
@@ -35,8 +36,8 @@ def descriptors(client, tmp_path_factory):
     started = []
     for executable, room, entry in NODES:
         words = ['-m', room, entry, '--ros-args', '-r', f'__ns:=/{NAMESPACE}/{executable}']
-        for name, value in {'link': link, 'port': link}.items():
-            words += ['-p', f'{name}:={value}']
+        if executable in PORTS:
+            words += ['-p', f'{PORTS[executable]}:={link}']
         started.append(subprocess.Popen([sys.executable, *words], cwd=ROOT, env=os.environ))
     try:
         yield {executable: describe(client, executable) for executable, _, _ in NODES}
@@ -50,7 +51,7 @@ def describe(client, executable):
     def nodes():
         found = client.node.get_node_names_and_namespaces()
         own = [n for n, space in found if space == f'/{NAMESPACE}/{executable}']
-        return [name for name in own if name != COMPANION]
+        return [name for name in own if name not in COMPANIONS]
 
     client.wait(f'{executable} in the graph', nodes, 20.0)
     node = f'/{NAMESPACE}/{executable}/{nodes()[0]}'
@@ -83,7 +84,9 @@ def test_every_parameter_is_described_and_every_number_has_a_range(descriptors, 
             assert span.from_value < span.to_value, one.name
 
 
-UNIT = re.compile(r'\b(Hz|seconds?|metres?|m|rad|radians|degrees|volts|bits per second|\d+ s)\b')
+UNIT = re.compile(
+    r'\b(Hz|seconds?|metres?|m|rad|radians|degrees|volts|bits per second|port number|\d+ s)\b'
+)
 
 
 @pytest.mark.parametrize('executable', [executable for executable, _, _ in NODES])

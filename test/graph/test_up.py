@@ -47,7 +47,7 @@ def test_up_enables_runs_and_parks_on_ctrl_c(hexarm, processes_left):
 def test_up_with_a_panel_tells_where_its_page_is(hexarm, processes_left):
     process = hexarm('up', 'hexapod', '--panel')
     said = read_until(process, 'The panel is on')
-    address = said.split('The panel is on')[1].strip()
+    address = said.split('The panel is on')[1].split()[0]
     with urllib.request.urlopen(address, timeout=20) as page:
         assert '<title>' in page.read().decode()
     process.send_signal(signal.SIGINT)

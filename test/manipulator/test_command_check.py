@@ -30,33 +30,23 @@ def test_small_steps_follow_one_another(check):
 
 
 def test_jump_is_refused_names_the_joint_and_changes_nothing(check):
-    with pytest.raises(LimitViolated, match=r'crank_\d would jump by .* in 0.03 s'):
+    with pytest.raises(LimitViolated, match=r'crank_\d would jump by .* in 0.02 s'):
         check.admit(raised(0.01), 100.01)
     check.admit(raised(0.0002), 100.02)
 
 
-def test_steps_that_bunch_up_are_caught_up_with_and_speed_holds_all_the_same(check):
-    speed = 0.9 * MACHINE.motion.joint.speed
+def test_what_a_stall_has_bunched_up_is_caught_up_with_once(check):
     steps = [HOME]
-    for k in range(1, 13):  # at nine tenths of the joint speed
-        joints = AT_HOME - 0.01 * k * speed
+    for k in range(1, 13):  # at nine tenths of the joint speed, one a hundredth of a second
+        joints = AT_HOME - 0.009 * k * MACHINE.motion.joint.speed
         steps.append(MACHINE.kinematics.forward(joints, steps[-1]).pose)
-    check.admit(steps[1], 100.07)  # held up, and what follows is heard at once
-    check.admit(steps[7], 100.0701)
     with pytest.raises(LimitViolated, match='would jump'):
-        check.admit(steps[12], 100.0702)
-    check.admit(steps[8], 100.08)
-
-
-def test_twice_the_speed_does_not_pass_by_being_sent_often(check):
-    pose, passed = HOME, 0
+        check.admit(steps[8], 100.01)
+    check.admit(steps[1], 100.08)
+    check.admit(steps[8], 100.0801)
     with pytest.raises(LimitViolated, match='would jump'):
-        for k in range(1, 40):
-            joints = AT_HOME - 0.02 * k * MACHINE.motion.joint.speed
-            pose = MACHINE.kinematics.forward(joints, pose).pose
-            check.admit(pose, 100.0 + 0.01 * k)
-            passed = k
-    assert passed < 4
+        check.admit(steps[12], 100.0802)
+    check.admit(steps[9], 100.09)
 
 
 def test_jump_to_where_the_joints_are_is_no_jump(check):
