@@ -12,6 +12,9 @@ from manipulator.errors import InvalidInput
 from manipulator.frames import Frames
 from manipulator.pose import Pose
 
+FASTEST_TWIST = 100.0
+"""m/s or rad/s. Less is scaled to what the machine can do; more is a damaged message."""
+
 BASE_FRAME, WORK_FRAME, PLATFORM_FRAME, PIVOT_FRAME = 'base', 'work', 'platform', 'pivot'
 
 
@@ -56,11 +59,13 @@ def check_frame(frame_id: str, frames: tuple[str, ...]) -> None:
 
 
 def twist_of(message: TwistStamped) -> Array:
-    """The twist (6,) in the axes of its frame."""
+    """The twist (6,) in the axes of its frame; InvalidInput for what no hand can mean."""
     v, w = message.twist.linear, message.twist.angular
     twist = np.array([v.x, v.y, v.z, w.x, w.y, w.z])
     if not np.isfinite(twist).all():
         raise InvalidInput(f'twist {twist.tolist()} is not finite')
+    if np.abs(twist).max() > FASTEST_TWIST:
+        raise InvalidInput(f'twist {twist.tolist()} is beyond {FASTEST_TWIST:g} m/s or rad/s')
     return twist
 
 
