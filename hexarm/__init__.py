@@ -5,6 +5,6 @@ import os
 # Before numpy is imported: for 6×6 systems BLAS threads only cost, and on busy cores a call that
 # waits for one of them can stall for a second.
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
-# Fast DDS: sockets alone. Its shared memory outlives a process that is killed, a process that is
-# started again now and then goes unheard through it, and it is no quicker for small messages.
+# Fast DDS: sockets alone. Processes that are killed leave its shared memory behind, and it is no
+# quicker for messages of this size.
 os.environ.setdefault('FASTDDS_BUILTIN_TRANSPORTS', 'UDPv4')
