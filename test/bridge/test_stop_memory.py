@@ -49,3 +49,17 @@ def test_where_nothing_can_be_written_it_says_so_once_and_goes_on(tmp_path):
     assert 'a restart forgets' in memory.keep(True)
     assert memory.keep(True) == ''
     assert memory.is_kept
+
+
+def test_a_write_that_failed_is_tried_again(path, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr('bridge.stop_memory.time.monotonic', lambda: now[0])
+    path.parent.write_text('in the way of the folder')
+    memory = StopMemory(path)
+    assert 'a restart forgets' in memory.keep(True)
+    path.parent.unlink()
+    assert memory.keep(True) == ''
+    assert not path.exists()
+    now[0] += 3.0
+    assert memory.keep(True) == ''
+    assert StopMemory(path).is_kept

@@ -208,3 +208,10 @@ def test_pause_outlasts_a_machine_that_is_lost_and_taken_over_again():
     assert np.abs(run(made, 50).twist_to(HOME)).max() < 1e-6
     made.pause(False)
     assert np.abs(run(made, 300).twist_to(ELSEWHERE)).max() < 1e-6
+
+
+def test_a_stopped_machine_says_that_the_stop_must_be_cleared():
+    made = driving()
+    made.note_machine_state('stopped', is_followed=False)
+    with pytest.raises(Refused, match='the machine is stopped: clear the stop first'):
+        _ = made.player
