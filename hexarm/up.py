@@ -20,7 +20,8 @@ SETTLES = 1.0
 """Seconds within which a STOP from before is said to the board, and obeyed."""
 LOOKS = 1.0
 """Seconds in which a graph that runs already is found."""
-OURS = ('trajectory', 'ik', 'pose', 'serial_bridge', 'fake_hardware')
+OURS = ('trajectory', 'ik', 'pose', 'serial_bridge')
+"""Nodes of which a namespace has one; a fake board may be there for `--port` to name."""
 SERVOS_OFF = ('not heard of', 'disconnected', 'booting', 'disarmed')
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
 

@@ -65,14 +65,10 @@ def test_up_waits_until_a_stop_from_before_is_cleared(hexarm, tmp_path):
     fake = {'machine': 'robocake', 'link': str(port)}
     with Graph([Executable('bridge', 'fake_hardware', fake)], SPACE):
         process = hexarm('up', 'hexapod', '--port', str(port), '--namespace', SPACE)
-        for line in process.stdout:
-            if 'clear_fault' in line and 'ros2 service call' in line:
-                break
+        assert any('ros2 service call' in line and 'clear_fault' in line for line in process.stdout)
         with Client(SPACE) as user:
             user.trigger('serial_bridge/clear_fault')
-        for line in process.stdout:
-            if 'and enabled' in line:
-                break
+        assert any('and enabled' in line for line in process.stdout)
         process.send_signal(signal.SIGINT)
         assert 'parking' in process.stdout.read()
         assert process.wait(20) == 0
