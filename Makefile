@@ -3,16 +3,13 @@ SHELL := /bin/bash
 ENV := .venv
 BIN := $(ENV)/bin
 
-.PHONY: demo test restarts lint bench soak clean
+.PHONY: demo test lint bench soak clean
 
 demo: $(ENV)/ready
 	@$(BIN)/hexarm demo
 
 test: $(ENV)/ready
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/python -m pytest $(PYTEST)
-
-restarts: $(ENV)/ready   # a killed process is started again by itself
-	@$(BIN)/python -m pytest -m unsteady test/graph/test_stop_times.py
 
 lint: $(ENV)/ready
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy

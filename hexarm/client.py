@@ -17,6 +17,7 @@ from rclpy.utilities import try_shutdown
 from std_srvs.srv import SetBool, Trigger
 
 from manipulator.errors import ManipulatorError, Refused
+from manipulator.nodes.discovery import fresh_address
 from manipulator.nodes.messages import pose_message, seconds
 from manipulator.nodes.path_goals import path_message
 from manipulator.nodes.qos import COMMAND, LATCHED
@@ -42,7 +43,8 @@ class Client:
     def __init__(self, namespace: str, interrupt: Callable[[], None] = lambda: None) -> None:
         if not rclpy.ok():
             rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-        self.node = Node('hexarm', namespace=namespace)
+        with fresh_address():
+            self.node = Node('hexarm', namespace=namespace)
         self.machine_state = DiagnosticStatus(message='not heard of')
         self.motion_status = DiagnosticStatus()
         self.diagnostics: dict[str, DiagnosticStatus] = {}

@@ -14,6 +14,7 @@ from hexarm.recording.bag import Bag
 from hexarm.recording.listener import Listener
 from hexarm.recording.wanted import Wanted
 from hexarm.up import Interrupted
+from manipulator.nodes.discovery import fresh_address
 
 LOOK_AROUND = 0.25
 """Seconds between two looks at which topics there are."""
@@ -30,7 +31,8 @@ def record(
     Returns the topics asked for that never were. Raises NotWritten when the disk is full.
     """
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    node = Node('recorder', namespace=namespace, enable_rosout=False)
+    with fresh_address():
+        node = Node('recorder', namespace=namespace, enable_rosout=False)
     executor = EventsExecutor()
     executor.add_node(node)
     listener = Listener(node, wanted, bag)

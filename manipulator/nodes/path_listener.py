@@ -19,6 +19,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from manipulator.errors import InvalidInput
+from manipulator.nodes.discovery import fresh_address
 from manipulator.nodes.path_cdr import PathHead, read_head
 from manipulator.nodes.qos import COMMAND
 
@@ -64,7 +65,8 @@ def main() -> None:
     threading.Thread(target=_end_with_parent, daemon=True).start()
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     executor = EventsExecutor()
-    node = PathListener(*sys.argv[1:3])
+    with fresh_address():
+        node = PathListener(*sys.argv[1:3])
     executor.add_node(node)
     while True:
         executor.spin_once(timeout_sec=1.0)

@@ -14,6 +14,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from manipulator.errors import ManipulatorError
+from manipulator.nodes.discovery import fresh_address
 from manipulator.requirements import missing
 
 
@@ -26,7 +27,8 @@ def run_node(make_node: Callable[[], Node]) -> int:
     stop = _StopRequest()
     rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
     try:
-        node = make_node()
+        with fresh_address():
+            node = make_node()
     except (ManipulatorError, ParameterException, ModuleNotFoundError) as error:
         said = missing(error) if isinstance(error, ModuleNotFoundError) else str(error)
         print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {said}', file=sys.stderr)

@@ -64,7 +64,6 @@ def test_a_killed_process_stops_the_machine(name, tmp_path, tolerant_robocake):
         assert rig.stop_time(name, signal.SIGKILL) < GENEROUS
 
 
-@pytest.mark.unsteady
 @pytest.mark.parametrize('name', PROCESSES)
 def test_a_killed_process_is_started_again_and_nothing_jumps(circling, name):
     rig = circling
