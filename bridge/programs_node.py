@@ -10,7 +10,6 @@ from concurrent.futures import Future
 
 import numpy as np
 from rclpy.node import Node
-from rclpy.serialization import deserialize_message
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectory
@@ -23,6 +22,7 @@ from bridge.side_node import SideNode
 from bridge.upload import Upload
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
+from manipulator.nodes.bounded import decoded
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, LATCHED
 
@@ -31,7 +31,7 @@ ANSWER_WITHIN = 5.0
 LAST_TRIES = 1.0
 """Seconds in which the command that is under way when the time is up succeeds or fails."""
 MOST_BYTES = 1_000_000
-"""Of a joint_table: many times what a board holds. Larger ones are not even decoded."""
+"""Of a joint_table: many times what a board holds."""
 BUSY = 'another upload is under way'
 
 
@@ -59,7 +59,7 @@ class BoardPrograms(SideNode):
 
     def _on_table(self, serialized: bytes) -> None:
         try:
-            message = _decoded(serialized)
+            message = decoded(serialized, JointTrajectory, MOST_BYTES)
             table = count_table(*_columns(message, self._calibration.names), self._calibration)
         except ManipulatorError as error:
             self._say(f'joint_table refused: {error}')
@@ -76,7 +76,7 @@ class BoardPrograms(SideNode):
             self._is_busy.release()
             self._say(f'upload failed: {reason}' if reason else done)
 
-        Upload(self._request, commands, end).begin()
+        Upload(self._request, commands, end, self._ending).begin()
 
     def _on_play_table(
         self, request: SetBool.Request, response: SetBool.Response
@@ -129,10 +129,9 @@ class BoardPrograms(SideNode):
         until = time.monotonic() + ANSWER_WITHIN
 
         def late() -> str:
-            if self._is_closing:
-                return 'the bridge ends'
             is_late = time.monotonic() > until
-            return f'not all obeyed within {ANSWER_WITHIN:g} s, given up' if is_late else ''
+            too_late = f'not all obeyed within {ANSWER_WITHIN:g} s, given up' if is_late else ''
+            return self._ending() or too_late
 
         def end(reason: str) -> None:
             reasons.append(reason)
@@ -143,19 +142,12 @@ class BoardPrograms(SideNode):
             return False, f'no answer within {ANSWER_WITHIN + LAST_TRIES:g} s'
         return (False, reasons[0]) if reasons[0] else (True, done)
 
+    def _ending(self) -> str:
+        return 'the bridge ends' if self._is_closing else ''
+
     def _say(self, text: str) -> None:
         self.get_logger().info(text)
         self._status.publish(String(data=text))
-
-
-def _decoded(serialized: bytes) -> JointTrajectory:
-    """InvalidInput where the message is too large, or none at all."""
-    if len(serialized) > MOST_BYTES:
-        raise InvalidInput(f'{len(serialized)} bytes, at most {MOST_BYTES}')
-    try:
-        return deserialize_message(serialized, JointTrajectory)
-    except RuntimeError as error:  # what rclpy's own error derives from
-        raise InvalidInput(f'{len(serialized)} bytes that are no JointTrajectory') from error
 
 
 def _columns(message: JointTrajectory, names: Sequence[str]) -> tuple[Array, Array]:

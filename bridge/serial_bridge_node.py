@@ -33,12 +33,16 @@ from bridge.stop_memory import StopMemory, stop_file
 from bridge.stop_node import StopNode
 from hexarm import machines
 from manipulator.errors import ManipulatorError, Refused
+from manipulator.nodes.bounded import decoded
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
+from manipulator.nodes.messages import seconds
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 
 LEVELS = (OK, WARN, ERROR)
 SAY_AGAIN_AFTER = 2.0
+MOST_BYTES = 10_000
+"""Of a joint_command: that of seven joints has less than 500."""
 
 
 class SerialBridge(Node):
@@ -58,7 +62,9 @@ class SerialBridge(Node):
         self._calibration = Calibration.from_config(config.servos)
         self._gate = CommandGate(self._calibration, 1e-3 * config.link.setpoint_deadline_ms)
         self._gripper = Gripper(config.servos, self._calibration)
-        self._memory = StopMemory(stop_file(self.get_fully_qualified_name(), self._port))
+        self._memory = StopMemory(
+            stop_file(self.get_fully_qualified_name(), self._port), self.get_logger().error
+        )
         self._session = Session(len(self._calibration.names), self._memory.is_kept)
         self._monitor = LinkMonitor(self._session, self._calibration)
         # Receipt times are monotonic, but read like the system's clock at the start.
@@ -78,18 +84,18 @@ class SerialBridge(Node):
         programs = BoardPrograms(self, self._calibration, self._link.request)
         self._aside = programs, StopNode(self, self._link, self._answers, self._remember)
         self._make_interfaces()
-        for part in (self._link, *self._aside):
+        for part in (self._memory, self._link, *self._aside):
             part.start()
 
     def close(self) -> None:
         """Gives the port back; the board's deadline does what the machine file says."""
-        for part in (*self._aside, self._link):
+        for part in (*self._aside, self._link, self._memory):
             part.close()
 
     def _make_interfaces(self) -> None:
         self._joint_states = self.create_publisher(JointState, 'joint_states', MEASUREMENT)
         self._machine_state = self.create_publisher(DiagnosticStatus, 'machine_state', LATCHED)
-        self.create_subscription(JointState, 'joint_command', self._on_command, COMMAND)
+        self.create_subscription(JointState, 'joint_command', self._on_command, COMMAND, raw=True)
         self.create_subscription(Float64, 'gripper', self._on_gripper, COMMAND)
         self.create_service(SetBool, '~/enable', self._on_enable)
         self.create_service(Trigger, '~/clear_fault', self._on_clear_fault)
@@ -97,25 +103,24 @@ class SerialBridge(Node):
 
     # From the graph (the executor's thread)
 
-    def _on_command(self, message: JointState) -> None:
-        now = time.monotonic()
-        self._command_at = now
-        stamp = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
-        if stamp == 0:
-            self.get_logger().info('joint_command without a stamp: taken as now', once=True)
+    def _on_command(self, serialized: bytes) -> None:
+        self._command_at = time.monotonic()
         try:
+            message = decoded(serialized, JointState, MOST_BYTES)
             self._refuse_unless_enabled()
-            present = None if self._monitor.joints is None else self._monitor.joints.positions
-            command = message.name, message.position
-            names, positions = self._gripper.joined(command, now, present)
-            setpoint = self._gate.admit(
-                names, positions, stamp or None, now + self._clock_start, present
-            )
+            self._link.put_setpoint(self._admitted(message, self._command_at))
         except ManipulatorError as error:
             self._monitor.refuse(str(error))
             self._warn(f'joint_command refused: {error}')
-            return
-        self._link.put_setpoint(Ticket(setpoint, now, stamp or None))
+
+    def _admitted(self, message: JointState, now: float) -> Ticket:
+        stamp = seconds(message.header.stamp) or None
+        if stamp is None:
+            self.get_logger().info('joint_command without a stamp: taken as now', once=True)
+        present = None if self._monitor.joints is None else self._monitor.joints.positions
+        names, positions = self._gripper.joined((message.name, message.position), now, present)
+        setpoint = self._gate.admit(names, positions, stamp, now + self._clock_start, present)
+        return Ticket(setpoint, now, stamp)
 
     def _refuse_unless_enabled(self) -> None:
         if not (self._monitor.is_enabled_here and self._session.accepts_setpoints):
@@ -179,9 +184,7 @@ class SerialBridge(Node):
 
     def _remember(self) -> None:
         """Keeps it for a bridge that starts after this one whether a STOP stands."""
-        trouble = self._memory.keep(self._session.is_stop_wanted)
-        if trouble:
-            self.get_logger().error(trouble)
+        self._memory.keep(self._session.is_stop_wanted)
 
     def _on_written(self, ticket: Ticket, now: float) -> None:
         self._is_followed = True

@@ -1,4 +1,7 @@
+import contextlib
 import tempfile
+import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -11,12 +14,29 @@ def path(tmp_path):
     return stop_file('/hexapod/serial_bridge', '/dev/ttyACM0', {'XDG_STATE_HOME': str(tmp_path)})
 
 
+@contextlib.contextmanager
+def running(path, said=None):
+    memory = StopMemory(path, (said if said is not None else []).append)
+    memory.start()
+    yield memory
+    memory.close()
+    assert not memory.is_alive()
+
+
+def until(is_so):
+    end = time.monotonic() + 10.0
+    while not is_so() and time.monotonic() < end:
+        time.sleep(0.005)
+    assert is_so()
+
+
 def test_a_stop_is_remembered_until_it_is_cleared(path):
     assert not StopMemory(path).is_kept
-    memory = StopMemory(path)
-    assert memory.keep(True) == ''
+    with running(path) as memory:
+        memory.keep(True)
     assert StopMemory(path).is_kept
-    assert memory.keep(False) == ''
+    with running(path) as memory:
+        memory.keep(False)
     assert not StopMemory(path).is_kept
 
 
@@ -40,26 +60,33 @@ def test_a_user_without_a_home_has_it_too():
 
 def test_a_long_port_name_makes_no_file_that_cannot_be(tmp_path):
     path = stop_file('/a', '/dev/' + 'x' * 5000, {'XDG_STATE_HOME': str(tmp_path)})
-    assert StopMemory(path).keep(True) == ''
+    with running(path) as memory:
+        memory.keep(True)
+    assert path.exists()
 
 
-def test_where_nothing_can_be_written_it_says_so_once_and_goes_on(tmp_path):
-    (tmp_path / 'hexarm').write_text('a file where the folder should be')
-    memory = StopMemory(tmp_path / 'hexarm' / 'stop')
-    assert 'a restart forgets' in memory.keep(True)
-    assert memory.keep(True) == ''
-    assert memory.is_kept
+def test_where_nothing_can_be_written_it_says_so_once_and_tries_again(path, monkeypatch):
+    monkeypatch.setattr('bridge.stop_memory.RETRY_AFTER', 0.02)
+    path.parent.write_text('a file where the folder should be')
+    said = []
+    with running(path, said) as memory:
+        memory.keep(True)
+        assert memory.is_kept
+        until(lambda: said)
+        time.sleep(0.1)
+        assert len(said) == 1
+        assert 'a restart forgets' in said[0]
+        path.parent.unlink()
+        until(path.exists)
 
 
-def test_a_write_that_failed_is_tried_again(path, monkeypatch):
-    now = [100.0]
-    monkeypatch.setattr('bridge.stop_memory.time.monotonic', lambda: now[0])
-    path.parent.write_text('in the way of the folder')
-    memory = StopMemory(path)
-    assert 'a restart forgets' in memory.keep(True)
-    path.parent.unlink()
-    assert memory.keep(True) == ''
-    assert not path.exists()
-    now[0] += 3.0
-    assert memory.keep(True) == ''
-    assert StopMemory(path).is_kept
+def test_nobody_waits_for_a_slow_disk(path, monkeypatch):
+    is_slow = threading.Event()
+    monkeypatch.setattr(Path, 'touch', lambda self: is_slow.wait(10.0))
+    with running(path) as memory:
+        before = time.monotonic()
+        memory.keep(True)
+        memory.keep(False)
+        memory.keep(True)
+        assert time.monotonic() - before < 1.0
+        is_slow.set()

@@ -5,6 +5,9 @@ import statistics
 import time
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -48,18 +51,24 @@ class User(Client):
         self.said = []
         self.stops = self.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         self.tables = self.node.create_publisher(JointTrajectory, 'joint_table', 1)
+        self.commands = self.node.create_publisher(JointState, 'joint_command', 1)
         self.node.create_subscription(String, 'program_status', self._hear, LATCHED)
         self.plays = self.node.create_client(SetBool, 'serial_bridge/play_cycle')
         self.wait('the bridge', self._is_heard, 10.0)
         self.wait('the board', lambda: self.machine_state.message == 'disarmed', 10.0)
 
     def _is_heard(self):
-        publishers = (self.stops, self.tables)
+        publishers = (self.stops, self.tables, self.commands)
         is_heard = all(publisher.get_subscription_count() == 1 for publisher in publishers)
         return is_heard and self.plays.service_is_ready()
 
     def _hear(self, message):
         self.said.append(message.data)
+
+    @property
+    def last_refusal(self):
+        values = self.diagnostics.get(f'{SPACE}/serial_bridge', DiagnosticStatus()).values
+        return next((v.value for v in values if v.key == 'last_refusal'), '')
 
     def play_cycle(self):
         return self.plays.call_async(SetBool.Request(data=True))
@@ -163,6 +172,18 @@ def test_a_table_of_megabytes_is_not_even_decoded(calm):
     rows = [JointTrajectoryPoint(positions=[2.1] * 6)] * 20_000
     calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
     calm.wait('a refusal', lambda: any('at most 1000000' in text for text in calm.said), 10.0)
+
+
+@pytest.mark.parametrize(
+    ('bad', 'reason'),
+    [
+        (serialize_message(JointState(name=['crank_1'] * 100_000)), 'at most 10000'),
+        (b'\0\1\0\0\xff', 'no JointState'),
+    ],
+)
+def test_a_joint_command_of_megabytes_or_of_no_sense_is_not_decoded(calm, bad, reason):
+    calm.commands.publish(bad)
+    calm.wait('a refusal', lambda: reason in calm.last_refusal, 10.0)
 
 
 def test_bytes_that_are_no_table_are_refused(calm):
