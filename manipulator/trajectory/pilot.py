@@ -28,6 +28,9 @@ POSE_PATIENCE, POSE_DEADLINE = 0.2, 0.5
 PRESENT = 0.1
 """Of the tolerance of following, how far the joints may be from the pose where motion begins."""
 
+MISFITS = 50
+"""Poses in a row that do not fit the joints before that is said: some are only late."""
+
 DISABLED = MotionStatus('disabled', 'idle', 0.0, 'the servos are not enabled')
 CONNECTING = MotionStatus('disabled', 'idle', 0.0, 'the board does not follow setpoints yet')
 
@@ -48,6 +51,8 @@ class Pilot:
         self._is_followed = False
         self._is_measured = False
         self._joints: Array | None = None
+        self._misfits = 0
+        self._misfit = ''
         self._override = 1.0
         self._is_paused = False
         self._next_frames: Frames | None = None
@@ -56,12 +61,16 @@ class Pilot:
     def player(self) -> Player:
         """What takes commands; Refused while nobody may drive."""
         if self._player is None:
-            missing = 'its pose is not known yet' if self._state in DRIVABLE else 'enable it first'
-            missing = 'clear the stop first' if self._state == 'stopped' else missing
-            raise Refused(f'the machine is {self._state or "not heard of"}: {missing}')
+            raise Refused(f'the machine is {self._state or "not heard of"}: {self._missing}')
         if not self._is_followed:
             raise Refused(CONNECTING.reason)
         return self._player
+
+    @property
+    def _missing(self) -> str:
+        if self._state in DRIVABLE:
+            return self._misfit or 'its pose is not known yet'
+        return 'clear the stop first' if self._state == 'stopped' else 'enable it first'
 
     @property
     def is_driving(self) -> bool:
@@ -95,9 +104,13 @@ class Pilot:
             if self._is_measured:
                 self._player.note_measured(self.machine.frames.pivot(T_base_platform))
             return
-        joints = self._joints if self._state in DRIVABLE else None
-        if joints is not None and self._is_present(T_base_platform, joints):
-            self._take_over(T_base_platform, joints)
+        if self._joints is None or self._state not in DRIVABLE:
+            return
+        gaps = self._gaps(T_base_platform, self._joints)
+        if gaps.max() < PRESENT * self._tolerance:
+            self._take_over(T_base_platform, self._joints)
+        else:
+            self._note_misfit(gaps)
 
     def note_silence(self, seconds: float) -> None:
         """How long no pose was heard: soon the plan brakes on its way, later it is dropped."""
@@ -153,6 +166,7 @@ class Pilot:
         return self.machine.frames.platform(pose)
 
     def _take_over(self, T_base_platform: Pose, near: Array) -> None:
+        self._misfits, self._misfit = 0, ''
         pose = self.machine.frames.pivot(T_base_platform)
         joints = self.machine.kinematics.inverse(pose, near)
         player = self._player = Player(self.machine, pose, joints, self._dt)
@@ -162,10 +176,25 @@ class Pilot:
         self._following = Following(names, self._tolerance, self._dt)
         self.status = player.status if self._is_followed else CONNECTING
 
-    def _is_present(self, T_base_platform: Pose, joints: Array) -> bool:
-        """Whether a pose is where the joints are, or late: where they were."""
-        there = self._bare.kinematics.inverse(T_base_platform, joints)
-        return bool(np.abs(there - joints).max() < PRESENT * self._tolerance)
+    def _gaps(self, T_base_platform: Pose, joints: Array) -> Array:
+        """How far each joint is from a pose, which may be late: from where the joints were."""
+        gaps: Array = np.abs(self._bare.kinematics.inverse(T_base_platform, joints) - joints)
+        return gaps
+
+    def _note_misfit(self, gaps: Array) -> None:
+        """Says which joint keeps the machine from being taken over, once that lasts.
+
+        So it is where a leg is bent the wrong way and nearly straight: no motion begins there.
+        """
+        self._misfits += 1
+        if self._misfits == MISFITS:
+            worst = int(np.argmax(gaps))
+            kinematics = self._bare.kinematics
+            self._misfit = (
+                f'its pose fits all joints but {kinematics.joint_names[worst]}, which is off by '
+                f'{gaps[worst]:.2g} {kinematics.joint_unit}: disable and enable it, it then parks'
+            )
+            self.status = MotionStatus('disabled', 'idle', self.status.goal_stamp, self._misfit)
 
     def _take_frames(self, frames: Frames) -> None:
         old, self.machine = self.machine, in_frames(self._bare, frames)

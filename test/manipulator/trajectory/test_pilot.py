@@ -215,3 +215,43 @@ def test_a_stopped_machine_says_that_the_stop_must_be_cleared():
     made.note_machine_state('stopped', is_followed=False)
     with pytest.raises(Refused, match='the machine is stopped: clear the stop first'):
         _ = made.player
+
+
+def elbow_in_and_almost_straight():
+    """A pose at the edge of the reach, and joints of which the straightest leg is bent inwards."""
+    inside, outside = 0.0, 0.1
+    while outside - inside > 1e-7:
+        middle = 0.5 * (inside + outside)
+        pose = Pose.from_xyz_rpy(HOME.position + np.array([0.0, 0.0, middle]), (0.0, 0.0, 0.1))
+        closes = np.isfinite(MACHINE.kinematics.inverse_or_nan(pose)).all()
+        inside, outside = (middle, outside) if closes else (inside, middle)
+    pose = Pose.from_xyz_rpy(HOME.position + np.array([0.0, 0.0, inside - 1e-5]), (0.0, 0.0, 0.1))
+    out, *others = MACHINE.kinematics.inverse_all(pose)
+    one_in = [joints for joints in others if np.count_nonzero(joints != out) == 1]
+    return pose, min(one_in, key=lambda joints: np.abs(joints - out).max())
+
+
+def test_a_leg_bent_the_wrong_way_and_almost_straight_is_named():
+    pose, joints = elbow_in_and_almost_straight()
+    made = pilot()
+    made.note_machine_state('enabled', is_followed=True)
+    made.note_joints(joints)
+    for _ in range(60):
+        made.note_pose(pose)
+    with pytest.raises(
+        Refused, match=r'crank_\d, which is off by 0\.0\d+ rad: disable and enable'
+    ):
+        _ = made.player
+    assert 'disable and enable it' in made.status.reason
+    see(made, HOME)
+    assert made.step() is not None
+    assert made.player.status.reason == ''
+
+
+def test_a_pose_that_is_late_for_a_moment_is_no_trouble():
+    made = pilot()
+    made.note_machine_state('enabled', is_followed=True)
+    made.note_joints(MACHINE.kinematics.inverse(HOME))
+    for _ in range(10):
+        made.note_pose(ELSEWHERE)
+    assert 'off by' not in made.status.reason
