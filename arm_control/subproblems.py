@@ -17,7 +17,7 @@ ON_AXIS = 1e-15
 
 def rotate(k: Array, angle: Array, vector: Array) -> Array:
     """`vector` turned by `angle` (...) about k (Rodrigues' formula)."""
-    along = _dot(vector, k)[..., None] * k
+    along = (vector @ k)[..., None] * k
     cosine, sine = np.cos(angle)[..., None], np.sin(angle)[..., None]
     result: Array = along + cosine * (vector - along) + sine * (vector @ skew(k).T)
     return result
@@ -29,7 +29,7 @@ def facing_angle(k: Array, vector: Array, target: Array, free: Array) -> Array:
     `free` where one of the two lies on the axis.
     """
     sine = _dot(target, vector @ skew(k).T)
-    cosine = _dot(target, vector) - _dot(target, k) * _dot(vector, k)
+    cosine = _dot(target, vector) - (target @ k) * (vector @ k)
     on_axis = np.hypot(sine, cosine) <= ON_AXIS * _length(vector) * _length(target)
     result: Array = np.where(on_axis, free, np.arctan2(sine, cosine))
     return result
@@ -41,9 +41,9 @@ def projection_angles(k: Array, vector: Array, onto: Array, value: Array, free: 
     A cos θ + B sin θ = C has θ = atan2(B, A) ± arccos(C / √(A² + B²)).
     """
     vector, onto = np.broadcast_arrays(vector, onto)
-    a = _dot(onto, vector) - _dot(onto, k) * _dot(vector, k)
+    a = _dot(onto, vector) - (onto @ k) * (vector @ k)
     b = _dot(onto, vector @ skew(k).T)
-    c = value - _dot(onto, k) * _dot(vector, k)
+    c = value - (onto @ k) * (vector @ k)
     radius = np.hypot(a, b)
     slack = SLACK * _length(onto) * _length(vector) + 1e-15
     below = (radius - c) * (radius + c)
