@@ -5,7 +5,8 @@ from typing import Protocol
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.identification.arm_model import ArmModel
+from arm_control.identification.arm_model import JOINTS, ArmModel
+from arm_control.identification.machine_values import geometry_lines as arm_lines
 from hexapod_control.identification.leg_model import LegModel, Tolerances
 from hexapod_control.identification.machine_values import geometry_lines
 from hexapod_control.identification.model_of import model_of
@@ -31,12 +32,15 @@ class MachineModel(Model, Protocol):
 def machine_model(kinematics: Kinematics, tolerances: Tolerances) -> MachineModel:
     """InvalidInput for a kind of machine that cannot be identified."""
     if isinstance(kinematics, SerialArm):
-        return ArmModel(kinematics.chain, tolerances.angle)
+        return ArmModel(kinematics, tolerances.length, tolerances.angle)
     return model_of(kinematics, tolerances)
 
 
 def new_geometry(model: MachineModel, values: Array) -> list[str]:
     """The lines of the machine file's `geometry`; none where all of it is in the servos."""
+    if isinstance(model, ArmModel):
+        is_as_told = not values[JOINTS:].any()
+        return [] if is_as_told else arm_lines(model.identified(values), model.arm.rest)
     return geometry_lines(model.identified(values)) if isinstance(model, LegModel) else []
 
 
