@@ -5,6 +5,9 @@ import numpy as np
 from manipulator.arrays import Array
 
 TURN = 2 * np.pi
+SAME = 1e-6
+"""Radians between two solutions of one branch that were found from different starts."""
+
 OUTSIDE_COST = 1e6
 """What a radian outside the range costs against radians of distance: range comes first."""
 
@@ -36,6 +39,16 @@ def nearest_branch(branches: Array, near: Array, low: Array, high: Array) -> Arr
     best = np.argmin(np.where(np.isnan(cost), np.inf, cost), axis=-1)
     chosen: Array = np.take_along_axis(branches, best[..., None, None], axis=-2)[..., 0, :]
     return chosen
+
+
+def without_repeats(branches: Array) -> Array:
+    """Of branches (..., k, n) that are the same but for whole turns the first, the others NaN."""
+    turns = np.exp(1j * branches)
+    apart = np.abs(turns[..., :, None, :] - turns[..., None, :, :]).max(axis=-1)
+    before = np.tri(branches.shape[-2], k=-1, dtype=np.bool_)
+    is_repeat = ((apart < SAME) & before).any(axis=-1)
+    result: Array = np.where(is_repeat[..., None], np.nan, branches)
+    return result
 
 
 def _outside(joints: Array, low: Array, high: Array) -> Array:

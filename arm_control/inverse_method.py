@@ -4,6 +4,7 @@ from typing import Protocol
 
 import numpy as np
 
+from arm_control.almost_closed import AlmostClosed, idealised
 from arm_control.chain import Chain
 from arm_control.joint_limits import JointLimits
 from arm_control.numerical import Numerical
@@ -32,7 +33,20 @@ class InverseMethod(Protocol):
 
 
 def fitting_method(chain: Chain, limits: JointLimits, length: float) -> InverseMethod:
-    """The closed form that the chain admits, else the numerical one (length in metres)."""
+    """The closed form that the chain admits, or almost, else the numerical one (length in m)."""
+    closed = closed_form(chain)
+    if closed is not None:
+        return closed
+    numerical = Numerical(chain, length, limits.low, limits.high)
+    for ideal in idealised(chain):
+        closed = closed_form(ideal)
+        if closed is not None:
+            return AlmostClosed(closed, numerical)
+    return numerical
+
+
+def closed_form(chain: Chain) -> SphericalWrist | ParallelAxes | None:
+    """The one whose conditions the axes meet."""
     axes = chain.axes
     if _are_parallel(axes[1], axes[2]) and not _are_parallel(axes[0], axes[1]):
         centre = _meeting_point(chain, 4, 5)
@@ -40,7 +54,7 @@ def fitting_method(chain: Chain, limits: JointLimits, length: float) -> InverseM
             return SphericalWrist(chain, centre)
         if centre is not None and _are_parallel(axes[1], axes[3]):
             return ParallelAxes(chain, centre)
-    return Numerical(chain, length, limits.low, limits.high)
+    return None
 
 
 def _are_parallel(a: Array, b: Array) -> bool:

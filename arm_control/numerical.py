@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from arm_control.branches import without_repeats
 from arm_control.chain import Chain
 from manipulator.arrays import Array
 from manipulator.pose import Pose
@@ -28,7 +29,7 @@ class Numerical:
     def branches(self, pose: Pose, near: Array) -> Array:
         """What was found from `near` (entry 0) and from the cold starts: (..., 33, 6).
 
-        Entries may repeat, and a branch may be missed.
+        A branch may be missed.
         """
         spread = np.random.default_rng(0).uniform(self.low, self.high, (STARTS, 6))
         lead = pose.position.shape[:-1]
@@ -39,27 +40,26 @@ class Numerical:
             ],
             axis=-2,
         )
-        joints, error = self._descend(pose, starts)
-        result: Array = np.where((error < TOLERANCE)[..., None], joints, np.nan)
-        return result
+        joints, error = self.descend(pose, starts)
+        return without_repeats(np.where((error < TOLERANCE)[..., None], joints, np.nan))
 
     def refusal(self, pose: Pose) -> str:
         """How near the best attempt came."""
         middle = (self.low + self.high) / 2
         spread = np.random.default_rng(0).uniform(self.low, self.high, (STARTS, 6))
-        joints, error = self._descend(pose, np.vstack([middle, spread]))
+        joints, error = self.descend(pose, np.vstack([middle, spread]))
         miss = self.chain.forward(joints[np.argmin(error)]).twist_to(pose)
         distance, angle = np.linalg.norm(miss[:3]), np.degrees(np.linalg.norm(miss[3:]))
         return f'no joint angles found: the best of {STARTS + 1} starts missed by ' + (
             f'{distance:.4g} m and {angle:.3g}°'
         )
 
-    def _descend(self, pose: Pose, joints: Array) -> tuple[Array, Array]:
+    def descend(self, pose: Pose, joints: Array, steps: int = STEPS) -> tuple[Array, Array]:
         """Joints (..., k, 6) after the steps, and the scaled error that is left of each."""
         goal = Pose(pose.position[..., None, :], pose.rotation[..., None, :, :])
         scale = np.array([1 / self.length] * 3 + [1.0] * 3)
         joints = np.array(joints)
-        for _ in range(STEPS):
+        for _ in range(steps):
             error = scale * self.chain.forward(joints).twist_to(goal)
             size = np.linalg.norm(error, axis=-1)
             if (size < TOLERANCE / 10).all():

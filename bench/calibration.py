@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.row import Row
-from hexapod_control.identification.leg_model import LegModel, Tolerances
-from hexapod_control.identification.model_of import model_of
-from hexapod_control.workspace import sample
+from hexapod_control.identification.leg_model import Tolerances
+from hexarm.calibration.machine_model import MachineModel, machine_model, random_poses
 from hexarm.calibration.poses import telling_poses
 from hexarm.machines import load
 from manipulator.errors import NoSolution
@@ -21,7 +20,7 @@ POSES, UNSEEN, MACHINES = 40, 1000, 12
 NOISE = Noise(position=1e-4, rotation=1e-3)
 """0.1 mm, and the same at 100 mm: 1 mrad = 0.057°."""
 
-LARGEST = {'anchors': 5e-4, 'joints': 5e-4, 'cranks': 3e-4, 'rods': 3e-4}
+LARGEST = {'anchors': 5e-4, 'joints': 5e-4, 'cranks': 3e-4, 'rods': 3e-4, 'lengths': 5e-4}
 LARGEST_ANGLE, LARGEST_OFFSET = np.radians(1.0), 5e-4
 BUILT = Tolerances(5e-4, np.radians(1.0))
 GOAL = 5e-5
@@ -29,7 +28,7 @@ GOAL = 5e-5
 
 def rows() -> list[Row]:
     found = []
-    for name in ('robocake', 'stewart_6_6'):
+    for name in ('robocake', 'stewart_6_6', 'arm_6r', 'ur5'):
         campaign = Campaign.of(name)
         for is_known in (False, True):
             where = 'frames known' if is_known else 'unknown frames'
@@ -68,7 +67,7 @@ class Run:
 class Campaign:
     """What is measured of a kind of machine, and what is not."""
 
-    model: LegModel
+    model: MachineModel
     joints: np.ndarray
     poses: Pose
     unseen_joints: np.ndarray
@@ -77,11 +76,10 @@ class Campaign:
     @classmethod
     def of(cls, name: str, count: int = POSES, unseen: int = UNSEEN) -> 'Campaign':
         machine = load(name)
-        model = model_of(machine.kinematics, BUILT)
+        model = machine_model(machine.kinematics, BUILT)
         joints, poses = telling_poses(machine, model, NOISE, count)
-        length = machine.kinematics.characteristic_length
-        others = sample(machine, unseen, np.random.default_rng(99), length)
-        return cls(model, joints, poses, machine.kinematics.inverse(others), others)
+        others = random_poses(machine, unseen, np.random.default_rng(99))
+        return cls(model, joints, poses, *others)
 
     def run(self, seed: int, are_frames_known: bool = False) -> Run:
         """Builds a machine with errors, measures it with noise, identifies it."""
@@ -121,8 +119,8 @@ class Campaign:
         return np.sqrt(spread.mean(axis=0))
 
 
-def true_values(model: LegModel, generator: np.random.Generator) -> np.ndarray:
-    """Even errors: joints ± 0.5 mm, lengths ± 0.3 mm, angles ± 1°, leg offsets ± 0.5 mm."""
+def true_values(model: MachineModel, generator: np.random.Generator) -> np.ndarray:
+    """Even errors: joints, leg offsets, links ± 0.5 mm, cranks, rods ± 0.3 mm, angles ± 1°."""
     largest = [
         LARGEST.get(p.group, LARGEST_ANGLE if p.unit == 'rad' else LARGEST_OFFSET)
         for p in model.parameters
@@ -138,7 +136,9 @@ def some_frames(generator: np.random.Generator) -> DeviceFrames:
     )
 
 
-def closing(model: LegModel, values: np.ndarray, joints: np.ndarray, near: Pose) -> Iterator[int]:
+def closing(
+    model: MachineModel, values: np.ndarray, joints: np.ndarray, near: Pose
+) -> Iterator[int]:
     """Which joints the machine can have: near a singularity, errors can leave none."""
     parts = [np.arange(len(joints))]
     while parts:
