@@ -13,7 +13,7 @@ from arm_control.spherical_wrist import SphericalWrist
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 
-ALMOST_PARALLEL, ALMOST_MEETING = np.radians(5.0), 0.02
+ALMOST_PARALLEL, ALMOST_MEETING = np.radians(5.0), 0.005
 """How far axes may be from parallel (rad), and from meeting in one point (m)."""
 
 ASIDE = (0.96, 1.04, 0.9)
@@ -25,23 +25,22 @@ STEPS = 20
 
 @dataclass(frozen=True, eq=False)
 class AlmostClosed:
-    """The eight branches of the ideal arm, each brought by damped Newton steps to the real one."""
+    """What damped Newton steps find from `near` and from the eight branches of the ideal arm."""
 
     ideal: SphericalWrist | ParallelAxes
     numerical: Numerical
 
     def branches(self, pose: Pose, near: Array) -> Array:
-        """All eight (..., 8, 6); as `Numerical` finds them for one pose that has none of these."""
+        """All eight and NaN (..., 9, 6); for one pose that has none, what `Numerical` finds."""
         starts = self._starts(pose, near)
         joints, error = self.numerical.descend(pose, starts, STEPS)
         found = without_repeats(np.where((error < TOLERANCE)[..., None], joints, np.nan))
-        is_single = pose.position.ndim == 1
-        return (
-            self.numerical.branches(pose, near) if is_single and np.isnan(found).all() else found
-        )
+        if pose.position.ndim == 1 and np.isnan(found).all():
+            return self.numerical.branches(pose, near)
+        return found
 
     def _starts(self, pose: Pose, near: Array) -> Array:
-        """The ideal arm's branches; where it does not reach, those for a place a little aside.
+        """`near`, then the ideal arm's branches, or where it has none those a little aside.
 
         At the edge of the reach the real arm may have a branch which the ideal one has not.
         """
@@ -53,7 +52,8 @@ class AlmostClosed:
                 break
             place = shoulder + stretch * (pose.position - shoulder)
             starts = np.where(lost, self.ideal.branches(Pose(place, pose.rotation), near), starts)
-        return np.where(np.isnan(starts), near[..., None, :], starts)
+        first = np.broadcast_to(near[..., None, :], (*starts.shape[:-2], 1, starts.shape[-1]))
+        return np.concatenate([first, np.where(np.isnan(starts), first, starts)], axis=-2)
 
     def refusal(self, pose: Pose) -> str:
         """Which triangle of the ideal arm does not close, or how near the real one comes."""

@@ -67,8 +67,8 @@ class SerialArm:
     def inverse_all(self, pose: Pose, near: Array | None = None) -> Array:
         """Every branch (..., k, 6), by whole turns nearest to `near` within the joint ranges.
 
-        NaN rows are branches that do not close. k is 8 where there is a closed form, or almost;
-        without one a branch may be missing.
+        NaN rows are branches that do not close. k is 8 where there is a closed form; without one
+        a branch may be missing.
         """
         start = self._near(near)
         found = self.method.branches(pose, start)
