@@ -1,0 +1,133 @@
+"""A gamepad that lies, falls silent or freezes moves nothing, and what it told wrong is said."""
+
+import math
+
+import pytest
+
+from hexarm.gamepads import load
+from manipulator.teleop.joy_reader import JoyReader
+
+LB, FRAME = 4, 2
+XBOX = load('xbox')
+AXES, BUTTONS = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0] * 11
+
+
+def test_trigger_that_reports_zero_before_its_first_touch_does_nothing(gamepad):
+    axes = [0.0] * 8
+    reader = JoyReader(gamepad).hear(axes, BUTTONS, 1.0)
+    assert {'turbo', 'slow'} <= set(reader.untrusted)
+    buttons = [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
+    axes[1], axes[5] = 1.0, -1.0
+    untouched = reader.hear(axes, buttons, 1.02).wanted(1.02)
+    assert untouched.twist[0] == pytest.approx(0.05)
+
+
+def test_trigger_as_deadman_counts_after_it_was_seen_at_rest(changed):
+    trigger = type(XBOX.deadman)(axis=5, rest=1.0, beyond=-0.5)
+    reader = changed(deadman=trigger, turbo=None)
+    before = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    pulled = [0.0, 1.0, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0]
+    reader = reader.hear(before, BUTTONS, 1.0).hear(pulled, BUTTONS, 1.02)
+    assert not reader.wanted(1.02).is_held
+    reader = reader.hear(AXES, BUTTONS, 1.04).hear(pulled, BUTTONS, 1.06)
+    assert reader.wanted(1.06).twist[0] == pytest.approx(0.05)
+
+
+def test_deadman_that_is_pressed_from_the_start_does_not_count(gamepad):
+    stuck = [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
+    reader = JoyReader(gamepad).hear(AXES, stuck, 1.0)
+    assert not reader.wanted(1.0).is_held
+    assert 'deadman' in reader.untrusted
+
+
+def test_stick_that_never_rests_moves_nothing(gamepad):
+    drifting = [0.0, 0.4, *AXES[2:]]
+    held = [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
+    reader = JoyReader(gamepad).hear(drifting, BUTTONS, 1.0).hear(drifting, held, 1.02)
+    assert reader.wanted(1.02).is_held
+    assert not reader.wanted(1.02).twist.any()
+    assert reader.untrusted == ('axis 1 (x)',)
+
+
+@pytest.mark.parametrize(
+    ('axes', 'buttons', 'said'),
+    [
+        ([], [], 'axis 1 (x) is missing: there are 0'),
+        (AXES[:4], BUTTONS, 'axis 4 (z) is missing: there are 4'),
+        (AXES, BUTTONS[:4], 'button 4 (deadman) is missing: there are 4'),
+        ([0.0, math.nan, *AXES[2:]], BUTTONS, 'axis 1 is nan'),
+        ([0.0, math.inf, *AXES[2:]], BUTTONS, 'axis 1 is inf'),
+        ([0.0, 0.0, 1.2, *AXES[3:]], BUTTONS, 'axis 2 is 1.2, outside [-1.05, 1.05]'),
+        (AXES, [0, 0, 7, *BUTTONS[3:]], 'button 2 is 7, needs 0 or 1'),
+        ([0.0] * 100, BUTTONS, '100 axes and 11 buttons, at most 64'),
+    ],
+)
+def test_bad_message_releases_the_deadman_and_names_the_index(driver, axes, buttons, said):
+    driver.now += 0.02
+    driver.reader = driver.reader.hear(axes, buttons, driver.now)
+    assert not driver.wanted.is_held
+    assert not driver.wanted.twist.any()
+    assert said in driver.wanted.reason
+
+
+def test_good_message_after_a_bad_one_counts(driver):
+    driver.reader = driver.reader.hear([], [], driver.now)
+    assert driver.send().twist[0] == pytest.approx(0.05)
+
+
+def test_button_held_through_a_bad_message_is_not_pressed_again(user):
+    before = user.press(FRAME).frame
+    user.reader = user.reader.hear([], [], user.now)
+    assert user.send().frame == before
+
+
+def test_silence_releases_everything_until_the_deadman_is_pressed_anew(driver):
+    assert driver.reader.wanted(driver.now + 0.19).is_held
+    lost = driver.reader.wanted(driver.now + 0.21)
+    assert not lost.is_held
+    assert not lost.twist.any()
+    assert 'no message for 0.21 s' in lost.reason
+    driver.now += 0.3
+    assert not driver.send().is_held
+    assert not driver.push(X=0.5).is_held
+    driver.axes[1] = 0.0
+    driver.release(LB)
+    driver.press(LB)
+    assert driver.push(X=1.0).twist[0] == pytest.approx(0.05)
+
+
+def test_pad_that_comes_back_must_show_its_axes_at_rest_again(driver):
+    driver.now += 0.3
+    driver.release(LB)
+    assert driver.press(LB).is_held
+    assert not driver.wanted.twist.any()
+
+
+def test_frozen_pad_with_fresh_messages_stops_the_machine(driver):
+    assert driver.hold(0.18).is_held
+    frozen = driver.hold(0.06)
+    assert not frozen.is_held
+    assert not frozen.twist.any()
+    assert 'frozen' in frozen.reason
+
+
+def test_trembling_thumb_drives_on(driver):
+    assert driver.hold(10.0, tremor=1 / 32767).twist[0] == pytest.approx(0.05)
+
+
+def test_first_change_after_a_short_freeze_drives_on(driver):
+    driver.hold(1.0)
+    assert driver.push(X=0.99).is_held
+
+
+def test_long_freeze_needs_the_deadman_anew(driver):
+    driver.hold(3.1)
+    assert not driver.push(X=0.99).is_held
+    driver.release(LB)
+    assert driver.press(LB).twist.any()
+
+
+def test_deadman_held_with_sticks_at_rest_is_never_taken_for_frozen(user):
+    user.press(LB)
+    assert user.hold(10.0).is_held
+    assert user.push(X=1.0).twist.any()
