@@ -1,0 +1,63 @@
+"""A pilot that stalls, or hears no pose, or is not followed: how its motion ends and begins."""
+
+import numpy as np
+import pytest
+
+from hexarm.machines import load
+from manipulator.errors import Refused
+from manipulator.pose import Pose
+from manipulator.trajectory.player import Goal
+
+HOME = load('robocake').kinematics.home
+ELSEWHERE = Pose.from_xyz_rpy((0.004, 0.002, 0.044), (0.0, 0.05, 0.0))
+
+
+def test_a_driver_that_stood_still_itself_drops_its_goal_and_begins_where_the_joints_are(driving):
+    driving.player.pursue(Goal(ELSEWHERE, 7.0))
+    there = driving.run(30)
+    driving.note_stall(0.4)
+    assert driving.is_driving
+    driving.note_stall(0.6)
+    assert driving.step() is None
+    assert (driving.status.result, driving.status.goal_stamp) == ('stopped', 7.0)
+    driving.see(there)
+    assert np.abs(driving.step().twist_to(there)).max() < 1e-12
+
+
+def test_without_a_pose_motion_brakes_on_its_way_and_goes_on_when_it_is_heard_again(moving):
+    moving.note_silence(0.25)
+    moving.run(20)
+    held = moving.step()
+    assert np.abs(held.twist_to(moving.step())).max() < 1e-12
+    assert np.abs(held.twist_to(ELSEWHERE)).max() > 1e-4
+    assert moving.status.result == 'moving'
+    moving.note_silence(0.01)
+    moving.run(200)
+    assert moving.status.result == 'reached'
+
+
+def test_after_a_long_silence_goals_are_dropped_and_motion_begins_at_a_pose_that_is_not_late(
+    moving,
+):
+    moving.note_silence(0.6)
+    assert moving.step() is None
+    assert (moving.status.result, moving.status.reason) == ('stopped', 'no pose for 0.5 s')
+    moving.note_pose(HOME)
+    with pytest.raises(Refused, match='its pose is not known'):
+        _ = moving.player
+    moving.see(HOME)
+    moving.player.pursue(Goal(ELSEWHERE, 8.0))
+    moving.run(200)
+    assert moving.status.result == 'reached'
+
+
+def test_joints_that_do_not_follow_end_the_motion_and_name_one(driving):
+    driving.player.pursue(Goal(Pose.from_xyz_rpy((0.0, 0.0, 0.055)), 3.0))
+    for _ in range(150):
+        driving.see(HOME)
+        if driving.step() is None:
+            break
+    assert driving.status.result == 'stopped'
+    assert 'away from its command' in driving.status.reason
+    driving.see(HOME)
+    assert np.abs(driving.step().twist_to(HOME)).max() < 1e-12

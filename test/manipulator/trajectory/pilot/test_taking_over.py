@@ -1,0 +1,111 @@
+"""When a pilot takes its machine over, from where, and why it does not."""
+
+import numpy as np
+import pytest
+
+from hexarm.machines import load
+from manipulator.errors import Refused
+from manipulator.pose import Pose
+from manipulator.trajectory.player import Goal
+
+MACHINE = load('robocake')
+HOME = MACHINE.kinematics.home
+ELSEWHERE = Pose.from_xyz_rpy((0.004, 0.002, 0.044), (0.0, 0.05, 0.0))
+
+
+def test_nothing_goes_out_before_the_machine_is_enabled_and_its_pose_known(pilot):
+    assert pilot.step() is None
+    pilot.see(HOME)
+    assert pilot.step() is None
+    pilot.note_machine_state('enabled', is_followed=False)
+    assert pilot.step() is None
+    with pytest.raises(Refused, match='its pose is not known'):
+        _ = pilot.player
+
+
+def test_no_goal_is_taken_until_the_board_follows(pilot):
+    pilot.note_machine_state('enabled', is_followed=False)
+    pilot.see(HOME)
+    assert pilot.step() is not None
+    with pytest.raises(Refused, match='does not follow'):
+        _ = pilot.player
+    pilot.note_machine_state('enabled', is_followed=True)
+    pilot.player.pursue(Goal(ELSEWHERE, 1.0))
+    pilot.run(100)
+    assert pilot.status.result == 'reached'
+
+
+def test_motion_begins_where_the_joints_are(pilot):
+    pilot.enable_at(ELSEWHERE)
+    assert np.abs(pilot.step().twist_to(ELSEWHERE)).max() < 1e-12
+
+
+@pytest.mark.parametrize('state', ['disarmed', 'stopped', 'fault', 'disconnected', 'holding'])
+def test_leaving_enabled_drops_the_goal_and_the_next_motion_begins_where_the_joints_are(
+    driving, state
+):
+    driving.player.pursue(Goal(ELSEWHERE, 7.0))
+    driving.run(5)
+    driving.note_machine_state(state, is_followed=False)
+    assert (driving.status.result, driving.status.goal_stamp) == ('stopped', 7.0)
+    assert state in driving.status.reason
+    assert driving.step() is None
+    driving.note_machine_state('enabled', is_followed=False)
+    driving.see(ELSEWHERE)
+    assert np.abs(driving.run(20).twist_to(ELSEWHERE)).max() < 1e-12
+
+
+def test_holding_board_is_taken_up_again_without_asking(driving):
+    driving.note_machine_state('holding', is_followed=False)
+    driving.see(ELSEWHERE)
+    assert np.abs(driving.step().twist_to(ELSEWHERE)).max() < 1e-12
+
+
+def test_goal_that_still_waited_when_the_machine_was_lost_is_named(driving):
+    driving.player.pursue(Goal(ELSEWHERE, 9.0))
+    driving.note_machine_state('disarmed', is_followed=False)
+    assert (driving.status.result, driving.status.goal_stamp) == ('stopped', 9.0)
+
+
+def test_a_stopped_machine_says_that_the_stop_must_be_cleared(driving):
+    driving.note_machine_state('stopped', is_followed=False)
+    with pytest.raises(Refused, match='the machine is stopped: clear the stop first'):
+        _ = driving.player
+
+
+def elbow_in_and_almost_straight():
+    """A pose at the edge of the reach, and joints of which the straightest leg is bent inwards."""
+    inside, outside = 0.0, 0.1
+    while outside - inside > 1e-7:
+        middle = 0.5 * (inside + outside)
+        pose = Pose.from_xyz_rpy(HOME.position + np.array([0.0, 0.0, middle]), (0.0, 0.0, 0.1))
+        closes = np.isfinite(MACHINE.kinematics.inverse_or_nan(pose)).all()
+        inside, outside = (middle, outside) if closes else (inside, middle)
+    pose = Pose.from_xyz_rpy(HOME.position + np.array([0.0, 0.0, inside - 1e-5]), (0.0, 0.0, 0.1))
+    out, *others = MACHINE.kinematics.inverse_all(pose)
+    one_in = [joints for joints in others if np.count_nonzero(joints != out) == 1]
+    return pose, min(one_in, key=lambda joints: np.abs(joints - out).max())
+
+
+def test_a_leg_bent_the_wrong_way_and_almost_straight_is_named(pilot):
+    pose, joints = elbow_in_and_almost_straight()
+    pilot.note_machine_state('enabled', is_followed=True)
+    pilot.note_joints(joints)
+    for _ in range(60):
+        pilot.note_pose(pose)
+    with pytest.raises(
+        Refused, match=r'crank_\d, which is off by 0\.0\d+ rad: disable and enable'
+    ):
+        _ = pilot.player
+    assert 'disable and enable it' in pilot.status.reason
+    pilot.see(HOME)
+    assert pilot.step() is not None
+    assert pilot.player.status.reason == ''
+
+
+def test_a_pose_that_is_late_for_a_moment_is_no_trouble(pilot):
+    pilot.note_machine_state('enabled', is_followed=True)
+    pilot.note_joints(MACHINE.kinematics.inverse(HOME))
+    for _ in range(10):
+        pilot.note_pose(ELSEWHERE)
+    assert 'off by' not in pilot.status.reason
