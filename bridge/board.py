@@ -40,6 +40,7 @@ class Board:
 
     measured: what its encoders read, in counts by channel; None where joints have none.
     is_stop_open: the stop button's contact, which stops while it is open.
+    is_start_closed: the start button's, which acts when it closes.
     """
 
     def __init__(self, settings: BoardSettings, battery_mv: int = 7600) -> None:
@@ -47,6 +48,7 @@ class Board:
         self.battery_mv = battery_mv
         self.measured: tuple[int, ...] | None = None
         self.is_stop_open = False
+        self.is_start_closed = False
         self._axes = still_axes()
         self.reset(ResetCause.POWER_ON)
 
@@ -66,6 +68,7 @@ class Board:
         self._hello_at_us = self.settings.boot_us
         self._has_said_hello = False
         self._last_command: tuple[type[Command], int, Result] | None = None
+        self._was_start_closed = True  # until it was seen open: a stuck contact starts nothing
 
     @property
     def mode(self) -> Mode:
@@ -107,8 +110,7 @@ class Board:
         return output
 
     def _pass_period(self, now_us: int) -> None:
-        if self.is_stop_open and self._modes.mode is not Mode.STOPPED:
-            self._modes.obey(Stop(), now_us)
+        self._read_buttons(now_us)
         self._fault_to_say = self._modes.pass_period(now_us, self.battery_mv) or self._fault_to_say
         is_host_silent = now_us - self._heard_at_us >= HOST_SILENCE_US
         if now_us >= self._hello_at_us and (is_host_silent or not self._has_said_hello):
@@ -122,6 +124,14 @@ class Board:
             self._say(self._fault_to_say)
             self._fault_to_say = None
         self._say(self._state(now_us))
+
+    def _read_buttons(self, now_us: int) -> None:
+        if self.is_stop_open and self._modes.mode is not Mode.STOPPED:
+            self._modes.stop(now_us)
+        is_pressed = self.is_start_closed and not self._was_start_closed
+        self._was_start_closed = self.is_start_closed
+        if is_pressed and not self.is_stop_open:
+            self._modes.press_start(now_us)
 
     def _take_setpoint(self, setpoint: Setpoint, sequence: int) -> None:
         if not self._is_new(sequence):
@@ -143,7 +153,7 @@ class Board:
             self._last_command = kind, sequence, result
         elif kind is Stop:
             # A late STOP stops all the same: it can only err on the safe side.
-            result = self._modes.obey(command, self._now_us)
+            result = self._modes.stop(self._now_us)
         else:
             result = Result.STALE
         if result is not Result.OK:

@@ -4,11 +4,13 @@ The firmware has the same state machine (docs/protocol.md draws it). Times in mi
 the start, as the board counts them.
 """
 
+from bridge.board_arming import Arming
 from bridge.board_programs import Programs, Step
+from bridge.board_setpoint import range_fault, setpoint_fault
 from bridge.board_settings import BoardSettings
+from bridge.board_supply import Supply
 from bridge.messages import (
     MAX_DEADLINE_MS,
-    MIN_DEADLINE_MS,
     NO_JOINT,
     Arm,
     Clear,
@@ -22,11 +24,10 @@ from bridge.messages import (
     Setpoint,
     Stop,
 )
-from bridge.program_messages import CycleAxis, Finish, Play
+from bridge.program_messages import CycleAxis, Finish, Play, Program, ProgramPart
 from bridge.pulse_drive import PulseDrive
 
 PULSE_PERIOD_US = 20_000
-UNDERVOLTAGE_DELAY_US = 500_000
 
 LATCHED = {Mode.STOPPED: Result.STOPPED, Mode.FAULT: Result.FAULT}
 FOLLOWING = (Mode.ARMED, Mode.HOLDING)
@@ -44,11 +45,12 @@ class BoardModes:
         self.mode = Mode.DISARMED
         self.fault = FaultCode.NONE
         self.is_deadline_passed = False
-        self.is_undervoltage = False
         self._deadline_us: int | None = None
-        self._low_since_us: int | None = None
-        self._park: tuple[int, ...] = ()
-        self._energise_at_us = 0
+        self._is_hosts = False
+        self._is_cleared = False
+        self._program_after_arming: Program | None = None
+        self._arming = Arming(self.drive, settings.arm_interval_us)
+        self._supply = Supply(settings.minimum_battery_mv)
         ranges, speeds = settings.count_ranges, settings.count_speeds
         self._programs = Programs(ranges, speeds, settings.solve, axes)
 
@@ -57,7 +59,7 @@ class BoardModes:
         """The flags of a STATE."""
         return Flag(
             Flag.DEADLINE_PASSED * self.is_deadline_passed
-            | Flag.UNDERVOLTAGE * self.is_undervoltage
+            | Flag.UNDERVOLTAGE * self._supply.is_low
             | Flag.SLEWING * self.drive.is_slewing
         )
 
@@ -65,7 +67,8 @@ class BoardModes:
         """One pulse period: deadlines, battery, arming, slewing; a fault when one begins."""
         fault = self._watch_battery(now_us, battery_mv)
         self._watch_deadline(now_us)
-        self._energise_next(now_us)
+        if self.mode is Mode.ARMING:
+            self._arm_on(now_us)
         if fault is None and self.mode in BY_ITSELF:
             fault = self._play_on(now_us)
         self.drive.advance(PULSE_PERIOD_US * 1e-6)
@@ -73,22 +76,53 @@ class BoardModes:
 
     def follow(self, setpoint: Setpoint, now_us: int) -> Fault | None:
         """Aims at the setpoint; or says why not, and nothing has changed."""
-        fault = self._fault_in(setpoint)
+        if self.mode not in FOLLOWING:
+            return Fault(FaultCode.NOT_ARMED, NO_JOINT, self.mode)
+        fault = setpoint_fault(setpoint, self.settings.count_ranges)
         if fault is None:
             self.drive.aim(setpoint.counts)
             self._wait_armed(now_us, setpoint.deadline_ms)
+            self._is_hosts, self._is_cleared = True, False
         return fault
 
     def obey(self, command: Command, now_us: int) -> Result:
-        """Does what is asked, or says why not and changes nothing."""
+        """Does what a host asks, or says why not and changes nothing.
+
+        The machine is the host's from then on, until its deadline passes, and what the start
+        button wanted to play is forgotten; only uploading a program claims nothing.
+        """
+        result = self._obey(command, now_us)
+        if result is Result.OK and not isinstance(command, ProgramPart):
+            self._program_after_arming = None
+            self._is_hosts = self.mode not in (Mode.DISARMED, Mode.HOLDING)
+        return result
+
+    def stop(self, now_us: int) -> Result:
+        """Stands still until CLEAR; the stop button's way too."""
+        self._hold(Mode.STOPPED, now_us)
+        return Result.OK
+
+    def press_start(self, now_us: int) -> None:
+        """The start button: clears, ends a program or plays one; never against a host."""
+        if self.mode in LATCHED:
+            self._clear(now_us)
+        elif self.mode in BY_ITSELF:
+            self._programs.finish()
+        elif self.mode in FOLLOWING and not self._is_hosts:
+            self._play(Play(self._programs.to_start, True), now_us)
+        elif self.mode is Mode.DISARMED:
+            start = self._programs.start_counts(self._programs.to_start)
+            if start is not None and self._arm(start, now_us) is Result.OK:
+                self._program_after_arming = self._programs.to_start
+
+    def _obey(self, command: Command, now_us: int) -> Result:
         match command:
             case Arm(park):
                 return self._arm(park, now_us)
             case Disarm():
                 return self._disarm(now_us)
             case Stop():
-                self._hold(Mode.STOPPED, now_us)
-                return Result.OK
+                return self.stop(now_us)
             case Clear():
                 return self._clear(now_us)
             case Play():
@@ -104,17 +138,16 @@ class BoardModes:
     def _arm(self, park: tuple[int, ...], now_us: int) -> Result:
         if self.mode in LATCHED:
             return LATCHED[self.mode]
-        if self.is_undervoltage:
+        if self._supply.is_low:
             return Result.UNDERVOLTAGE
         if len(park) != len(self.settings.count_ranges):
             return Result.WRONG_JOINTS
-        if self._range_fault(park) is not None:
+        if range_fault(park, self.settings.count_ranges) is not None:
             return Result.OUT_OF_RANGE
         if self.mode in (*FOLLOWING, *BY_ITSELF):
             self._hold(Mode.ARMED, now_us)
         elif self.mode is Mode.DISARMED:
-            self._park = park
-            self._energise_at_us = now_us
+            self._arming.begin(park, now_us)
             self._hold(Mode.ARMING, now_us)
         return Result.OK
 
@@ -127,7 +160,7 @@ class BoardModes:
     def _clear(self, now_us: int) -> Result:
         if self.mode not in LATCHED:
             return Result.OK
-        if self.is_undervoltage:
+        if self._supply.is_low:
             return Result.UNDERVOLTAGE
         self.fault = FaultCode.NONE
         if self.drive.is_all_on:
@@ -135,6 +168,7 @@ class BoardModes:
         else:
             self.drive.release()
             self._hold(Mode.DISARMED, now_us)
+        self._is_cleared = True
         return Result.OK
 
     def _play(self, play: Play, now_us: int) -> Result:
@@ -164,7 +198,10 @@ class BoardModes:
         """Stands still in `mode`; only an armed board has a deadline."""
         self.drive.halt()
         self._deadline_us = None
-        self.is_deadline_passed = False
+        self.is_deadline_passed = self._is_cleared = False
+        self._program_after_arming = None
+        if mode in (Mode.DISARMED, Mode.HOLDING):
+            self._is_hosts = False
         self.mode = mode
         if mode is Mode.ARMED:
             self._wait_armed(now_us)
@@ -175,26 +212,11 @@ class BoardModes:
         self._deadline_us = now_us + 1000 * deadline_ms
         self.is_deadline_passed = False
 
-    def _fault_in(self, setpoint: Setpoint) -> Fault | None:
-        if self.mode not in FOLLOWING:
-            return Fault(FaultCode.NOT_ARMED, NO_JOINT, self.mode)
-        if len(setpoint.counts) != len(self.settings.count_ranges):
-            return Fault(FaultCode.WRONG_JOINTS, NO_JOINT, len(setpoint.counts))
-        if not MIN_DEADLINE_MS <= setpoint.deadline_ms <= MAX_DEADLINE_MS:
-            return Fault(FaultCode.BAD_DEADLINE, NO_JOINT, setpoint.deadline_ms)
-        return self._range_fault(setpoint.counts)
-
-    def _range_fault(self, counts: tuple[int, ...]) -> Fault | None:
-        ranges = self.settings.count_ranges
-        for i, (count, (low, high)) in enumerate(zip(counts, ranges, strict=True)):
-            if not low <= count <= high:
-                return Fault(FaultCode.OUT_OF_RANGE, i, count)
-        return None
-
     def _watch_deadline(self, now_us: int) -> None:
+        """A machine that stood still under a STOP does not fall because somebody cleared it."""
         if self._deadline_us is None or now_us < self._deadline_us:
             return
-        if self.settings.on_link_loss == 'release':
+        if self.settings.on_link_loss == 'release' and not self._is_cleared:
             self.drive.release()
             self._hold(Mode.DISARMED, now_us)
         else:
@@ -203,25 +225,17 @@ class BoardModes:
 
     def _watch_battery(self, now_us: int, battery_mv: int) -> Fault | None:
         """Refuses to arm at once, but only a lasting undervoltage stops what moves."""
-        self.is_undervoltage = battery_mv < self.settings.minimum_battery_mv
-        if not self.is_undervoltage:
-            self._low_since_us = None
-            return None
-        if self._low_since_us is None:
-            self._low_since_us = now_us
-        is_lasting = now_us - self._low_since_us >= UNDERVOLTAGE_DELAY_US
-        if not is_lasting or self.mode in (Mode.DISARMED, *LATCHED):
+        self._supply.watch(now_us, battery_mv)
+        if not self._supply.is_exhausted or self.mode in (Mode.DISARMED, *LATCHED):
             return None
         self._hold(Mode.FAULT, now_us)
         self.fault = FaultCode.UNDERVOLTAGE
         return Fault(FaultCode.UNDERVOLTAGE, NO_JOINT, battery_mv)
 
-    def _energise_next(self, now_us: int) -> None:
-        if self.mode is not Mode.ARMING or now_us < self._energise_at_us:
+    def _arm_on(self, now_us: int) -> None:
+        if not self._arming.step(now_us):
             return
-        if self.drive.is_all_on:
-            self._hold(Mode.ARMED, now_us)
-            return
-        channel = self.drive.pulses.index(None)
-        self.drive.energise(channel, self._park[channel])
-        self._energise_at_us = now_us + self.settings.arm_interval_us
+        program = self._program_after_arming
+        self._hold(Mode.ARMED, now_us)
+        if program is not None:
+            self._play(Play(program, True), now_us)

@@ -75,6 +75,19 @@ class Programs:
             case TableEnd():
                 return self._end_table(command)
 
+    @property
+    def to_start(self) -> Program:
+        """What the start button plays: what was uploaded, else the cycle."""
+        return Program.TABLE if self._is_whole else Program.CYCLE
+
+    def start_counts(self, program: int) -> tuple[int, ...] | None:
+        """Where the program begins; None where there is none, or that is out of range."""
+        course = self._course_of(program, True)
+        start = None if course is None else course.start()
+        if start is None or not self._is_in_range(start):
+            return None
+        return tuple(round(count) for count in start)
+
     def begin(self, program: int, is_loop: bool, present: Counts) -> Result:
         """Gets ready to check and play from the present counts on."""
         course = self._course_of(program, is_loop)

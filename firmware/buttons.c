@@ -9,7 +9,7 @@ enum { STOP_PIN = _BV(PA0), START_PIN = _BV(PA1), OPEN_MS = 3, CLOSED_MS = 30 };
 
 static bool is_stop;
 static uint8_t stop_disagrees_ms;
-static bool is_start_closed;
+static bool is_start_closed = true; /* until it was seen open: a stuck contact starts nothing */
 static uint8_t start_disagrees_ms;
 static bool is_start_wanted;
 static uint16_t read_ms;

@@ -14,5 +14,6 @@ void buttons_read(void);
 /* The stop contact has been open for 3 ms, and has not been closed for 30 ms since. */
 bool buttons_is_stop(void);
 
-/* True once for each time the start contact has been closed for 30 ms. */
+/* True once for each time the start contact has been closed for 30 ms, after it was open for as
+ * long: one that is closed at power-up starts nothing. */
 bool buttons_take_start(void);

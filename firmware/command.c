@@ -61,11 +61,15 @@ static uint8_t take_row(const Frame *frame)
     return table_row(get16(frame->payload), counts, joints);
 }
 
-uint8_t command_obey(const Frame *frame)
+static bool changes_program(uint8_t type)
+{
+    return type >= TYPE_CYCLE_AXIS && type <= TYPE_TABLE_END;
+}
+
+static uint8_t obey(const Frame *frame)
 {
     const uint8_t *payload = frame->payload;
-    bool changes_program = frame->type >= TYPE_CYCLE_AXIS && frame->type <= TYPE_TABLE_END;
-    if (changes_program && safety_is_playing())
+    if (changes_program(frame->type) && safety_is_playing())
         return RESULT_NO_PROGRAM; /* not the one that is being played */
     switch (frame->type) {
     case TYPE_ARM:
@@ -91,4 +95,12 @@ uint8_t command_obey(const Frame *frame)
     default:
         return safety_stop();
     }
+}
+
+uint8_t command_obey(const Frame *frame)
+{
+    uint8_t result = obey(frame);
+    if (result == RESULT_OK && !changes_program(frame->type))
+        safety_claim();
+    return result;
 }

@@ -1,7 +1,8 @@
 #include "safety.h"
 
+#include "arming.h"
 #include "buttons.h"
-#include "clock.h"
+#include "deadline.h"
 #include "machine.h"
 #include "motion.h"
 #include "play.h"
@@ -14,17 +15,13 @@ static const Fault NO_FAULT = {FAULT_NONE, NO_JOINT, 0};
 static uint8_t mode = MODE_DISARMED;
 static uint8_t fault;
 static bool is_deadline_passed;
-static bool has_deadline;
-static uint32_t deadline_us;
-static bool is_driven; /* by setpoints whose deadline has not passed */
-static uint16_t park_counts[JOINT_COUNT];
-static uint32_t energise_ms;
+static bool is_hosts;   /* a host was the last to command it, and its deadline has not passed */
+static bool is_cleared; /* by CLEAR, and no host has armed or driven it since */
 static uint8_t program_after_arming; /* 0: none; the start button asked for it */
 
 static void expect_setpoint_within(uint16_t ms)
 {
-    deadline_us = clock_us() + 1000UL * ms;
-    has_deadline = true;
+    deadline_set(ms);
     is_deadline_passed = false;
 }
 
@@ -32,15 +29,17 @@ static void expect_setpoint_within(uint16_t ms)
 static void wait_armed(void)
 {
     mode = MODE_ARMED;
-    is_driven = false;
     expect_setpoint_within(MAX_DEADLINE_MS);
 }
 
 static void hold(uint8_t new_mode)
 {
     motion_halt();
-    has_deadline = is_deadline_passed = is_driven = false;
+    deadline_forget();
+    is_deadline_passed = is_cleared = false;
     program_after_arming = 0;
+    if (new_mode == MODE_DISARMED || new_mode == MODE_HOLDING)
+        is_hosts = false;
     mode = new_mode;
     if (new_mode == MODE_ARMED)
         wait_armed();
@@ -79,7 +78,8 @@ Fault safety_follow(uint16_t deadline_ms, const uint16_t *counts, uint8_t joints
         return (Fault){FAULT_OUT_OF_RANGE, joint, counts[joint]};
     motion_aim(counts);
     expect_setpoint_within(deadline_ms);
-    is_driven = true;
+    is_hosts = true;
+    is_cleared = false;
     mode = MODE_ARMED;
     return NO_FAULT;
 }
@@ -97,9 +97,7 @@ uint8_t safety_arm(const uint16_t *park, uint8_t joints)
     if (is_following() || safety_is_playing()) {
         hold(MODE_ARMED);
     } else if (mode == MODE_DISARMED) {
-        for (uint8_t i = 0; i < JOINT_COUNT; i++)
-            park_counts[i] = park[i];
-        energise_ms = clock_period_ms();
+        arming_begin(park);
         hold(MODE_ARMING);
     }
     return RESULT_OK;
@@ -139,6 +137,7 @@ uint8_t safety_clear(void)
     if (!motion_is_all_on())
         motion_release();
     hold(motion_is_all_on() ? MODE_ARMED : MODE_DISARMED);
+    is_cleared = true;
     return RESULT_OK;
 }
 
@@ -154,13 +153,21 @@ uint8_t safety_play(uint8_t program, bool is_loop)
     return result;
 }
 
+void safety_claim(void)
+{
+    program_after_arming = 0;
+    is_hosts = mode != MODE_DISARMED && mode != MODE_HOLDING;
+}
+
+/* A machine that stood still under a STOP does not fall because somebody has cleared it. */
 static void watch_deadline(void)
 {
-    if (!has_deadline || (int32_t)(clock_us() - deadline_us) < 0)
+    if (!deadline_has_passed())
         return;
-    if (RELEASE_ON_LINK_LOSS)
+    bool is_released = RELEASE_ON_LINK_LOSS && !is_cleared;
+    if (is_released)
         motion_release();
-    hold(RELEASE_ON_LINK_LOSS ? MODE_DISARMED : MODE_HOLDING);
+    hold(is_released ? MODE_DISARMED : MODE_HOLDING);
     is_deadline_passed = true;
 }
 
@@ -185,22 +192,14 @@ static Fault watch_supply(void)
     return (Fault){FAULT_UNDERVOLTAGE, NO_JOINT, supply_mv()};
 }
 
-static void energise_next(void)
+static void arm_on(void)
 {
-    if (mode != MODE_ARMING || (int32_t)(clock_period_ms() - energise_ms) < 0)
+    if (!arming_step())
         return;
-    if (motion_is_all_on()) {
-        uint8_t program = program_after_arming;
-        hold(MODE_ARMED);
-        if (program)
-            safety_play(program, true);
-        return;
-    }
-    uint8_t channel = 0;
-    while (motion_on() >> channel & 1)
-        channel++;
-    motion_energise(channel, park_counts[channel]);
-    energise_ms = clock_period_ms() + ARM_INTERVAL_MS;
+    uint8_t program = program_after_arming;
+    hold(MODE_ARMED);
+    if (program)
+        safety_play(program, true);
 }
 
 /* One period of a program; what cannot be reached ends it where the joints are. */
@@ -221,15 +220,16 @@ static Fault play(void)
 Fault safety_pass_period(void)
 {
     Fault begun = watch_supply();
-    energise_next();
+    if (mode == MODE_ARMING)
+        arm_on();
     if (begun.code == FAULT_NONE && safety_is_playing())
         begun = play();
     return begun;
 }
 
-bool safety_is_driven(void)
+bool safety_is_hosts(void)
 {
-    return is_driven;
+    return is_hosts;
 }
 
 uint8_t safety_mode(void)

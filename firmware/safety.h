@@ -26,6 +26,10 @@ uint8_t safety_stop(void);
 uint8_t safety_clear(void);
 uint8_t safety_play(uint8_t program, bool is_loop);
 
+/* Call after a command of a host was obeyed: the machine is the host's from then on, until its
+ * deadline passes, and what the start button wanted to play is forgotten. */
+void safety_claim(void);
+
 /* Deadline and buttons; call in every round of the loop. */
 void safety_watch(void);
 
@@ -34,8 +38,8 @@ Fault safety_pass_period(void);
 
 bool safety_is_playing(void);
 
-/* Setpoints come, and the deadline of the last one has not passed. */
-bool safety_is_driven(void);
+/* A host was the last to command it, and its deadline has not passed. */
+bool safety_is_hosts(void);
 
 uint8_t safety_mode(void);
 uint8_t safety_flags(void);

@@ -29,7 +29,7 @@ void start_press(void)
         break;
     case MODE_ARMED:
     case MODE_HOLDING:
-        if (!safety_is_driven())
+        if (!safety_is_hosts())
             safety_play(program, true);
         break;
     case MODE_DISARMED:

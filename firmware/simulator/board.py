@@ -29,10 +29,11 @@ class SimulatedBoard:
         self, settings: BoardSettings, battery_mv: int = 7600, table: Path | None = None
     ) -> None:
         kinematics = WITHOUT if settings.solve is None else _kinematics()
-        program = firmware_build.firmware(header(settings, BAUD, 'a test', kinematics), table)
-        self.chip = Chip(firmware_build.simulator() / 'chip.so', program, BAUD)
+        self.program = firmware_build.firmware(header(settings, BAUD, 'a test', kinematics), table)
+        self.chip = Chip(firmware_build.simulator() / 'chip.so', self.program, BAUD)
         self.settings = settings
         self.battery_mv = battery_mv
+        self.is_stop_open = self.is_start_closed = False
         self.reset(ResetCause.POWER_ON)
 
     @property
@@ -55,6 +56,26 @@ class SimulatedBoard:
             round(width / CYCLES_A_COUNT) if width and now - risen < OFF_AFTER else None
             for risen, width in pairs
         )
+
+    @property
+    def is_stop_open(self) -> bool:
+        """The stop button's contact."""
+        return self._is_stop_open
+
+    @is_stop_open.setter
+    def is_stop_open(self, is_open: bool) -> None:
+        self._is_stop_open = is_open
+        self.chip.set_button(STOP_BUTTON, is_open)
+
+    @property
+    def is_start_closed(self) -> bool:
+        """The start button's contact."""
+        return self._is_start_closed
+
+    @is_start_closed.setter
+    def is_start_closed(self, is_closed: bool) -> None:
+        self._is_start_closed = is_closed
+        self.chip.set_button(START_BUTTON, not is_closed)
 
     @property
     def backlog(self) -> int:
@@ -85,14 +106,6 @@ class SimulatedBoard:
     def take_output(self) -> bytes:
         """The bytes for the host since the last call."""
         return self.chip.take()
-
-    def press(self, button: int) -> None:
-        """Stop: the contact opens. Start: it closes."""
-        self.chip.set_button(button, button == STOP_BUTTON)
-
-    def let_go(self, button: int) -> None:
-        """The button goes back."""
-        self.chip.set_button(button, button == START_BUTTON)
 
     def _read_edges(self) -> None:
         for cycle, channel, level in self.chip.edges().tolist():

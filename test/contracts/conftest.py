@@ -6,11 +6,13 @@ import os
 import pytest
 
 from bridge.board import Board
+from bridge.board_courses import table_crc
 from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
 from bridge.frames import encode
 from bridge.framing import FrameReader
-from bridge.messages import Ack, Arm, Fault, Hello, ResetCause, State
+from bridge.messages import Ack, Arm, Fault, Hello, ResetCause, Result, State
+from bridge.program_messages import TableBegin, TableEnd, TableRow
 from bridge.servo_config import BoardConfig
 from firmware.simulator.board import SimulatedBoard
 from hexarm import firmware_build, machines
@@ -67,6 +69,20 @@ class BoardDriver:
         result = self.ask(Arm(park))
         self.run(1.0)
         return result
+
+    def upload(self, rows, step_ms=50):
+        """The result of a table's end."""
+        assert self.ask(TableBegin(len(rows), step_ms)) is Result.OK
+        for index, row in enumerate(rows):
+            assert self.ask(TableRow(index, row)) is Result.OK
+        return self.ask(TableEnd(table_crc(rows)))
+
+    def press_start(self):
+        """The start button, for a tenth of a second; what the board said meanwhile."""
+        self.board.is_start_closed = True
+        messages = self.run(0.1)
+        self.board.is_start_closed = False
+        return messages + self.run(0.1)
 
     def state(self):
         return [m for m in self.run(0.04) if isinstance(m, State)][-1]

@@ -54,7 +54,6 @@ def test_setpoints_are_refused_while_it_arms_and_before(driver):
 ARMED_BY = {
     'arming': lambda driver: None,
     'arming again': lambda driver: driver.ask(Arm(PARK)),
-    'clear': lambda driver: [driver.ask(Stop()), driver.run(3.0), driver.ask(Clear())],
 }
 """Ways to be armed without a setpoint; `arm` has waited a little already."""
 
@@ -82,6 +81,36 @@ def test_the_first_setpoint_brings_its_own_deadline(armed):
     armed.say(Setpoint(2000, PARK))
     armed.run(1.9)
     assert armed.state().mode is Mode.ARMED
+
+
+@pytest.mark.parametrize('on_link_loss', ['hold', 'release'])
+def test_a_machine_that_was_cleared_holds_until_a_host_drives_or_arms_it(
+    make_driver, on_link_loss
+):
+    driver = make_driver(on_link_loss=on_link_loss)
+    driver.arm()
+    driver.say(Setpoint(2000, MOVED))
+    driver.run(0.1)
+    driver.ask(Stop())
+    driver.run(3.0)
+    driver.ask(Clear())
+    driver.run(1.5)
+    assert (driver.state().mode, driver.state().flags) == (Mode.ARMED, Flag(0))
+    driver.run(0.5)
+    assert (driver.state().mode, driver.state().flags) == (Mode.HOLDING, Flag.DEADLINE_PASSED)
+    driver.run(3.0)
+    assert (driver.state().mode, driver.counts()) == (Mode.HOLDING, MOVED)
+
+
+@pytest.mark.parametrize('last', [Setpoint(100, PARK), Arm(PARK)])
+def test_a_host_that_was_heard_since_the_clear_may_be_lost_again(make_driver, last):
+    driver = make_driver(on_link_loss='release')
+    driver.arm()
+    driver.ask(Stop())
+    driver.ask(Clear())
+    driver.say(last)
+    driver.run(2.1)
+    assert (driver.state().mode, driver.state().flags) == (Mode.DISARMED, Flag.DEADLINE_PASSED)
 
 
 def test_stopped_it_holds_for_as_long_as_it_is_left_alone(make_driver):

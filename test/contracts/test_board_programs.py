@@ -38,13 +38,6 @@ WAVE = [
 TURN = CycleAxis(5, 0.0625, 500, 0.0)  # yaw, with a period of 2 s
 
 
-def upload(driver, rows, step_ms=50):
-    assert driver.ask(TableBegin(len(rows), step_ms)) is Result.OK
-    for index, row in enumerate(rows):
-        assert driver.ask(TableRow(index, row)) is Result.OK
-    return driver.ask(TableEnd(table_crc(rows)))
-
-
 def record(driver, seconds):
     """Modes and counts (n, joints), 50 times a second."""
     states = [m for m in driver.run(seconds) if isinstance(m, State)]
@@ -55,7 +48,7 @@ def record(driver, seconds):
 @pytest.fixture
 def loaded(armed):
     """Armed, with WAVE uploaded."""
-    assert upload(armed, WAVE) is Result.OK
+    assert armed.upload(WAVE) is Result.OK
     return armed
 
 
@@ -98,7 +91,7 @@ def test_after_a_program_a_board_that_nobody_drives_does_what_its_machine_says(
     driver = make_driver(on_link_loss=on_link_loss)
     driver.arm()
     driver.say(Setpoint(2000, PARK))
-    assert upload(driver, [PARK, MOVED, PARK], 100) is Result.OK
+    assert driver.upload([PARK, MOVED, PARK], 100) is Result.OK
     assert driver.ask(Play(Program.TABLE, False)) is Result.OK
     modes, counts = record(driver, 4.0)
     assert set(modes[:5]) <= {Mode.CHECKING, Mode.PLAYING}
@@ -150,23 +143,23 @@ def test_rows_are_checked_as_setpoints_are(armed):
 
 def test_a_table_that_servos_cannot_follow_is_refused_whole(armed):
     far = tuple(count + STEP + 1 for count in PARK)
-    upload(armed, [PARK, far], 20)
+    armed.upload([PARK, far], 20)
     assert armed.ask(Play(Program.TABLE, False)) is Result.TOO_FAST
     slow = tuple(count + STEP for count in PARK)
-    upload(armed, [PARK, slow], 20)
+    armed.upload([PARK, slow], 20)
     assert armed.ask(Play(Program.TABLE, False)) is Result.OK
 
 
 def test_the_way_back_to_the_first_row_counts_in_a_loop(armed):
     rows = [tuple(count + 200 * k for count in PARK) for k in range(3)]
-    upload(armed, rows, 20)
+    armed.upload(rows, 20)
     assert armed.ask(Play(Program.TABLE, True)) is Result.TOO_FAST
     assert armed.ask(Play(Program.TABLE, False)) is Result.OK
 
 
 def test_a_program_that_begins_elsewhere_is_refused(armed):
     rows = [tuple(count + 121 for count in row) for row in WAVE]
-    upload(armed, rows)
+    armed.upload(rows)
     assert armed.ask(Play(Program.TABLE, False)) is Result.NOT_AT_START
     _, counts = record(armed, 0.2)
     assert set(map(tuple, counts.tolist())) == {PARK}
@@ -293,7 +286,7 @@ def test_a_cycle_outlives_a_reset_and_a_table_does_not(make_driver):
     driver = make_driver()
     driver.arm(HOME)
     driver.ask(TURN)
-    upload(driver, WAVE[:3])
+    driver.upload(WAVE[:3])
     driver.run(2.0)
     driver.reset()
     driver.arm(HOME)

@@ -1,7 +1,6 @@
 """The stop button: a contact that opens, so that a broken wire stops too."""
 
 from bridge.messages import Arm, Clear, Mode, Result, Setpoint
-from firmware.simulator.board import STOP_BUTTON
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
 FAR = (4800, 1200, 4800, 1200, 4800, 1200)
@@ -10,14 +9,14 @@ FAR = (4800, 1200, 4800, 1200, 4800, 1200)
 def test_the_stop_button_holds_the_pulses_and_latches(armed):
     armed.say(Setpoint(1000, FAR))
     armed.run(0.05)
-    armed.board.press(STOP_BUTTON)
+    armed.board.is_stop_open = True
     armed.run(0.03)
     there = armed.state()
     assert there.mode is Mode.STOPPED
     armed.run(0.5)
     assert armed.state().joints == there.joints
     assert armed.ask(Clear()) is Result.STOPPED
-    armed.board.let_go(STOP_BUTTON)
+    armed.board.is_stop_open = False
     armed.run(0.1)
     assert armed.state().mode is Mode.STOPPED
     assert armed.ask(Arm(PARK)) is Result.STOPPED
@@ -26,7 +25,7 @@ def test_the_stop_button_holds_the_pulses_and_latches(armed):
 
 
 def test_with_the_stop_contact_open_nothing_arms(host):
-    host.board.press(STOP_BUTTON)
+    host.board.is_stop_open = True
     host.run(0.1)
     assert host.ask(Arm(PARK)) is Result.STOPPED
     host.run(1.0)
@@ -34,8 +33,8 @@ def test_with_the_stop_contact_open_nothing_arms(host):
 
 
 def test_a_spark_on_the_stop_wire_stops_nothing(armed):
-    armed.board.press(STOP_BUTTON)
+    armed.board.is_stop_open = True
     armed.run(0.001)
-    armed.board.let_go(STOP_BUTTON)
+    armed.board.is_stop_open = False
     armed.run(0.1)
     assert armed.state().mode is Mode.ARMED

@@ -11,7 +11,6 @@ from bridge.calibration import Calibration
 from bridge.messages import Arm, Mode, Result, Setpoint, State
 from bridge.program_messages import CycleAxis, TableBegin, TableEnd, TableRow
 from bridge.servo_config import BoardConfig
-from firmware.simulator.board import START_BUTTON, STOP_BUTTON
 from firmware.simulator.host import SETTINGS, Host
 from hexarm import machines
 from hexarm.board_solver import board_solver
@@ -24,10 +23,11 @@ CONFIG = BoardConfig.from_machine(machines.read('robocake'))
 CALIBRATION = Calibration.from_config(CONFIG.servos)
 
 
-def press(host, button, seconds=0.1):
-    host.board.press(button)
-    host.run(seconds)
-    host.board.let_go(button)
+def press(host):
+    """The start button."""
+    host.board.is_start_closed = True
+    host.run(0.1)
+    host.board.is_start_closed = False
     host.run(0.1)
 
 
@@ -53,7 +53,7 @@ def test_it_arms_where_the_uploaded_table_begins_plays_it_and_ends_it(host):
     for index, row in enumerate(rows):
         host.ask(TableRow(index, row))
     assert host.ask(TableEnd(table_crc(rows))) is Result.OK
-    press(host, START_BUTTON)
+    press(host)
     assert host.board.pulses[0] == rows[0][0]
     seen = modes(host, 10.0)
     assert seen[-1] is Mode.PLAYING
@@ -61,7 +61,7 @@ def test_it_arms_where_the_uploaded_table_begins_plays_it_and_ends_it(host):
     counts = np.rint(widths[-200:] / 8)
     assert counts[:, 0].max() == pytest.approx(3150, abs=3)
     assert counts[:, 0].min() == pytest.approx(2950, abs=3)
-    press(host, START_BUTTON)
+    press(host)
     assert modes(host, 2.0)[-1] is Mode.ARMED
 
 
@@ -69,17 +69,20 @@ def test_a_table_in_flash_is_played_after_power_up(csv_file):
     host = Host(table=csv_file)
     host.run(0.5)
     assert len(host.chip.edges()) == 0
-    press(host, START_BUTTON)
+    press(host)
     assert modes(host, 6.0)[-1] is Mode.PLAYING
     counts = np.array(host.pulse_counts()[-150:])
     low, high = (CALIBRATION.counts(np.radians([120 + s] * 6)) for s in (-5, 5))
     assert counts[:, 0].min() == pytest.approx(min(low[0], high[0]), abs=3)
     assert counts[:, 0].max() == pytest.approx(max(low[0], high[0]), abs=3)
     assert np.abs(np.diff(counts, axis=0)).max() <= 12
-    press(host, STOP_BUTTON)
+    host.board.is_stop_open = True
+    host.run(0.1)
+    host.board.is_stop_open = False
+    host.run(0.1)
     assert host.state().mode is Mode.STOPPED
     there = host.board.pulses
-    press(host, START_BUTTON)
+    press(host)
     assert (host.state().mode, host.board.pulses) == (Mode.ARMED, there)
 
 
@@ -88,23 +91,23 @@ def test_a_cycle_that_was_set_is_played(tools):
     host = Host(dataclasses.replace(SETTINGS, solve=solve))
     host.run(0.1)
     host.ask(CycleAxis(2, 0.002, 1000, 0.0))
-    press(host, START_BUTTON)
+    press(host)
     seen = modes(host, 6.0)
     assert Mode.CHECKING in seen
     assert seen[-1] is Mode.PLAYING
 
 
 def test_without_a_program_it_does_nothing(host):
-    press(host, START_BUTTON)
+    press(host)
     assert host.state().mode is Mode.DISARMED
     assert len(host.chip.edges()) == 0
 
 
 def test_with_the_stop_contact_open_it_does_nothing(csv_file):
     host = Host(table=csv_file)
-    host.board.press(STOP_BUTTON)
+    host.board.is_stop_open = True
     host.run(0.1)
-    press(host, START_BUTTON)
+    press(host)
     host.run(1.0)
     assert host.state().mode is Mode.STOPPED
     assert len(host.chip.edges()) == 0
@@ -113,7 +116,7 @@ def test_with_the_stop_contact_open_it_does_nothing(csv_file):
 def test_a_host_that_arms_takes_over(csv_file):
     host = Host(table=csv_file)
     host.run(0.1)
-    press(host, START_BUTTON)
+    press(host)
     host.run(3.0)
     assert host.ask(Arm((3000,) * 6)) is Result.OK
     assert host.state().mode is Mode.ARMED
@@ -129,13 +132,13 @@ def test_a_machine_that_a_host_drives_is_the_hosts(csv_file):
     for _ in range(10):
         host.say(Setpoint(200, start))
         host.run(0.05)
-        host.board.press(START_BUTTON)
+        host.board.is_start_closed = True
         host.run(0.05)
-        host.board.let_go(START_BUTTON)
+        host.board.is_start_closed = False
     assert host.state().mode is Mode.ARMED
     host.run(0.3)
     assert host.state().mode is Mode.HOLDING
-    press(host, START_BUTTON)
+    press(host)
     assert modes(host, 0.5)[-1] is Mode.PLAYING
 
 

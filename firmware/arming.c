@@ -1,0 +1,28 @@
+#include "arming.h"
+
+#include "clock.h"
+#include "motion.h"
+
+static uint16_t park_counts[JOINT_COUNT];
+static uint32_t next_ms; /* when the next one's turn is */
+
+void arming_begin(const uint16_t park[JOINT_COUNT])
+{
+    for (uint8_t i = 0; i < JOINT_COUNT; i++)
+        park_counts[i] = park[i];
+    next_ms = clock_period_ms();
+}
+
+bool arming_step(void)
+{
+    if ((int32_t)(clock_period_ms() - next_ms) < 0)
+        return false;
+    if (motion_is_all_on())
+        return true;
+    uint8_t channel = 0;
+    while (motion_on() >> channel & 1)
+        channel++;
+    motion_energise(channel, park_counts[channel]);
+    next_ms = clock_period_ms() + ARM_INTERVAL_MS;
+    return false;
+}

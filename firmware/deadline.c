@@ -1,0 +1,23 @@
+#include "deadline.h"
+
+#include "clock.h"
+
+static bool is_set;
+static uint32_t until_us;
+
+void deadline_set(uint16_t ms)
+{
+    until_us = clock_us() + 1000UL * ms;
+    is_set = true;
+}
+
+void deadline_forget(void)
+{
+    is_set = false;
+}
+
+bool deadline_has_passed(void)
+{
+    /* The clock may wrap in between: seconds apart, the difference still has its sign. */
+    return is_set && (int32_t)(clock_us() - until_us) >= 0;
+}
