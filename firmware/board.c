@@ -18,7 +18,8 @@
 static uint8_t cause;
 static uint8_t periods;
 static bool has_heard;
-static uint32_t heard_ms = -HOST_SILENCE_MS; /* silent so far */
+static bool is_host_silent = true;
+static uint32_t heard_ms;
 static uint32_t hello_ms;
 
 static bool has_accepted;
@@ -169,6 +170,20 @@ static void say_state(void)
     link_send(TYPE_STATE, payload, sizeof payload);
 }
 
+/* Both times are kept near the present one: a difference of weeks would have lost its sign. */
+static bool is_hello_due(uint32_t now_ms)
+{
+    is_host_silent = is_host_silent || now_ms - heard_ms >= HOST_SILENCE_MS;
+    if (!is_host_silent) {
+        hello_ms = now_ms;
+        return false;
+    }
+    bool is_due = (int32_t)(now_ms - hello_ms) >= 0;
+    if (is_due)
+        hello_ms = now_ms + HELLO_PERIOD_MS;
+    return is_due;
+}
+
 static void pass_period(void)
 {
     motion_advance();
@@ -176,12 +191,8 @@ static void pass_period(void)
     if (begun.code != FAULT_NONE)
         fault_to_say = begun;
     cycle_keep();
-    uint32_t now_ms = clock_period_ms();
-    bool is_host_silent = now_ms - heard_ms >= HOST_SILENCE_MS;
-    if (is_host_silent && (int32_t)(now_ms - hello_ms) >= 0) {
+    if (is_hello_due(clock_period_ms()))
         say_hello();
-        hello_ms = now_ms + HELLO_PERIOD_MS;
-    }
     if (fault_to_say.code != FAULT_NONE)
         say_fault();
     say_state();
@@ -194,7 +205,7 @@ void board_step(void)
         take(&frame);
     if (has_heard) {
         heard_ms = clock_period_ms();
-        has_heard = false;
+        has_heard = is_host_silent = false;
     }
     safety_watch();
     if (periods != clock_periods()) {

@@ -56,12 +56,11 @@ uint32_t clock_us(void)
     /* Read before the latch, flagged after it: then `count` still belongs to the old period. */
     if (is_late && count >= LATCH)
         begun++;
-    if (!begun)
-        return 0;
     uint16_t since = count >= LATCH ? count - LATCH : count + (PERIOD_COUNTS - LATCH);
     return (begun - 1) * PERIOD_US + since / 2;
 }
 
+/* -1 before the first latch: what follows counts modulo 2^32, as after every later wrap. */
 static uint32_t periods_before(void)
 {
     uint32_t begun;
@@ -69,7 +68,7 @@ static uint32_t periods_before(void)
     {
         begun = periods;
     }
-    return begun ? begun - 1 : 0;
+    return begun - 1;
 }
 
 uint32_t clock_period_us(void)
