@@ -12,6 +12,7 @@
 #else
 #define FLASH_TABLE_ROWS 0
 #define FLASH_TABLE_STEP_MS 0
+#define FLASH_TABLE_LOOPS 0
 #endif
 
 /* What 8 kB leave beside the rings, the stack and the rest. */
@@ -25,15 +26,43 @@ static uint16_t uploaded_rows;
 static uint16_t rows_wanted;
 static uint16_t uploaded_step_ms;
 static bool is_whole;
+/* Kept up to date row by row: over a whole table neither could be computed in one go without
+ * keeping the loop from the stop button and the deadlines. */
+static uint16_t crc_so_far;
+static bool is_slow_so_far;
 
 #if FLASH_TABLE_ROWS
 static const uint16_t FLASHED[FLASH_TABLE_ROWS][JOINT_COUNT] PROGMEM = FLASH_TABLE;
 #endif
 
+/* No servo is faster than it can be on the way between two rows that were uploaded. */
+static bool is_way_slow_enough(const uint16_t *from, const uint16_t *to)
+{
+    float periods = uploaded_step_ms * PERIODS_A_MS;
+    for (uint8_t i = 0; i < JOINT_COUNT; i++)
+        if (fabsf((float)to[i] - (float)from[i]) > STEP[i] * periods)
+            return false;
+    return true;
+}
+
+static void take_up(const uint16_t *counts)
+{
+    if (uploaded_rows && !is_way_slow_enough(uploaded[uploaded_rows - 1], counts))
+        is_slow_so_far = false;
+    for (uint8_t i = 0; i < JOINT_COUNT; i++) {
+        uploaded[uploaded_rows][i] = counts[i];
+        crc_so_far = wire_crc(crc_so_far, (uint8_t)counts[i]);
+        crc_so_far = wire_crc(crc_so_far, (uint8_t)(counts[i] >> 8));
+    }
+    uploaded_rows++;
+}
+
 uint8_t table_begin(uint16_t rows, uint16_t step_ms)
 {
     is_whole = false;
     uploaded_rows = rows_wanted = 0;
+    crc_so_far = 0xFFFF;
+    is_slow_so_far = true;
     if (rows > ROWS)
         return RESULT_TOO_LARGE;
     if (rows < 2 || step_ms < MIN_STEP_MS)
@@ -51,21 +80,13 @@ uint8_t table_row(uint16_t index, const uint16_t *counts, uint8_t joints)
         return RESULT_WRONG_JOINTS;
     if (servo_out_of_range(counts) != NO_JOINT)
         return RESULT_OUT_OF_RANGE;
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
-        uploaded[index][i] = counts[i];
-    uploaded_rows++;
+    take_up(counts);
     return RESULT_OK;
 }
 
 uint8_t table_end(uint16_t crc)
 {
-    uint16_t ours = 0xFFFF;
-    for (uint16_t row = 0; row < uploaded_rows; row++)
-        for (uint8_t i = 0; i < JOINT_COUNT; i++) {
-            ours = wire_crc(ours, (uint8_t)uploaded[row][i]);
-            ours = wire_crc(ours, (uint8_t)(uploaded[row][i] >> 8));
-        }
-    is_whole = rows_wanted != 0 && uploaded_rows == rows_wanted && crc == ours;
+    is_whole = rows_wanted != 0 && uploaded_rows == rows_wanted && crc == crc_so_far;
     return is_whole ? RESULT_OK : RESULT_BAD_TABLE;
 }
 
@@ -96,16 +117,11 @@ static uint16_t count_at(uint8_t program, uint16_t row, uint8_t joint)
 
 bool table_is_slow_enough(uint8_t program, bool is_loop)
 {
-    uint16_t rows = rows_of(program);
-    float periods = step_ms_of(program) * PERIODS_A_MS;
-    for (uint16_t row = 1; row < rows + is_loop; row++)
-        for (uint8_t i = 0; i < JOINT_COUNT; i++) {
-            float from = count_at(program, row - 1, i);
-            float to = count_at(program, row == rows ? 0 : row, i);
-            if (fabsf(to - from) > STEP[i] * periods)
-                return false;
-        }
-    return true;
+    if (program == PROGRAM_FLASH_TABLE) /* its rows were checked when its header was made */
+        return !is_loop || FLASH_TABLE_LOOPS;
+    if (is_loop && !is_way_slow_enough(uploaded[uploaded_rows - 1], uploaded[0]))
+        return false;
+    return is_slow_so_far;
 }
 
 float table_duration(uint8_t program, bool is_loop)

@@ -33,7 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         calibration = Calibration.from_config(_board_config(arguments.machine).servos)
         table = read_table(arguments.table, calibration)
-        print(flash_header(table, arguments.table.name), end='')
+        print(flash_header(table, arguments.table.name, calibration), end='')
     return 0
 
 

@@ -5,6 +5,7 @@ numbers in radians (or metres).
 """
 
 import csv
+import itertools
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -15,7 +16,8 @@ from bridge.count_table import CountTable, count_table
 from manipulator.errors import ConfigError, InvalidInput
 
 TIME = 'time'
-MOST_BYTES = 128 * 1024
+MOST_BYTES = 32_767
+"""As large as avr-gcc lets one object be."""
 
 
 def read_table(path: Path, calibration: Calibration) -> CountTable:
@@ -38,18 +40,42 @@ def read_table(path: Path, calibration: Calibration) -> CountTable:
         raise ConfigError([str(error)], str(path)) from error
 
 
-def flash_header(table: CountTable, name: str) -> str:
-    """flash_table.h; ConfigError for a table that the chip cannot hold."""
+def flash_header(table: CountTable, name: str, calibration: Calibration) -> str:
+    """flash_table.h; ConfigError for a table that the chip cannot hold, or a servo not follow.
+
+    The board does not look at all rows again before it plays them: that would take it seconds.
+    """
     size = 2 * len(table.rows) * len(table.rows[0])
     if size > MOST_BYTES:
-        raise ConfigError([f'takes {size} bytes of flash, at most {MOST_BYTES}'], name)
+        most = MOST_BYTES // (2 * len(table.rows[0]))
+        problem = f'{len(table.rows)} rows take {size} bytes of flash, at most {most} rows fit'
+        raise ConfigError([problem], name)
+    for k, (before, after) in enumerate(itertools.pairwise(table.rows)):
+        problem = _too_fast(before, after, table.step_ms, calibration)
+        if problem:
+            raise ConfigError([f'row {k} to {k + 1}: {problem}'], name)
+    loops = not _too_fast(table.rows[-1], table.rows[0], table.step_ms, calibration)
     rows = '\n'.join(f'    {_braces(row)}, \\' for row in table.rows)
     return (
         f'/* Made by `hexarm firmware-header --table` from {name}. */\n#pragma once\n\n'
         f'#define FLASH_TABLE_ROWS {len(table.rows)}\n'
         f'#define FLASH_TABLE_STEP_MS {table.step_ms}\n'
+        f'#define FLASH_TABLE_LOOPS {int(loops)}\n'
         f'#define FLASH_TABLE {{ \\\n{rows}\n}}\n'
     )
+
+
+def _too_fast(
+    before: Sequence[int], after: Sequence[int], step_ms: int, calibration: Calibration
+) -> str:
+    """Which joint cannot move that far within the step, '' where all can."""
+    speeds = calibration.count_speeds
+    for channel, (a, b, speed) in enumerate(zip(before, after, speeds, strict=True)):
+        if abs(b - a) > speed * 1e-3 * step_ms:
+            joint = calibration.names[calibration.channels.index(channel)]
+            needed = abs(b - a) / (speed * 1e-3 * step_ms)
+            return f'{joint} would have to be {needed:.3g} times as fast as its servo'
+    return ''
 
 
 def _braces(row: Sequence[int]) -> str:

@@ -8,6 +8,7 @@ import pytest
 
 from bridge.board_courses import table_crc
 from bridge.calibration import Calibration
+from bridge.count_table import CountTable
 from bridge.messages import Arm, Mode, Result, Setpoint, State
 from bridge.program_messages import CycleAxis, TableBegin, TableEnd, TableRow
 from bridge.servo_config import BoardConfig
@@ -16,6 +17,7 @@ from hexarm import machines
 from hexarm.board_solver import board_solver
 from hexarm.firmware_table import flash_header, read_table
 from hexarm.main import main
+from manipulator.errors import ConfigError
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
 WAVE = [tuple(round(c + 100 * math.sin(math.pi * k / 10)) for c in PARK) for k in range(20)]
@@ -146,10 +148,11 @@ def test_the_header_of_a_table_holds_the_counts_of_its_positions(csv_file, capsy
     assert main(['firmware-header', 'robocake', '--table', str(csv_file)]) == 0
     printed = capsys.readouterr().out
     table = read_table(csv_file, CALIBRATION)
-    assert printed == flash_header(table, 'swing.csv')
+    assert printed == flash_header(table, 'swing.csv', CALIBRATION)
     assert (len(table.rows), table.step_ms) == (20, 100)
     assert table.rows[5] == CALIBRATION.counts(np.radians([125.0] * 6))
     assert '#define FLASH_TABLE_ROWS 20' in printed
+    assert '#define FLASH_TABLE_LOOPS 1' in printed
 
 
 @pytest.mark.parametrize(
@@ -160,9 +163,22 @@ def test_the_header_of_a_table_holds_the_counts_of_its_positions(csv_file, capsy
         (('crank_2', 'elbow'), 'needs time, crank_1'),
         (('2.094395', 'nan'), 'not finite'),
         (('2.094395', 'two'), 'cannot be read'),
+        (('0.100,2.1', '0.100,0.9'), 'row 0 to 1: crank_1 would have to be'),
     ],
 )
 def test_a_table_that_is_none_is_refused_by_name(csv_file, capsys, change, words):
     csv_file.write_text(csv_file.read_text().replace(*change, 1))
     assert main(['firmware-header', 'robocake', '--table', str(csv_file)]) == 1
     assert words in capsys.readouterr().err
+
+
+def test_a_table_that_cannot_be_played_in_a_loop_says_so():
+    rows = [(3000 + 500 * k,) * 6 for k in range(4)]
+    once = flash_header(CountTable(tuple(rows), 50), 'ramp.csv', CALIBRATION)
+    assert '#define FLASH_TABLE_LOOPS 0' in once
+
+
+def test_a_table_that_flash_cannot_hold_is_refused():
+    table = CountTable(((3000,) * 6,) * 2731, 50)
+    with pytest.raises(ConfigError, match='2731 rows take 32772 bytes of flash, at most 2730'):
+        flash_header(table, 'long.csv', CALIBRATION)
