@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from bridge.servo_config import ServoConfig, ServosConfig
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput
+from manipulator.words import counted
 
 COUNTS_PER_US = 2.0
 
@@ -74,7 +75,7 @@ class Calibration:
         """
         wanted = np.asarray(positions, dtype=np.float64)
         if wanted.shape != (len(self.names),):
-            raise InvalidInput(f'{wanted.size} positions, needs {len(self.names)}')
+            raise InvalidInput(f'{counted(wanted.size, "position")}, needs {len(self.names)}')
         exact = self._exact_counts(wanted)
         for i, count in enumerate(exact):
             if not self.lowest[i] - 0.5 <= count <= self.highest[i] + 0.5:

@@ -9,6 +9,7 @@ from bridge.messages import Setpoint
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
 from manipulator.stamps import NOTABLE_OFFSET, StampGate
+from manipulator.words import counted
 
 PULSE_PERIOD = 0.02
 LONGEST_GAP = 0.05
@@ -75,7 +76,8 @@ class CommandGate:
     def _ordered(self, names: Sequence[str], positions: Sequence[float]) -> Array:
         """Positions in the calibration's order, whatever order they came in."""
         if len(names) != len(positions):
-            raise InvalidInput(f'{len(names)} joint names, but {len(positions)} positions')
+            there = counted(len(positions), 'position')
+            raise InvalidInput(f'{counted(len(names), "joint name")}, but {there}')
         if tuple(names) != self._names:
             self._order = self._order_of(names)
             self._names = tuple(names)

@@ -10,6 +10,7 @@ from bridge.messages import Command
 from bridge.program_messages import TableBegin, TableEnd, TableRow
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
+from manipulator.words import counted
 
 EQUAL = 1e-3
 """Seconds by which time steps may differ."""
@@ -37,7 +38,7 @@ def count_table(times: Array, positions: Array, calibration: Calibration) -> Cou
     InvalidInput where the time steps differ, or a row is beyond what a servo can reach.
     """
     if len(times) < 2:
-        raise InvalidInput(f'{len(times)} rows, a table has at least 2')
+        raise InvalidInput(f'{counted(len(times), "row")}, a table has at least 2')
     steps = np.diff(times)
     if not (np.abs(steps - steps.mean()) <= EQUAL).all():
         raise InvalidInput(f'time steps from {steps.min():.4g} to {steps.max():.4g} s differ')

@@ -1,6 +1,7 @@
 """What a HELLO tells: whether the board fits, and whether it has started again."""
 
 from bridge.messages import PROTOCOL_VERSION, Hello
+from manipulator.words import counted
 
 UPTIME_SLACK_MS = 250
 SHORTEST_ADVANCE_MS = 125
@@ -11,7 +12,7 @@ def misfit(hello: Hello, joint_count: int) -> str:
     if hello.version != PROTOCOL_VERSION:
         return f'the board speaks protocol {hello.version}, this host {PROTOCOL_VERSION}'
     if hello.joint_count != joint_count:
-        return f'the board has {hello.joint_count} joints, the machine {joint_count}'
+        return f'the board has {counted(hello.joint_count, "joint")}, the machine {joint_count}'
     return ''
 
 

@@ -20,6 +20,7 @@ from bridge.machine_status import MachineStatus, machine_status
 from bridge.messages import NO_JOINT, Arm, Fault, Known, Mode, State
 from bridge.session import Session
 from manipulator.arrays import Array
+from manipulator.words import counted
 
 STATE_PERIOD = 0.02
 
@@ -63,7 +64,9 @@ class LinkMonitor:
         if hello is None:
             return 'none'
         cause = hello.reset_cause.name or int(hello.reset_cause)
-        return f'protocol {hello.version}, {hello.joint_count} joints, last reset: {cause}'
+        return (
+            f'protocol {hello.version}, {counted(hello.joint_count, "joint")}, last reset: {cause}'
+        )
 
     @property
     def unknown_joints(self) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from bridge.messages import MAX_JOINTS
 from manipulator.config import build, quantity
 from manipulator.errors import ConfigError
 from manipulator.machine import MachineFile
+from manipulator.words import counted
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class ServosConfig:
     def __post_init__(self) -> None:
         problems = []
         if not 1 <= len(self.joints) <= MAX_JOINTS:
-            problems.append(f'joints: {len(self.joints)} joints, 1 to {MAX_JOINTS} fit')
+            problems.append(f'joints: {counted(len(self.joints), "joint")}, 1 to {MAX_JOINTS} fit')
         names = [joint.name for joint in self.joints]
         if len(set(names)) < len(names):
             problems.append(f'joints: names stand twice in {names}')
@@ -89,7 +90,8 @@ class ServosConfig:
         if park is None:
             problems.append(f'park_{unit}: missing')
         elif len(park) != len(self.joints):
-            problems.append(f'park_{unit}: {len(park)} values for {len(self.joints)} joints')
+            joints = counted(len(self.joints), 'joint')
+            problems.append(f'park_{unit}: {counted(len(park), "value")} for {joints}')
         return problems
 
 

@@ -9,6 +9,7 @@ from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput, NoSolution
 from manipulator.kinematics import ForwardSolution
 from manipulator.pose import Pose
+from manipulator.words import length
 
 LARGEST_TURN = 0.6
 TOLERANCE = 1e-11
@@ -85,7 +86,7 @@ class ForwardByLengths:
             raise NoSolution('forward kinematics met a singular pose') from failure
         raise NoSolution(
             f'forward kinematics found no pose in {MOST_ITERATIONS} iterations: '
-            f'the rods miss by {1e3 * math.sqrt(square):.3g} mm'
+            f'the rods miss by {length(math.sqrt(square), 3)}'
         )
 
     def _trusted_sigma(self, transposed: Array, side: float | None, margin: float) -> float:

@@ -14,6 +14,7 @@ from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput, Unreachable
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke, outline
+from manipulator.words import length
 
 BRANCHES_MEET = 0.1
 """Radians: so much nearer elbow in must be for a leg to be taken for bent that way."""
@@ -139,9 +140,9 @@ class RotaryHexapod(ParallelPlatform):
         short = lack[leg, column] > surplus[leg, column]
         miss = lack[leg, column] if short else surplus[leg, column]
         raise Unreachable(
-            f'leg {leg + 1}: rod too {"short" if short else "long"} by {1e3 * miss:.3g} mm '
-            f'({1e3 * lengths[leg, 0]:.5g} mm, needs {1e3 * shortest[leg, column]:.5g} to '
-            f'{1e3 * longest[leg, column]:.5g} mm)',
+            f'leg {leg + 1}: rod too {"short" if short else "long"} by {length(miss, 3)} '
+            f'({length(lengths[leg, 0], 5)}, needs {length(shortest[leg, column], 5)} to '
+            f'{length(longest[leg, column], 5)})',
             int(leg) + 1,
         )
 

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from manipulator.errors import ManipulatorError
+from manipulator.pose import Pose
+from manipulator.unit_hints import check_turns
 
 REFUSED = 2
 PICTURES = ('.png', '.svg', '.pdf', '.jpg')
@@ -36,6 +38,12 @@ def add_pose(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def pose_asked(arguments: argparse.Namespace) -> Pose:
+    """The pose of --xyz and --rpy; InvalidInput for angles that are degrees."""
+    check_turns(arguments.rpy)
+    return Pose.from_xyz_rpy(arguments.xyz, arguments.rpy)
+
+
 def picture_file(word: str) -> Path:
     """A path that matplotlib can save to: a picture's ending, or none for a folder."""
     path = Path(word)
@@ -45,8 +53,11 @@ def picture_file(word: str) -> Path:
     return path
 
 
-def answering(answer: Callable[[argparse.Namespace], Answer]) -> Callable[..., int]:
-    """A subcommand's `run`: prints the answer, or why there is none."""
+def answering(
+    answer: Callable[[argparse.Namespace], Answer],
+    status: Callable[[Mapping[str, Any]], int] = lambda for_programs: 0,
+) -> Callable[..., int]:
+    """A subcommand's `run`: prints the answer, or why there is none; `status` of an answer."""
 
     def run(arguments: argparse.Namespace) -> int:
         try:
@@ -59,7 +70,7 @@ def answering(answer: Callable[[argparse.Namespace], Answer]) -> Callable[..., i
             print(json.dumps(for_programs, ensure_ascii=False))
         else:
             print('\n'.join(for_people))
-        return 0
+        return status(for_programs)
 
     return run
 

@@ -7,6 +7,7 @@ from hexarm.answers import REFUSED
 from hexarm.machine_check import problems_of
 from hexarm.machines import find, text_of
 from manipulator.errors import ConfigError
+from manipulator.words import counted
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -26,6 +27,6 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({'problems': problems}, ensure_ascii=False))
     else:
-        count = '1 problem' if len(problems) == 1 else f'{len(problems) or "no"} problems'
+        count = counted(len(problems), 'problem') if problems else 'no problems'
         print('\n'.join([f'{arguments.file}: {count}', *problems]))
     return REFUSED if problems else 0

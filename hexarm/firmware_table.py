@@ -14,6 +14,7 @@ import numpy as np
 from bridge.calibration import Calibration
 from bridge.count_table import CountTable, count_table
 from manipulator.errors import ConfigError, InvalidInput
+from manipulator.words import reason
 
 TIME = 'time'
 MOST_BYTES = 32_767
@@ -27,7 +28,7 @@ def read_table(path: Path, calibration: Calibration) -> CountTable:
             head, *lines = list(csv.reader(file))
         numbers = np.array([[float(cell) for cell in line] for line in lines])
     except (OSError, ValueError) as error:
-        raise ConfigError([f'cannot be read as a table: {error}'], str(path)) from error
+        raise ConfigError([f'cannot be read as a table: {reason(error)}'], str(path)) from error
     names = [name.strip() for name in head]
     if sorted(names) != sorted([TIME, *calibration.names]) or numbers.shape[1:] != (len(names),):
         wanted = ', '.join([TIME, *calibration.names])

@@ -12,6 +12,8 @@ from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, NoSolution
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.unit_hints import check_turns
+from manipulator.words import counted
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -33,20 +35,12 @@ def answer(arguments: argparse.Namespace) -> Answer:
     names = machine.kinematics.joint_names
     joints = np.array(arguments.joints)
     if len(joints) != len(names):
-        raise InvalidInput(f'{len(joints)} joint positions, {arguments.machine} has {len(names)}')
-    check_unit(machine, joints)
-    return every_mode(machine, joints) if arguments.all else from_home(machine, joints)
-
-
-def check_unit(machine: Machine, joints: Array) -> None:
-    """Refuses angles of more than a turn, which no machine has: they are meant in degrees."""
-    beyond = np.flatnonzero(np.abs(joints) > 2 * np.pi + 1e-3)
-    if machine.kinematics.joint_unit == 'rad' and beyond.size:
-        name, value = machine.kinematics.joint_names[beyond[0]], joints[beyond[0]]
         raise InvalidInput(
-            f'{name}: {value:g} rad is more than a turn; angles are in radians, and {value:g}° '
-            f'are {np.radians(value):.4g}'
+            f'{counted(len(joints), "joint position")}, {arguments.machine} has {len(names)}'
         )
+    if machine.kinematics.joint_unit == 'rad':
+        check_turns(arguments.joints, names)
+    return every_mode(machine, joints) if arguments.all else from_home(machine, joints)
 
 
 def from_home(machine: Machine, joints: Array) -> Answer:
@@ -67,7 +61,8 @@ def from_home(machine: Machine, joints: Array) -> Answer:
     lines = [
         f'x, y, z            {xyz} mm',
         f'roll, pitch, yaw   {rpy} °',
-        f'found in {solution.iterations} iterations, residual {solution.residual:.2g} m, '
+        f'found in {counted(solution.iterations, "iteration")}, '
+        f'residual {solution.residual:.2g} m, '
         f'singularity margin {solution.sigma_min:.3f}',
         said,
         *(f'beyond a limit: {v}' for v in violations),
@@ -105,7 +100,9 @@ def every_mode(machine: Machine, joints: Array) -> Answer:
     ]
     header = f'{"x, y, z (mm)":<33} {"roll, pitch, yaw (°)":<33} margin'
     lines = [header, *(table_row(mode) for mode in found.modes)]
-    lines.append(f'{len(modes)} modes, {len(found.that_fit)} reachable within all limits')
+    lines.append(
+        f'{counted(len(modes), "mode")}, {len(found.that_fit)} reachable within all limits'
+    )
     if not found.is_complete:
         lines.append('there may be more: close to a singularity not all can be told apart')
     return {'modes': modes, 'is_complete': found.is_complete}, lines

@@ -6,11 +6,12 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from hexarm.answers import Answer, add_machine, add_pose, answering
+from hexarm.answers import Answer, add_machine, add_pose, answering, pose_asked
 from hexarm.machines import load
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.unit_hints import hint_at_metres
 
 
 @runtime_checkable
@@ -34,12 +35,13 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 def answer(arguments: argparse.Namespace) -> Answer:
     """Joint positions in radians or metres; a pose beyond any limit is refused."""
     machine = load(arguments.machine)
-    pose = Pose.from_xyz_rpy(arguments.xyz, arguments.rpy)
+    pose = pose_asked(arguments)
     kinematics = machine.kinematics
-    joints = kinematics.inverse(pose)
-    if arguments.all:
-        return every_branch(machine, pose)
-    machine.constraints.check(pose, joints)
+    with hint_at_metres(kinematics, pose):
+        joints = kinematics.inverse(pose)
+        if arguments.all:
+            return every_branch(machine, pose)
+        machine.constraints.check(pose, joints)
     names, positions = list(kinematics.joint_names), joints.tolist()
     lines = [
         f'{name:<12} {in_words(position, kinematics.joint_unit)}'

@@ -16,6 +16,7 @@ from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.unit_hints import hint_at_metres
 
 MOST_STEPS = 10_000
 SHOWN = 10
@@ -75,7 +76,8 @@ def simulated(machine: Machine, legs: float | None, to: list[float], steps: int)
     target = Pose.from_xyz_rpy(to)
     first, last = kinematics.inverse(start), kinematics.inverse(target)
     for pose, lengths in ((start, first), (target, last)):
-        machine.constraints.check(pose, lengths)
+        with hint_at_metres(kinematics, pose):
+            machine.constraints.check(pose, lengths)
 
     def solve(lengths: Array, near: Pose) -> Pose:
         return kinematics.forward(lengths, near).pose

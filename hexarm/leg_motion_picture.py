@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from hexapod_control.leg_motion import LegMotion
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
+from manipulator.words import reason
 
 COLOURS = ('#0b6e99', '#d1603d', '#6a994e')
 
@@ -34,7 +35,7 @@ def draw(motion: LegMotion, machine: str, picture: Path) -> None:
     try:
         figure.savefig(picture)
     except (OSError, ValueError) as error:
-        raise InvalidInput(f'cannot save {picture}: {error}') from error
+        raise InvalidInput(f'cannot save {picture}: {reason(error)}') from error
     finally:
         plt.close(figure)
 

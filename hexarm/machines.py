@@ -12,6 +12,7 @@ from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
 from manipulator.sag import Sag
+from manipulator.words import reason
 
 
 def _hexapod(machine_file: MachineFile) -> Machine:
@@ -53,7 +54,8 @@ def find(name_or_path: str) -> Path:
     if path.suffix in ('.yaml', '.yml') or '/' in name_or_path:
         if path.is_file():
             return path
-        raise ConfigError([f'machine file {name_or_path} does not exist'])
+        fault = 'is no file' if path.exists() else 'does not exist'
+        raise ConfigError([f'machine file {name_or_path} {fault}'])
     known = shipped()
     if name_or_path not in known and path.is_file():
         return path
@@ -78,7 +80,7 @@ def text_of(path: Path) -> str:
             raise ConfigError([f'{size} bytes, a file may have {MAX_CHARACTERS} characters'])
         return path.read_text(encoding='utf-8')
     except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError([f'cannot be read: {error}'], str(path)) from error
+        raise ConfigError([f'cannot be read: {reason(error)}'], str(path)) from error
 
 
 def loader(kind: str) -> Callable[[MachineFile], Machine]:

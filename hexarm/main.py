@@ -64,7 +64,8 @@ examples:
   hexarm calibrate servos robocake --output mine.yaml  signs and centres, on a fake board
 
 MACHINE is a shipped name (hexarm machines) or the path of a YAML file. Exit status: 0 good,
-1 failed, 2 refused or not understood. `hexarm COMMAND --help` tells more of a command.
+1 failed, 2 refused or not understood, 3 out of reach (hexarm reach). `hexarm COMMAND --help`
+tells more of a command.
 """
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from hexarm import machines
 from hexarm.answers import Answer, add_machine, answering
 from manipulator.errors import InvalidInput
+from manipulator.words import reason
 from physics.mechanism import Mechanism
 from physics.model import mechanism
 
@@ -30,7 +31,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
     try:
         arguments.output.write_text(model.xml, encoding='utf-8')
     except OSError as error:
-        raise InvalidInput(f'cannot write {arguments.output}: {error}') from error
+        raise InvalidInput(f'cannot write {arguments.output}: {reason(error)}') from error
     counts = {
         'freedoms': int(simulation.model.nv),
         'closures': len(model.closures),

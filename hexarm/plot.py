@@ -8,6 +8,7 @@ import numpy as np
 from hexarm.answers import Answer, answering, picture_file
 from hexarm.namespaces import namespace_of
 from manipulator.errors import InvalidInput
+from manipulator.words import counted
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -58,8 +59,8 @@ def answer(arguments: argparse.Namespace) -> Answer:
         'error_rms_deg': _rms(np.degrees(angle)),
     }
     lines = [
-        f'/{story.namespace}, {end - begin:.1f} s: {len(part.setpoint):,} setpoints, '
-        f'{len(part.pose):,} poses, {refused} refused',
+        f'/{story.namespace}, {end - begin:.1f} s: {counted(len(part.setpoint), "setpoint")}, '
+        f'{counted(len(part.pose), "pose")}, {refused} refused',
         *([f'pose behind setpoint: {figures["error_rms_mm"]:.3f} mm rms, '
            f'{figures["error_rms_deg"]:.3f}° rms'] if len(distance) else []),
         *map(str, files),

@@ -2,11 +2,12 @@
 
 import argparse
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from hexarm.answers import Answer, Lines, add_machine, add_pose, answering
+from hexarm.answers import Answer, Lines, add_machine, add_pose, answering, pose_asked
 from hexarm.machines import load
 from manipulator.pose import Pose
 from manipulator.reach.nearest import nearest_reachable
@@ -14,27 +15,35 @@ from manipulator.reach.reach import Reach, reach
 from manipulator.reach.readings import LimitReading
 from manipulator.reach.travel import Travel, travel
 from manipulator.reach.words import pose_in_words
+from manipulator.words import length
 
 SHOWN = 6
+OUT_OF_REACH = 3
+"""Exit status of the answer no: a script tells it from a question that was not understood."""
+
 FOR_PEOPLE = {'m': (1e3, 'mm'), 'rad': (math.degrees(1.0), '°')}
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('reach', help='which limits a pose meets; the nearest reachable')
+    parser = commands.add_parser(
+        'reach',
+        help='which limits a pose meets; the nearest reachable',
+        epilog=f'Exit status: 0 reachable, {OUT_OF_REACH} out of reach, 2 not understood.',
+    )
     add_machine(parser)
     add_pose(parser)
     parser.add_argument(
         '--along', nargs=6, type=float, metavar=('VX', 'VY', 'VZ', 'WX', 'WY', 'WZ'),
         help='how far the pose can go along this twist, m/s and rad/s in base axes',
     )  # fmt: skip
-    parser.set_defaults(run=answering(answer))
+    parser.set_defaults(run=answering(answer, status))
 
 
 def answer(arguments: argparse.Namespace) -> Answer:
     """Out of reach is an answer, too; only what is no pose or no twist is refused."""
     machine = load(arguments.machine)
-    pose = Pose.from_xyz_rpy(arguments.xyz, arguments.rpy)
+    pose = pose_asked(arguments)
     found = reach(machine, pose)
     nearest = None if found.is_reachable else nearest_reachable(machine, pose)
     for_programs: dict[str, Any] = {
@@ -57,6 +66,11 @@ def answer(arguments: argparse.Namespace) -> Answer:
         }
         lines.append(_way_in_words(left))
     return for_programs, lines
+
+
+def status(answer: Mapping[str, Any]) -> int:
+    """The exit status of an answer."""
+    return 0 if answer['reachable'] else OUT_OF_REACH
 
 
 def _pose(pose: Pose) -> dict[str, list[float]]:
@@ -91,7 +105,7 @@ def _in_words(found: Reach) -> Lines:
         name = f'{reading.owner}: {reading.quantity}' if reading.owner else reading.quantity
         span = f'{_bound(factor * reading.low)} … {_bound(factor * reading.high)} {unit}'
         values = f'{factor * reading.value:>10.3f}   {span:<20} {factor * reading.margin:>10.3f}'
-        lines.append(f'{name:<30} {values}  {1e3 * reading.distance:>8.2f} mm')
+        lines.append(f'{name:<30} {values}  {length(reading.distance, 3):>11}')
     return lines
 
 
@@ -101,4 +115,4 @@ def _bound(value: float) -> str:
 
 def _way_in_words(left: Travel) -> str:
     reason = f', then {left.reason}' if left.reason else ', and no limit was met'
-    return f'goes on for {left.seconds:.3f} s, {1e3 * left.metres:.2f} mm{reason}'
+    return f'goes on for {left.seconds:.3f} s, {length(left.metres)}{reason}'

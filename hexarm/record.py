@@ -9,6 +9,7 @@ from hexarm.namespaces import namespace_of
 from hexarm.recording.wanted import Wanted
 from hexarm.up import StopSignal
 from manipulator.errors import ManipulatorError
+from manipulator.words import counted
 
 
 class NothingHeard(ManipulatorError):
@@ -83,7 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(f'{topic} was never there')
     took = time.monotonic() - begin
     print(
-        f'{path}: {bag.counts.total():,} messages of {len(bag.counts)} topics in {took:.1f} s, '
-        f'{bag.size / 1e6:.1f} MB'
+        f'{path}: {counted(bag.counts.total(), "message")} of '
+        f'{counted(len(bag.counts), "topic")} in {took:.1f} s, {bag.size / 1e6:.1f} MB'
     )
     return 0

@@ -7,6 +7,7 @@ from pathlib import Path
 from hexarm.progress import OnProgress, progress
 from hexarm.reproduction.finding import Finding, rendered, to_json
 from manipulator.errors import InvalidInput
+from manipulator.words import reason
 
 POINTS, DRAWS = 400_000, 4000
 FEW_POINTS, FEW_DRAWS = 20_000, 400
@@ -44,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
             output.write_text(rendered(found, figures), encoding='utf-8')
             output.with_suffix('.json').write_text(to_json(found), encoding='utf-8')
         except OSError as error:
-            raise InvalidInput(f'cannot write {output}: {error}') from error
+            raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
         tell('report', 1.0)
     for finding in found:
         if finding.verdict == 'contradicts':

@@ -16,6 +16,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.kinematics import Kinematics
+from manipulator.words import reason
 from physics.drawing import ROUND, Shapes, shapes
 from physics.experiment import Recording
 from physics.simulation import Simulation
@@ -54,7 +55,7 @@ def animate(
             picture, PillowWriter(fps=round(count / seconds))
         )
     except (OSError, ValueError) as error:
-        raise InvalidInput(f'cannot save {picture}: {error}') from error
+        raise InvalidInput(f'cannot save {picture}: {reason(error)}') from error
     finally:
         plt.close(figure)
 

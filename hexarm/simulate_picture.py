@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from hexarm.demo_picture import CRANKS
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
+from manipulator.words import reason
 from physics.experiment import Recording
 from physics.mechanism import Mechanism
 
@@ -47,7 +48,7 @@ def draw(recording: Recording, mechanism: Mechanism, picture: Path, dpi: int = 1
     try:
         figure.savefig(picture)
     except (OSError, ValueError) as error:
-        raise InvalidInput(f'cannot save {picture}: {error}') from error
+        raise InvalidInput(f'cannot save {picture}: {reason(error)}') from error
     finally:
         plt.close(figure)
 

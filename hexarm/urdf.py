@@ -10,6 +10,7 @@ from hexarm.answers import Answer, add_machine, answering
 from manipulator.config import build
 from manipulator.errors import InvalidInput, Refused
 from manipulator.machine import MachineFile
+from manipulator.words import counted, reason
 from physics.dynamics_config import ArmDynamicsConfig
 
 THICKNESS = 0.06
@@ -39,10 +40,10 @@ def answer(arguments: argparse.Namespace) -> Answer:
     try:
         arguments.output.write_text(text, encoding='utf-8')
     except OSError as error:
-        raise InvalidInput(f'cannot write {arguments.output}: {error}') from error
+        raise InvalidInput(f'cannot write {arguments.output}: {reason(error)}') from error
     joints = len(arm.joint_names)
     return {'output': str(arguments.output), 'joints': joints}, [
-        f'{arguments.output}: {joints} joints'
+        f'{arguments.output}: {counted(joints, "joint")}'
     ]
 
 

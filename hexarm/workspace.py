@@ -15,6 +15,7 @@ from manipulator.errors import InvalidInput
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.reach.way import is_joint_box
+from manipulator.words import counted
 from manipulator.workspace.inside import conditions
 from manipulator.workspace.survey import Survey, survey
 from manipulator.workspace.volume import Box, Volume
@@ -111,7 +112,7 @@ def _in_words(found: Survey) -> list[str]:
 
 def _volume(volume: Volume) -> str:
     text = f'{1e3 * volume.value:.5g} ± {1e3 * volume.error:.2g} dm³'
-    return f'{text} ({100 * volume.confidence:.0f} %, {volume.points} positions)'
+    return f'{text} ({100 * volume.confidence:.0f} %, {counted(volume.points, "position")})'
 
 
 def _table(machine: Machine, box: Box, points: int, path: Path) -> Path:

@@ -8,6 +8,7 @@ import numpy as np
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ManipulatorError
 from manipulator.pose import Pose
+from manipulator.words import length
 from physics.mechanism import Mechanism
 
 CLOSED = 1e-5
@@ -96,8 +97,8 @@ class Simulation:
             worst = int(np.argmax(errors))
             owner = list(self.mechanism.closures)[worst]
             raise DoesNotAssemble(
-                f'{owner} does not close: its end is {1e3 * errors[worst]:.3g} mm from its joint '
-                f'on the platform, at most {1e3 * CLOSED:g} mm',
+                f'{owner} does not close: its end is {length(errors[worst], 3)} from its joint '
+                f'on the platform, at most {length(CLOSED)}',
                 worst + 1,
             )
 

@@ -10,6 +10,7 @@ from manipulator.identification.measurements import Noise
 from manipulator.identification.model import Parameter
 from manipulator.identification.observability import model_directions, what_is_not_seen
 from manipulator.pose import Pose
+from manipulator.words import counted
 
 WELL_MEASURED = 2.0
 """Measured numbers for each parameter; with fewer, noise goes into the machine file."""
@@ -23,7 +24,8 @@ def in_words(found: Identification, noise: Noise, rigid_motions: dict[str, Array
     free = found.is_free
     names = tuple(p for p, is_free in zip(found.parameters, free, strict=True) if is_free)
     lines = [
-        f'{len(found.after)} poses, {len(names)} parameters; errors, rms an axis:',
+        f'{counted(len(found.after), "pose")}, {counted(len(names), "parameter")}; '
+        'errors, rms an axis:',
         f'  before  {_errors(found.before)}  (the machine file, with the best frames)',
         f'  after   {_errors(found.after)}  '
         f'(noise: {1e3 * noise.position:g} mm, {np.degrees(noise.rotation):.3g}°)',
@@ -82,8 +84,8 @@ def _warnings(found: Identification, noise: Noise, free: int) -> list[str]:
     if numbers < WELL_MEASURED * free:
         needed = int(np.ceil(WELL_MEASURED * free / 6))
         lines.append(
-            f'  few poses: {numbers} numbers for {free} parameters; measure {needed} poses or '
-            'more, or free fewer groups'
+            f'  few poses: {numbers} numbers for {counted(free, "parameter")}; '
+            f'measure {counted(needed, "pose")} or more, or free fewer groups'
         )
     weighted = found.after * noise.weights
     left = max(numbers - free, 1)
@@ -120,7 +122,7 @@ def _frames(found: Identification) -> list[str]:
 def _dark(unseen: tuple[str, ...], vague: tuple[str, ...]) -> list[str]:
     lines = []
     if unseen:
-        lines += ['', f'The measurements cannot see {len(unseen)} combinations:']
+        lines += ['', f'The measurements cannot see {counted(len(unseen), "combination")}:']
         lines += [f'  - {name}' for name in unseen]
         lines.append('These change nothing that was measured; they stay near the machine file.')
     if vague:

@@ -17,6 +17,7 @@ from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.identification.measurements import Measurements
 from manipulator.pose import Pose
+from manipulator.words import reason
 
 UNITS = {'mm': 1e-3, 'm': 1.0, 'deg': math.radians(1.0), 'rad': 1.0}
 LENGTHS, ANGLES = ('mm', 'm'), ('deg', 'rad')
@@ -66,7 +67,7 @@ def _read(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
         with path.open(newline='', encoding='utf-8-sig') as file:
             lines = [(i, row) for i, row in enumerate(csv.reader(file), start=1) if any(row)]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InvalidInput(f'{path} cannot be read: {error}') from error
+        raise InvalidInput(f'{path} cannot be read: {reason(error)}') from error
     if len(lines) < 2:
         raise InvalidInput(f'{path}: needs a header and rows')
     if len(lines) > MOST_ROWS:

@@ -18,6 +18,7 @@ from manipulator.identification.observability import scales
 from manipulator.identification.pose_choice import in_driving_order, most_telling
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.words import counted
 
 CANDIDATES = 3000
 MOST = 1000
@@ -55,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
         Path(arguments.output).write_text(text)
     except OSError as error:
         raise InvalidInput(f'{arguments.output} cannot be written: {error.strerror}') from error
-    print(f'{arguments.output}: {len(joints)} poses; fill in the last seven columns')
+    print(f'{arguments.output}: {counted(len(joints), "pose")}; fill in the last seven columns')
     return 0
 
 

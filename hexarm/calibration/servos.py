@@ -19,6 +19,7 @@ from hexarm.calibration.servo_values import changed_values, in_words
 from hexarm.machines import read
 from manipulator.errors import InvalidInput
 from manipulator.nodes.terminal import Terminal
+from manipulator.words import counted
 from manipulator.yaml_edit import with_values
 
 SEED = 7
@@ -56,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     values = changed_values(before, walk.servos)
     print('\n'.join(in_words(before, walk.servos)))
     problems = writer.write(with_values(writer.text, values))
-    print(f'{writer.target}: {len(values)} values written')
+    print(f'{writer.target}: {counted(len(values), "value")} written')
     for problem in problems:
         print(f'  to be looked at: {problem}')
     return 0

@@ -13,6 +13,7 @@ from manipulator.arrays import Array
 from manipulator.errors import NoSolution
 from manipulator.identification.model import Parameter
 from manipulator.pose import Pose
+from manipulator.words import counted
 
 COUNT = 12
 GROUPS = ('device', 'marker')
@@ -40,7 +41,9 @@ class DeviceFrames:
         fewer than three poses, or all are turned alike.
         """
         if len(nominal.position) < FEWEST:
-            raise NoSolution(f'{len(nominal.position)} poses, the frames need {FEWEST} at least')
+            raise NoSolution(
+                f'{counted(len(nominal.position), "pose")}, the frames need {FEWEST} at least'
+            )
         R_Z, R_X = _rotations(nominal.rotation, measured.rotation)
         count = len(nominal.position)
         # p_M = R_Z (p_P + R_P p_X) + p_Z

@@ -9,6 +9,7 @@ from typing import Any
 from rclpy.serialization import deserialize_message
 
 from manipulator.errors import InvalidInput
+from manipulator.words import counted
 
 
 def decoded(serialized: bytes, kind: type, most_bytes: int) -> Any:
@@ -18,4 +19,6 @@ def decoded(serialized: bytes, kind: type, most_bytes: int) -> Any:
     try:
         return deserialize_message(serialized, kind)
     except RuntimeError as error:  # what rclpy's own error derives from
-        raise InvalidInput(f'{len(serialized)} bytes that are no {kind.__name__}') from error
+        raise InvalidInput(
+            f'{counted(len(serialized), "byte")} that are no {kind.__name__}'
+        ) from error

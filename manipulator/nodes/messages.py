@@ -11,6 +11,7 @@ from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.frames import Frames
 from manipulator.pose import Pose
+from manipulator.words import counted
 
 FASTEST_TWIST = 100.0
 """m/s or rad/s. Less is scaled to what the machine can do; more is a damaged message."""
@@ -85,7 +86,10 @@ def joints_of(message: JointState, names: tuple[str, ...]) -> Array:
     numbers that are not finite.
     """
     if len(message.name) != len(message.position):
-        raise InvalidInput(f'{len(message.name)} names but {len(message.position)} positions')
+        raise InvalidInput(
+            f'{counted(len(message.name), "name")} but '
+            f'{counted(len(message.position), "position")}'
+        )
     positions = dict(zip(message.name, message.position, strict=True))
     if len(positions) != len(message.name):
         raise InvalidInput(

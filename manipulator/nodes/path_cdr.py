@@ -14,6 +14,7 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
+from manipulator.words import counted
 
 BYTE_ORDERS = {b'\0\0': '>', b'\0\1': '<'}
 LONGEST_NAME = 256
@@ -50,7 +51,7 @@ def read_poses(serialized: bytes, frame: str) -> tuple[Pose, Array | None]:
     """
     head = read_head(serialized)
     if not 0 < SHORTEST_POSE * head.count <= len(serialized):
-        raise InvalidInput(f'{head.count} poses in {len(serialized)} bytes')
+        raise InvalidInput(f'{counted(head.count, "pose")} in {counted(len(serialized), "byte")}')
     reader = _Reader(serialized, head.offset)
     stamps, values = np.empty((head.count, 2), dtype=np.int64), np.empty((head.count, 7))
     for i in range(head.count):

@@ -22,6 +22,7 @@ from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.pilot import Pilot
+from manipulator.words import counted
 
 OVERTAKEN = 'a newer command came while the path was worked out'
 
@@ -95,9 +96,13 @@ class PathGoals:
 
     def _on_path(self, message: RawPath) -> None:
         if not 1 <= message.count <= MOST_POSES:
-            raise InvalidInput(f'a path of {message.count} poses, needs 1 to {MOST_POSES}')
+            raise InvalidInput(
+                f'a path of {counted(message.count, "pose")}, needs 1 to {MOST_POSES}'
+            )
         if not message.serialized:
-            raise InvalidInput(f'a path of {message.count} poses, and yet of too many bytes')
+            raise InvalidInput(
+                f'a path of {counted(message.count, "pose")}, and yet of too many bytes'
+            )
         check_frame(message.header.frame_id, (BASE_FRAME, WORK_FRAME))
         frame = message.header.frame_id or BASE_FRAME
         player, stamp = self._pilot.player, seconds(message.header.stamp)

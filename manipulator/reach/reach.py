@@ -11,6 +11,7 @@ from manipulator.pose import Pose
 from manipulator.reach.readings import LimitReading
 from manipulator.reach.slope import slopes
 from manipulator.reach.way import is_connected
+from manipulator.unit_hints import hint_at_metres
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,8 @@ def reach(machine: Machine, pose: Pose, near: Array | None = None) -> Reach:
     """
     limits = readings(machine, pose, near)
     try:
-        machine.constraints.check(pose, machine.kinematics.inverse(pose, near))
+        with hint_at_metres(machine.kinematics, pose):
+            machine.constraints.check(pose, machine.kinematics.inverse(pose, near))
     except Unreachable as error:
         return Reach(False, False, limits, str(error))
     connected = is_connected(machine, pose)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from manipulator.errors import InvalidInput
 from manipulator.teleop.gamepad import Gamepad
+from manipulator.words import counted
 
 BEYOND_FULL = 1.05
 """Drivers that scale by an odd maximum exceed 1 a little."""
@@ -19,7 +20,8 @@ def check_numbers(gamepad: Gamepad, axes: Sequence[float], buttons: Sequence[int
     """
     if len(axes) > MAX_NUMBERS or len(buttons) > MAX_NUMBERS:
         raise InvalidInput(
-            f'{len(axes)} axes and {len(buttons)} buttons, at most {MAX_NUMBERS} of each'
+            f'{counted(len(axes), "axis", "axes")} and {counted(len(buttons), "button")}, '
+            f'at most {MAX_NUMBERS} of each'
         )
     for i, value in enumerate(axes):
         if not abs(value) <= BEYOND_FULL:

@@ -12,6 +12,7 @@ from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
 from manipulator.trajectory.plan import MotionState, Plan
+from manipulator.unit_hints import hint_at_metres
 
 TOLERANCE = 1.005
 
@@ -54,7 +55,8 @@ def check_plan(plan: Plan, machine: Machine, near: Array, dt: float) -> Demand:
 def why_not(machine: Machine, pose: Pose, near: Array) -> str:
     """What keeps the machine from a pose, in words."""
     try:
-        machine.constraints.check(pose, machine.kinematics.inverse(pose, near))
+        with hint_at_metres(machine.kinematics, pose):
+            machine.constraints.check(pose, machine.kinematics.inverse(pose, near))
     except Unreachable as error:
         return str(error)
     return 'out of reach'

@@ -9,6 +9,7 @@ from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.move import plan_move
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.straight import plan_straight
+from manipulator.unit_hints import hint_at_metres
 
 ATTEMPTS = 8
 MARGIN = 1.01
@@ -20,9 +21,10 @@ def check_goal(machine: Machine, goal: Pose, near: Array) -> None:
     On the branch nearest to `near` or on home's: which it is, the way there decides.
     """
     inverse, constraints = machine.kinematics.inverse, machine.constraints
-    joints = inverse(goal, near)
-    if not (constraints.admits(goal, joints) or constraints.admits(goal, inverse(goal))):
-        constraints.check(goal, joints)
+    with hint_at_metres(machine.kinematics, goal):
+        joints = inverse(goal, near)
+        if not (constraints.admits(goal, joints) or constraints.admits(goal, inverse(goal))):
+            constraints.check(goal, joints)
 
 
 def check_cycle(machine: Machine, cycle: Cycle, near: Array, dt: float) -> None:

@@ -18,6 +18,7 @@ from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.pose import Pose
 from manipulator.reach.words import explained
+from manipulator.words import counted
 from manipulator.workspace.inside import surface
 from panel.meshes import sphere
 from panel.nodes.asking import Asking
@@ -160,4 +161,4 @@ class PanelNode(Node):
         pages = len(self._server.get_clients())
         holds = self._joystick.stick() is not None
         values = {'address': self.address, 'pages': pages, 'joystick_held': holds}
-        return DiagnosticStatus.OK, f'{pages} pages', values
+        return DiagnosticStatus.OK, counted(pages, 'page'), values

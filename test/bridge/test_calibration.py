@@ -124,7 +124,7 @@ def test_a_park_pose_out_of_reach_is_a_config_error():
         ([servo(centre_mm=1.0, us_per_mm=1.0)], {}, 'needs centre_deg and us_per_deg'),
         ([servo('a'), servo('a', 1)], {}, 'names stand twice'),
         ([servo('a'), servo('b', 2)], {}, r'channels \[0, 2\] are not 0 to 1'),
-        ([servo()], {'park_deg': [0.0, 0.0]}, 'park_deg: 2 values for 1 joints'),
+        ([servo()], {'park_deg': [0.0, 0.0]}, 'park_deg: 2 values for 1 joint$'),
         ([servo()], {'park_deg': None}, 'park_deg: missing'),
         ([servo()], {'speed_deg_s': None}, 'speed_deg_s: missing'),
         ([servo(centre_us=1.5)], {}, 'a factor of 1000'),

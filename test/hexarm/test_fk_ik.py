@@ -107,6 +107,13 @@ def test_joints_that_no_machine_has_are_refused_with_status_2(capsys, words):
     assert 'error' in json.loads(capsys.readouterr().out)
 
 
+def test_ik_asks_whether_millimetres_or_degrees_were_meant(capsys):
+    assert main(['ik', 'ur5', '--xyz', '300', '0', '400']) == 2
+    assert 'are these millimetres?' in capsys.readouterr().err
+    assert main(['ik', 'ur5', '--xyz', '0.3', '0', '0.4', '--rpy', '0', '90', '0']) == 2
+    assert 'pitch: 90 rad is more than a turn; are these degrees?' in capsys.readouterr().err
+
+
 @pytest.mark.parametrize('machine', ['robocake', 'ur5'])
 def test_degrees_are_told_from_radians(machine, capsys):
     assert main(['fk', machine, '0', '0', '90', '0', '0', '0']) == 2

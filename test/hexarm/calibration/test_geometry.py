@@ -129,7 +129,10 @@ def test_a_table_that_cannot_be_used_is_refused_in_words(tmp_path, text, said, c
     ('words', 'said'),
     [
         (['geometry', 'robocake', 'no.csv'], '--output my_robocake.yaml'),
-        (['geometry', 'robocake', 'no.csv', '--dry-run'], 'no.csv cannot be read'),
+        (
+            ['geometry', 'robocake', 'no.csv', '--dry-run'],
+            'no.csv cannot be read: No such file or directory\n',
+        ),
         (['geometry', 'robocake', 'no.csv', '--dry-run', '--noise-mm', '0'], 'position noise 0'),
         (['geometry', 'robocake', 'no.csv', '--dry-run', '--tolerance-mm', '-1'], '-1 outside'),
         (['poses', 'robocake', '--count', '0'], '--count 0 outside'),

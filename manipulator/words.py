@@ -1,0 +1,25 @@
+"""How messages write lengths, counts and the reasons of the operating system."""
+
+import numpy as np
+
+METRES_FROM = 0.9999
+"""m. Shorter ones are told in millimetres."""
+
+
+def length(metres: float, digits: int = 4) -> str:
+    """A length for people, without powers of ten: '22.8 mm', from a metre on '45.2 m'."""
+    value, unit = (metres, 'm') if abs(metres) > METRES_FROM else (1e3 * metres, 'mm')
+    written = np.format_float_positional(value, digits, fractional=False, trim='-')
+    return f'{written} {unit}'
+
+
+def counted(count: int, one: str, many: str = '') -> str:
+    """A count and its noun: '1 pose', '2,000 poses'; `many` where it is not one with an s."""
+    return f'{count:,} {one if count == 1 else many or one + "s"}'
+
+
+def reason(error: Exception) -> str:
+    """Why a file could not be used, without numbers of errors and the file's name again."""
+    if isinstance(error, UnicodeDecodeError):
+        return f'it is no text (byte {error.start})'
+    return (isinstance(error, OSError) and error.strerror) or str(error)

@@ -1,0 +1,43 @@
+import pytest
+
+from manipulator.words import counted, length, reason
+
+
+@pytest.mark.parametrize(
+    ('metres', 'said'),
+    [
+        (0.0, '0 mm'),
+        (2.2813e-5, '0.02281 mm'),
+        (0.0228, '22.8 mm'),
+        (-0.9999, '-999.9 mm'),
+        (0.99999, '1 m'),
+        (45.2, '45.2 m'),
+        (45264.3, '45264 m'),
+        (float('inf'), 'inf m'),
+    ],
+)
+def test_lengths_are_told_in_the_unit_that_fits(metres, said):
+    assert length(metres, 5 if metres > 1e4 else 4) == said
+
+
+def test_no_length_is_written_with_a_power_of_ten():
+    assert length(45264.3, 3) == '45300 m'
+    assert length(1.234e-9, 3) == '0.00000123 mm'
+
+
+def test_one_is_singular_and_all_else_plural():
+    assert counted(1, 'pose') == '1 pose'
+    assert counted(0, 'pose') == '0 poses'
+    assert counted(2000, 'pose') == '2,000 poses'
+    assert counted(2, 'axis', 'axes') == '2 axes'
+
+
+def test_files_that_cannot_be_read_are_told_without_error_numbers(tmp_path):
+    with pytest.raises(OSError, match='No such') as missing:
+        (tmp_path / 'none').read_text()
+    assert reason(missing.value) == 'No such file or directory'
+    (tmp_path / 'picture').write_bytes(b'a\xff')
+    with pytest.raises(UnicodeDecodeError) as binary:
+        (tmp_path / 'picture').read_text(encoding='utf-8')
+    assert reason(binary.value) == 'it is no text (byte 1)'
+    assert reason(ValueError('not a number')) == 'not a number'
