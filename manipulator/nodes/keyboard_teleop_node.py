@@ -5,12 +5,16 @@ import time
 
 from rclpy.node import Node
 
+from manipulator.nodes.audience import Audience, place
 from manipulator.nodes.diagnostics import OK, Diagnostics, Report
 from manipulator.nodes.jog_topics import JogTopics
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.terminal import Terminal
 from manipulator.teleop.keyboard import HELP, Keyboard, keys_of
+
+LOOK_AROUND = 0.5
+"""Seconds between two looks at who listens."""
 
 GRIPPER = 'part of its way that the gripper moves in 1 s'
 
@@ -27,10 +31,12 @@ class KeyboardTeleop(Node):
         self._terminal = terminal
         self._keyboard = Keyboard(linear, angular)
         self._topics = JogTopics(self, 'keyboard')
+        self._audience = Audience(place(self), time.monotonic())
         self._timer = SteadyTimer(self, 1.0 / rate, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/keyboard',))
         terminal.show(f'{HELP}\n')
         self._show()
+        self._looking = SteadyTimer(self, LOOK_AROUND, self._look_around)
 
     def close(self) -> None:
         """Lets go of the machine, and of the terminal."""
@@ -56,6 +62,12 @@ class KeyboardTeleop(Node):
             self._show()
         if after.is_over or characters is None:
             signal.raise_signal(signal.SIGINT)
+
+    def _look_around(self) -> None:
+        news = self._audience.news(self._topics.is_heard, time.monotonic())
+        if news:
+            self._terminal.show(f'\r\x1b[K {news}\n')
+            self._show()
 
     def _show(self) -> None:
         self._terminal.show(f'\r\x1b[K {self._keyboard.line}')

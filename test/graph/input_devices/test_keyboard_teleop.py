@@ -3,6 +3,7 @@
 import fcntl
 import os
 import pty
+import select
 import signal
 import subprocess
 import termios
@@ -153,6 +154,31 @@ def test_mode_frame_gripper_and_home_reach_their_topics(typist):
     typist.type(b'h')
     typist.listener.wait('home', lambda: typist.listener.asked == ['home'], PATIENCE)
     assert b'mode hold_orientation, frame tool' in typist.seen
+
+
+def test_the_terminal_says_who_listens(typist):
+    typist.listener.wait('a line', lambda: b'a machine listens in /keyboards' in typist.seen, 10.0)
+    assert b'nobody listens' not in typist.seen.split(b'a machine listens')[-1]
+
+
+def test_a_keyboard_that_nobody_hears_says_so(words, request):
+    keys, screen = pty.openpty()
+    command = words('keyboard_teleop', 'lonely')
+    process = subprocess.Popen(
+        command, cwd=request.config.rootpath, stdin=screen, stdout=screen, stderr=screen
+    )
+    os.close(screen)
+    seen = b''
+    try:
+        while b'nobody listens in /lonely on ROS domain' not in seen:
+            assert select.select([keys], [], [], 30.0)[0], seen
+            seen += os.read(keys, 4096)
+        os.write(keys, b'q')
+        assert process.wait(20) == 0
+    finally:
+        process.kill()
+        process.wait()
+        os.close(keys)
 
 
 def test_paste_moves_nothing(typist):
