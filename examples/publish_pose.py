@@ -7,7 +7,8 @@
 `goal_pose` is a geometry_msgs/PoseStamped: metres, a unit quaternion, an empty frame_id means the
 machine's base. `motion_status` says what became of a goal, which it names by its stamp; it is
 latched, so that it is heard whenever one begins to listen. The exit status is 0 for reached, 1 for
-refused, stopped or no answer.
+refused, stopped or no answer. A slow move takes as long as it takes: only where nothing moves, or
+nothing is heard, for `--patience` seconds, the wait is given up.
 """
 
 import argparse
@@ -19,7 +20,9 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
+from manipulator.errors import ManipulatorError
 from manipulator.pose import Pose
+from manipulator.unit_hints import check_turns
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LEVEL = (0.0, 0.0, 0.0, 1.0)
@@ -28,16 +31,27 @@ LEVEL = (0.0, 0.0, 0.0, 1.0)
 class Mover:
     """Sends goals to one machine and hears what became of them."""
 
-    def __init__(self, node, namespace):
+    def __init__(self, node, namespace, patience=10.0):
         self.node = node
+        self.patience = patience
         self.goals = node.create_publisher(PoseStamped, f'{namespace}/goal_pose', 1)
         self.status = DiagnosticStatus()
         node.create_subscription(
             DiagnosticStatus, f'{namespace}/motion_status', self.on_status, LATCHED
         )
+        self.setpoint = None
+        self.progress_at = 0.0
+        node.create_subscription(PoseStamped, f'{namespace}/setpoint', self.on_setpoint, 1)
 
     def on_status(self, message):
         self.status = message
+        self.progress_at = time.monotonic()
+
+    def on_setpoint(self, message):
+        """Setpoints come 100 times a second; while the machine moves, each is another pose."""
+        if message.pose != self.setpoint:
+            self.setpoint = message.pose
+            self.progress_at = time.monotonic()
 
     def publish(self, xyz, quaternion=LEVEL):
         """Publishes a goal, in metres and as x, y, z, w; returns its stamp in seconds."""
@@ -53,7 +67,7 @@ class Mover:
         """Publishes a goal and waits for its end; exits with the reason when it is not reached."""
         self.wait(self.is_heard, f'no machine hears {self.goals.topic_name}')
         stamp = self.publish(xyz, quaternion)
-        self.wait(lambda: self.result(stamp), 'no answer on motion_status')
+        self.wait(lambda: self.result(stamp), 'not there, and nothing has moved')
         if self.result(stamp) != 'reached':
             sys.exit(self.status.message)
 
@@ -74,12 +88,12 @@ class Mover:
             return None
         return values['result'] if values['result'] != 'moving' else None
 
-    def wait(self, is_so, otherwise, seconds=10.0):
-        """Hears messages until `is_so` says yes."""
-        end = time.monotonic() + seconds
+    def wait(self, is_so, otherwise):
+        """Hears messages until `is_so` says yes; gives up when nothing happens for too long."""
+        begin = time.monotonic()
         while not is_so():
-            if time.monotonic() > end:
-                sys.exit(f'{otherwise} within {seconds:g} s')
+            if time.monotonic() - max(begin, self.progress_at) > self.patience:
+                sys.exit(f'{otherwise} for {self.patience:g} s')
             rclpy.spin_once(self.node, timeout_sec=0.05)
 
 
@@ -87,12 +101,18 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n', maxsplit=1)[0])
     parser.add_argument('xyz', nargs=3, type=float, help='metres, in the base frame')
     parser.add_argument('--rpy', nargs=3, type=float, default=[0, 0, 0], help='radians')
+    parser.add_argument('--patience', type=float, default=10.0, help='seconds without motion')
     parser.add_argument('--namespace', default='/hexapod')
     arguments = parser.parse_args()
 
-    rclpy.init()
-    mover = Mover(rclpy.create_node('publish_pose'), arguments.namespace)
+    try:
+        check_turns(arguments.rpy)
+    except ManipulatorError as error:
+        sys.exit(f'--rpy: {error}')
     quaternion = Pose.from_xyz_rpy(arguments.xyz, arguments.rpy).quaternion
+
+    rclpy.init()
+    mover = Mover(rclpy.create_node('publish_pose'), arguments.namespace, arguments.patience)
     mover.go_to(arguments.xyz, quaternion)
     print(mover.status.message)
     rclpy.shutdown()

@@ -48,6 +48,8 @@ class Client:
         self.machine_state = DiagnosticStatus(message='not heard of')
         self.motion_status = DiagnosticStatus()
         self.diagnostics: dict[str, DiagnosticStatus] = {}
+        self._setpoints: Any = None
+        self._commanded: Any = None
         self._interrupt = interrupt
         self._executor = EventsExecutor()
         self._executor.add_node(self.node)
@@ -79,13 +81,24 @@ class Client:
                 return
             self._executor.spin_once(timeout_sec=min(left, 0.05))
 
-    def wait(self, what: str, is_so: Callable[[], bool], seconds: float) -> None:
-        """Hears messages until `is_so`; NotReady says what did not come."""
-        end = time.monotonic() + seconds
+    def wait(
+        self,
+        what: str,
+        is_so: Callable[[], bool],
+        seconds: float,
+        progress: Callable[[], object] = lambda: None,
+    ) -> None:
+        """Hears messages until `is_so`; NotReady says what did not come.
+
+        The seconds begin anew whenever `progress` changes.
+        """
+        end, before = time.monotonic() + seconds, progress()
         while not is_so():
             if time.monotonic() > end:
                 raise NotReady(f'waited {seconds:g} s in vain for {what} ({self.summary})')
             self.spin(0.005)
+            if (now := progress()) != before:
+                end, before = time.monotonic() + seconds, now
 
     @property
     def summary(self) -> str:
@@ -122,13 +135,19 @@ class Client:
         return seconds(stamp)
 
     def go_to(self, pose: Pose, seconds: float = 10.0) -> None:
-        """Publishes a goal and waits until it is reached; Refused or Stopped with the reason."""
+        """Publishes a goal and waits until it is reached; Refused or Stopped with the reason.
+
+        However long the way takes: NotReady after `seconds` in which nothing moves or is heard.
+        """
         self.wait('a listener for goals', lambda: self._reaches(self._goals, 'trajectory'), 10.0)
         stamp = f'{self.publish_goal(pose):.9f}'
         self._await_result(lambda: self.motion('goal_stamp') == stamp, seconds)
 
     def follow(self, poses: Pose, seconds: float = 60.0) -> None:
-        """Goes exactly along poses (n,), n ≤ 2,000; Refused or Stopped with the reason."""
+        """Goes exactly along poses (n,), n ≤ 2,000; Refused or Stopped with the reason.
+
+        `seconds` as for go_to: they must also do for working the path out.
+        """
         self.wait(
             'a listener for paths', lambda: self._reaches(self._paths, 'path_listener'), 10.0
         )
@@ -138,7 +157,10 @@ class Client:
         self._await_result(lambda: self.motion('goal_stamp') == name, seconds)
 
     def home(self, seconds: float = 10.0) -> None:
-        """Goes home and waits until it is there; Refused or Stopped with the reason."""
+        """Goes home and waits until it is there; Refused or Stopped with the reason.
+
+        `seconds` as for go_to.
+        """
         before = self.motion('goal_stamp')
         self.trigger('trajectory/home')
         self._await_result(lambda: self.motion('goal_stamp') != before, seconds)
@@ -155,8 +177,15 @@ class Client:
 
     def _await_result(self, is_ours: Callable[[], bool], seconds: float) -> None:
         ends = {'reached': None, 'refused': Refused, 'stopped': Stopped}
+        if self._setpoints is None:
+            self._setpoints = self.node.create_subscription(
+                PoseStamped, 'setpoint', self._on_setpoint, COMMAND
+            )
         self.wait(
-            'reaching the goal', lambda: is_ours() and self.motion('result') in ends, seconds
+            'reaching the goal',
+            lambda: is_ours() and self.motion('result') in ends,
+            seconds,
+            lambda: (self.motion_status, self._commanded) if is_ours() else None,
         )
         error = ends[self.motion('result')]
         if error is not None:
@@ -187,6 +216,9 @@ class Client:
 
     def _on_motion_status(self, message: DiagnosticStatus) -> None:
         self.motion_status = message
+
+    def _on_setpoint(self, message: PoseStamped) -> None:
+        self._commanded = message.pose
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for entry in message.status:

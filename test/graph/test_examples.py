@@ -3,15 +3,17 @@
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import Float64
 
-from hexarm.client import Client
+from hexarm.client import Client, NotReady
 from manipulator.nodes.messages import pose_of
 from manipulator.nodes.qos import LATCHED
+from manipulator.pose import Pose
 
 pytestmark = pytest.mark.graph
 ROOT = Path(__file__).resolve().parents[2]
@@ -103,6 +105,15 @@ def test_publish_pose_says_which_leg_cannot(start, up):
     assert re.fullmatch(r'refused: leg \d: rod too short by [\d.]+ mm .*\n', said)
 
 
+def test_publish_pose_asks_whether_degrees_or_millimetres_were_meant(start, up):
+    status, said = end(start('publish_pose', 0, 0, 0.045, '--rpy', 0, 0, 10))
+    assert (status, said.count('\n')) == (1, 1)
+    assert 'are these degrees?' in said
+    status, said = end(start('publish_pose', 0, 0, 45))
+    assert status == 1
+    assert 'are these millimetres?' in said
+
+
 def test_watch_joints_prints_names_and_radians(start, client):
     assert end(start('publish_pose', 0, 0, 0.04119))[0] == 0
     status, said = end(start('watch_joints', '--count', 3, '--every', 0.02))
@@ -145,9 +156,25 @@ def slowly(client):
     override = client.node.create_publisher(Float64, 'speed_override', LATCHED)
     client.wait('a listener', override.get_subscription_count, 10.0)
     override.publish(Float64(data=0.05))
-    yield
+    yield override
     override.publish(Float64(data=1.0))
     override.wait_for_all_acked()
+
+
+def test_slow_moves_are_waited_for_and_what_stands_still_is_given_up(start, client, slowly):
+    begin = time.monotonic()
+    client.go_to(Pose.from_xyz_rpy((0.0, 0.008, 0.045)), seconds=2.5)
+    assert time.monotonic() - begin > 3.0
+    begin = time.monotonic()
+    assert end(start('publish_pose', 0, 0, 0.045, '--patience', 2.5)) == (0, 'reached\n')
+    assert time.monotonic() - begin > 3.0
+    slowly.publish(Float64(data=0.0))
+    client.spin(0.5)
+    with pytest.raises(NotReady, match=r'waited 1.5 s in vain for reaching the goal .*moving'):
+        client.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.042)), seconds=1.5)
+    status, said = end(start('publish_pose', 0, 0, 0.043, '--patience', 1.5))
+    assert (status, said) == (1, 'not there, and nothing has moved for 1.5 s\n')
+    assert end(start('stop'))[0] == 0
 
 
 def test_stop_ends_a_move_and_the_tour_says_so(start, slowly):
