@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 
 from hexarm.namespaces import namespace_of
+from hexarm.recording.absent import nothing, unheard
 from hexarm.recording.wanted import Wanted
 from hexarm.up import StopSignal
 from manipulator.errors import ManipulatorError
@@ -73,15 +74,14 @@ def run(arguments: argparse.Namespace) -> int:
     with Bag(path) as bag:
         print(f'recording /{namespace} into {path}; Ctrl-C ends it', flush=True)
         until = begin + arguments.seconds
-        missing = record(bag, namespace, wanted, until, stop.check)
+        there, domain = record(bag, namespace, wanted, until, stop.check)
+    lines = unheard(wanted.names, bag.counts, there)
     space = f'/{namespace}/'
     if not any(topic.startswith(space) or topic in wanted.names for topic in bag.counts):
         path.unlink()
-        raise NothingHeard(
-            f'nothing was heard in /{namespace}: is the graph running, on this ROS domain?'
-        )
-    for topic in missing:
-        print(f'{topic} was never there')
+        raise NothingHeard(nothing(namespace, lines, there, domain))
+    for line in lines:
+        print(line)
     took = time.monotonic() - begin
     print(
         f'{path}: {counted(bag.counts.total(), "message")} of '

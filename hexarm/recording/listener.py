@@ -7,6 +7,7 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
+from hexarm.recording.absent import unheard
 from hexarm.recording.bag import Bag, Topic
 from hexarm.recording.message_text import UnknownType
 from hexarm.recording.qualities import hearing, offered
@@ -20,12 +21,14 @@ class Listener:
         self._node, self._wanted, self._bag = node, wanted, bag
         self._subscriptions: dict[str, Any] = {}
         self._qualities: dict[str, QoSProfile] = {}
-        self._joined: set[str] = set()
         self._unknown: set[str] = set()
+        self.there: set[str] = set()
+        """Every topic that was seen."""
 
     def look_around(self, now: float) -> None:
         """Joins and leaves topics; anew where publishers offer other qualities than before."""
         for name, types in self._node.get_topic_names_and_types():
+            self.there.add(name)
             if name in self._unknown:
                 continue
             publishers = self._node.get_publishers_info_by_topic(name)
@@ -38,10 +41,11 @@ class Listener:
                 self._unknown.add(name)
                 self._node.get_logger().warning(f'{name} is not recorded: {error}')
 
-    @property
-    def missing(self) -> list[str]:
-        """Topics that were asked for by name and never were."""
-        return sorted(set(self._wanted.names) - self._joined)
+    def warn(self) -> None:
+        """Speaks of the topics asked for that are not there."""
+        names = [name for name in self._wanted.names if name not in self.there]
+        for line in unheard(names, (), self.there):
+            self._node.get_logger().warning(line)
 
     def _join(self, name: str, type_name: str, publishers: list[Any]) -> None:
         offers = [p.qos_profile for p in publishers]
@@ -53,7 +57,6 @@ class Listener:
         kind = message_class(type_name)
         self._bag.add_type(type_name)
         self._leave(name)
-        self._joined.add(name)
         self._qualities[name] = qualities
         self._subscriptions[name] = self._node.create_subscription(
             kind, name, lambda message: self._keep(name, type_name, message), qualities, raw=True

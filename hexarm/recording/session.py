@@ -19,23 +19,27 @@ from manipulator.nodes.discovery import fresh_address
 LOOK_AROUND = 0.25
 """Seconds between two looks at which topics there are."""
 
+DISCOVERY = 3.0
+"""Seconds after which a topic that was not found is spoken of: it may be misspelt."""
+
 FLUSH = 1.0
 """Seconds of messages that may be lost when the process is killed."""
 
 
 def record(
     bag: Bag, namespace: str, wanted: Wanted, until: float, interrupt: Callable[[], None]
-) -> list[str]:
+) -> tuple[set[str], int]:
     """Records until the monotonic time `until`, or until `interrupt` raises Interrupted.
 
-    Returns the topics asked for that never were. Raises NotWritten when the disk is full.
+    Returns every topic that was seen, wanted or not, and the ROS domain. Raises NotWritten when
+    the disk is full.
     """
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     with fresh_address():
         node = Node('recorder', namespace=namespace, enable_rosout=False)
     executor = EventsExecutor()
     executor.add_node(node)
-    listener = Listener(node, wanted, bag)
+    listener, domain = Listener(node, wanted, bag), node.context.get_domain_id()
     try:
         with contextlib.suppress(Interrupted):
             _spin(executor, listener, bag, until, interrupt)
@@ -43,7 +47,7 @@ def record(
         executor.shutdown()
         node.destroy_node()
         try_shutdown()
-    return listener.missing
+    return listener.there, domain
 
 
 def _spin(
@@ -54,11 +58,15 @@ def _spin(
     interrupt: Callable[[], None],
 ) -> None:
     look_at = flush_at = time.monotonic()
+    warn_at = look_at + DISCOVERY
     while (now := time.monotonic()) < until:
         interrupt()
         if now >= look_at:
             listener.look_around(now)
             look_at = now + LOOK_AROUND
+        if now >= warn_at:
+            listener.warn()
+            warn_at = until
         if now >= flush_at:
             bag.flush()
             flush_at = now + FLUSH

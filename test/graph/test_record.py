@@ -147,9 +147,10 @@ def test_full_disk_ends_it_with_one_line_and_a_readable_file(user, tmp_path):
 
 def test_only_the_topics_asked_for_and_what_never_was(user, hexarm, tmp_path):
     path = tmp_path / 'one.mcap'
-    words = ('-o', str(path), '--for', '3', '--topics', 'pose', 'nonsense')
+    words = ('-o', str(path), '--for', '4', '--topics', 'pose', 'joint_sates')
     said = ends_with(hexarm('record', 'hexapod', *words), 0)
-    assert '/hexapod/nonsense was never there' in said
+    wrong = 'there is no topic /hexapod/joint_sates, did you mean /hexapod/joint_states'
+    assert said.count(wrong) == 2, 'once while it runs, once at its end'
     with AnyReader([path]) as reader:
         assert {c.topic for c in reader.connections} == {'/hexapod/pose'}
 
@@ -157,7 +158,16 @@ def test_only_the_topics_asked_for_and_what_never_was(user, hexarm, tmp_path):
 def test_namespace_without_a_machine_says_so_and_leaves_no_file(hexarm, tmp_path):
     path = tmp_path / 'nothing.mcap'
     said = ends_with(hexarm('record', 'nobody', '-o', str(path), '--for', '1.5'), 1)
-    assert 'nothing was heard in /nobody: is the graph running, on this ROS domain?' in said
+    assert 'nothing is in /nobody on ROS domain' in said
+    assert not path.exists()
+
+
+def test_misspelt_topic_alone_is_not_blamed_on_the_graph(user, hexarm, tmp_path):
+    path = tmp_path / 'nothing.mcap'
+    words = ('-o', str(path), '--for', '2.5', '--topics', 'poes')
+    said = ends_with(hexarm('record', 'hexapod', *words), 1)
+    assert 'there is no topic /hexapod/poes, did you mean /hexapod/pose?' in said
+    assert 'is a graph running' not in said
     assert not path.exists()
 
 
