@@ -8,11 +8,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from hexarm.statuses import REFUSED
 from manipulator.errors import ManipulatorError
 from manipulator.pose import Pose
 from manipulator.unit_hints import check_turns
 
-REFUSED = 2
 PICTURES = ('.png', '.svg', '.pdf', '.jpg')
 
 Lines = list[str]

@@ -3,9 +3,9 @@
 import argparse
 import json
 
-from hexarm.answers import REFUSED
 from hexarm.machine_check import problems_of
 from hexarm.machines import find, text_of
+from hexarm.statuses import REFUSED
 from manipulator.errors import ConfigError
 from manipulator.words import counted
 

@@ -23,6 +23,9 @@ from manipulator.nodes.path_goals import path_message
 from manipulator.nodes.qos import COMMAND, LATCHED
 from manipulator.pose import Pose
 
+UNHEARD = 'not heard of'
+"""The state of a machine that has said none."""
+
 ASKED_AT_MOST, ANSWERED_WITHIN = 4, 4.0
 
 
@@ -45,7 +48,7 @@ class Client:
             rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         with fresh_address():
             self.node = Node('hexarm', namespace=namespace)
-        self.machine_state = DiagnosticStatus(message='not heard of')
+        self.machine_state = DiagnosticStatus(message=UNHEARD)
         self.motion_status = DiagnosticStatus()
         self.diagnostics: dict[str, DiagnosticStatus] = {}
         self._setpoints: Any = None
@@ -107,6 +110,17 @@ class Client:
         state = f'{self.machine_state.message}: {reason}' if reason else self.machine_state.message
         motion = f', motion {self.motion_status.message}' if self.motion_status.message else ''
         return f'machine {state}{motion}'
+
+    @property
+    def topics(self) -> list[str]:
+        """Every topic that somebody publishes."""
+        names = [name for name, _ in self.node.get_topic_names_and_types()]
+        return [name for name in names if self.node.count_publishers(name)]
+
+    @property
+    def domain(self) -> int:
+        """The ROS domain."""
+        return int(self.node.context.get_domain_id())
 
     def motion(self, key: str) -> str:
         """One of the values of motion_status, '' before the first."""
@@ -225,4 +239,4 @@ class Client:
             self.diagnostics[entry.name] = entry
 
 
-WITHOUT_BOARD = ('not heard of', 'disconnected', 'booting')
+WITHOUT_BOARD = (UNHEARD, 'disconnected', 'booting')

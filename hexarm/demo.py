@@ -15,6 +15,7 @@ from hexarm.demo_report import Curve, Observation, Result, measure
 from hexarm.graph import Executable, Graph, link_folder, machine_graph
 from hexarm.machines import load
 from hexarm.panel_process import offered_panel
+from hexarm.statuses import INTERRUPTED
 from hexarm.up import Interrupted, StopSignal, check_alive, park
 from manipulator.errors import Refused
 from manipulator.machine import Machine
@@ -66,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
         )
     except Interrupted:
         say('interrupted: stopping the graph')
-        return 130
+        return INTERRUPTED
     result = measure(observation, load(MACHINE).kinematics)
     report(result, demo_arm_report.measure_arm(arm_observation, arm.kinematics), arm, picture)
     return 0

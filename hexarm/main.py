@@ -8,52 +8,10 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import NoReturn
 
-from hexarm import (
-    accuracy,
-    calibrate,
-    check,
-    demo,
-    firmware_header,
-    fk,
-    ik,
-    leg_motion,
-    machine_list,
-    mjcf,
-    monitor,
-    plot,
-    reach,
-    record,
-    reproduce,
-    simulate,
-    up,
-    urdf,
-    workspace,
-)
-from hexarm.answers import REFUSED
+from hexarm.statuses import INTERRUPTED, REFUSED
 from manipulator.errors import ManipulatorError
 from manipulator.requirements import missing
 
-COMMANDS = (
-    up,
-    demo,
-    monitor,
-    record,
-    plot,
-    ik,
-    fk,
-    mjcf,
-    urdf,
-    simulate,
-    reproduce,
-    reach,
-    workspace,
-    accuracy,
-    leg_motion,
-    machine_list,
-    check,
-    calibrate,
-    firmware_header,
-)
 EXAMPLES = """\
 examples:
   hexarm demo                                          the whole graph on a fake board
@@ -84,22 +42,31 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(words: list[str] | None = None) -> int:
-    """Runs one subcommand; status 1 when something failed, 2 for a refusal or bad arguments."""
+    """Runs one subcommand; see hexarm/statuses.py for what it returns."""
+    try:
+        return _run(words)
+    except ManipulatorError as error:
+        print(f'hexarm: {error}', file=sys.stderr)
+    except ModuleNotFoundError as error:
+        print(f'hexarm: {missing(error)}', file=sys.stderr)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return 1
+
+
+def _run(words: list[str] | None) -> int:
     parser = _parser()
     arguments = parser.parse_args(words)
     if arguments.run is None:
         parser.print_help(sys.stderr)
         return REFUSED
-    try:
-        return int(arguments.run(arguments))
-    except ManipulatorError as error:
-        print(f'hexarm: {error}', file=sys.stderr)
-    except ModuleNotFoundError as error:
-        print(f'hexarm: {missing(error)}', file=sys.stderr)
-    return 1
+    return int(arguments.run(arguments))
 
 
 def _parser() -> Parser:
+    # Imported here, where Ctrl-C is caught: it takes a third of a second.
+    from hexarm.commands import COMMANDS  # noqa: PLC0415
+
     parser = Parser(
         prog='hexarm',
         description='Six-axis manipulators, from a pose target to servo pulses.',

@@ -6,6 +6,7 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from hexarm.namespaces import namespace_of, nobody_in
 from hexarm.up import Interrupted, StopSignal
 from manipulator.nodes.terminal import Terminal
 
@@ -25,7 +26,9 @@ COLOURS = {b'\0': 'green', b'\1': 'yellow', b'\2': 'red', b'\3': 'red'}
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
     parser = commands.add_parser('monitor', help='show live what the nodes say of themselves')
-    parser.add_argument('namespace', nargs='?', default='hexapod', help='default: hexapod')
+    parser.add_argument(
+        'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
+    )
     parser.set_defaults(run=run)
 
 
@@ -36,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
 
     stop = StopSignal()
-    namespace = arguments.namespace.strip('/')
+    namespace = arguments.namespace
     view = View(namespace)
     with (
         Terminal() as terminal,
@@ -83,5 +86,6 @@ class View:
             values = [f'{pair.key} {pair.value}' for pair in report.values if pair.value]
             blocks.append(Columns([Text(value) for value in values], equal=True, padding=(0, 3)))
         if not self.heard:
-            blocks.append(Text('\nnothing heard yet: is the graph running, on this ROS domain?'))
+            said = nobody_in(self.namespace, client.topics, client.domain)
+            blocks.append(Text(f'\nnothing heard yet: {said}'))
         return Group(*blocks)

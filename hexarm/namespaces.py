@@ -1,9 +1,22 @@
-"""Names of namespaces on the command line."""
+"""Names of namespaces on the command line, and what is said of one where nobody is."""
 
 import argparse
 import re
+from collections.abc import Collection
 
 NAMESPACE = re.compile(r'/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*/?', re.ASCII)
+
+
+MARK = '/machine_state'
+"""The topic by which a machine's namespace is known."""
+
+
+def nobody_in(namespace: str, there: Collection[str], domain: int) -> str:
+    """That no machine is in a namespace, and where others are; `there` are published topics."""
+    others = sorted(topic.removesuffix(MARK) for topic in there if topic.endswith(MARK))
+    hint = f'; there are machines in {", ".join(others)}' if others else ''
+    space = namespace.strip('/')
+    return f'nobody answers in /{space} on ROS domain {domain}: is a graph running there?{hint}'
 
 
 def namespace_of(word: str) -> str:

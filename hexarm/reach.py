@@ -9,6 +9,7 @@ import numpy as np
 
 from hexarm.answers import Answer, Lines, add_machine, add_pose, answering, pose_asked
 from hexarm.machines import load
+from hexarm.statuses import OUT_OF_REACH
 from manipulator.pose import Pose
 from manipulator.reach.nearest import nearest_reachable
 from manipulator.reach.reach import Reach, reach
@@ -18,9 +19,6 @@ from manipulator.reach.words import pose_in_words
 from manipulator.words import length
 
 SHOWN = 6
-OUT_OF_REACH = 3
-"""Exit status of the answer no: a script tells it from a question that was not understood."""
-
 FOR_PEOPLE = {'m': (1e3, 'mm'), 'rad': (math.degrees(1.0), '°')}
 
 

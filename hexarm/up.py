@@ -128,6 +128,7 @@ def check_alive(graph: Graph) -> None:
 
 def enable(client: 'Client', namespace: str) -> None:
     """Energises the servos; a machine that is stopped waits until somebody has cleared it."""
+    space = namespace.strip('/')
     while True:
         try:
             client.enable()
@@ -138,8 +139,8 @@ def enable(client: 'Client', namespace: str) -> None:
                 raise
         print(
             f'{client.summary}. It is enabled once you have looked at it and called\n'
-            f'  ros2 service call /{namespace.strip("/")}/serial_bridge/clear_fault '
-            'std_srvs/srv/Trigger',
+            f'  hexarm clear {space}\n'
+            f'or  ros2 service call /{space}/serial_bridge/clear_fault std_srvs/srv/Trigger',
             flush=True,
         )
         while client.machine_state.message == 'stopped':

@@ -17,13 +17,13 @@ from hexarm.calibration.servo_screen import POSITIVE
 from hexarm.calibration.servo_sitting import Sitting
 from hexarm.calibration.servo_values import changed_values, in_words
 from hexarm.machines import read
+from hexarm.statuses import INTERRUPTED
 from manipulator.errors import InvalidInput
 from manipulator.nodes.terminal import Terminal
 from manipulator.words import counted
 from manipulator.yaml_edit import with_values
 
 SEED = 7
-INTERRUPTED = 130
 
 
 def add_parser(parts: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:

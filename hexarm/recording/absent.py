@@ -3,9 +3,9 @@
 import difflib
 from collections.abc import Collection, Sequence
 
+from hexarm.namespaces import nobody_in
+
 NEAREST = 3
-MARK = '/machine_state'
-"""The topic by which a machine's namespace is known."""
 
 
 def unheard(names: Sequence[str], heard: Collection[str], there: Collection[str]) -> list[str]:
@@ -23,9 +23,7 @@ def nothing(namespace: str, lines: Sequence[str], there: Collection[str], domain
     """Why not one message was heard: the `lines` of topics asked for, or nobody is there."""
     if any(topic.startswith(f'/{namespace}/') for topic in there):
         return '; '.join(lines) or f'nobody said anything in /{namespace}'
-    others = sorted(topic.removesuffix(MARK) for topic in there if topic.endswith(MARK))
-    hint = f'; there are machines in {", ".join(others)}' if others else ''
-    reason = f'nothing is in /{namespace} on ROS domain {domain}: is a graph running there?{hint}'
+    reason = nobody_in(namespace, there, domain)
     return '; '.join([reason, *lines])
 
 

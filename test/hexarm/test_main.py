@@ -5,7 +5,8 @@ import sys
 
 import pytest
 
-from hexarm.main import COMMANDS, main
+from hexarm.commands import COMMANDS
+from hexarm.main import main
 
 
 def test_no_subcommand_prints_help_with_examples_and_fails(capsys):
@@ -71,3 +72,31 @@ def test_picture_of_an_unknown_ending_is_refused_before_anything_is_worked_out(c
 def test_up_refuses_in_words_before_a_node_is_started(words, said, capsys):
     assert main(['up', 'hexapod', *words]) == 1
     assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('command', ['enable', 'disable', 'clear', 'stop', 'monitor'])
+def test_what_is_no_namespace_is_refused_before_ros_is_started(command, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([command, 'bad name'])
+    assert ended.value.code == 2
+    assert "'bad name' is no ROS name" in capsys.readouterr().err
+
+
+def test_ctrl_c_while_modules_are_imported_is_silent():
+    script = (
+        'import sys, signal, builtins; real = builtins.__import__\n'
+        'def late(name, *rest):\n'
+        '    if name == "numpy": signal.raise_signal(signal.SIGINT)\n'
+        '    return real(name, *rest)\n'
+        'from hexarm.main import main; builtins.__import__ = late\n'
+        'sys.exit(main(["up", "hexapod"]))'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', script], check=False, capture_output=True, text=True, timeout=60
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, '', '')
+
+
+def test_the_command_itself_is_light_so_that_ctrl_c_is_caught_early():
+    script = 'import sys, hexarm.main; sys.exit("numpy" in sys.modules)'
+    assert subprocess.run([sys.executable, '-c', script], check=False, timeout=60).returncode == 0

@@ -5,7 +5,7 @@ import pytest
 
 from hexarm.machines import load
 from hexarm.main import main
-from hexarm.reach import OUT_OF_REACH
+from hexarm.statuses import OUT_OF_REACH
 from manipulator.pose import Pose
 
 HOME = ['--xyz', '0', '0', '0.04119']

@@ -14,7 +14,7 @@ def test_misspelt_topic_is_told_from_one_that_is_silent():
 
 def test_namespace_without_topics_is_told_with_domain_and_the_machines_that_there_are():
     assert nothing('arm', [], ['/rosout'], 7) == (
-        'nothing is in /arm on ROS domain 7: is a graph running there?'
+        'nobody answers in /arm on ROS domain 7: is a graph running there?'
     )
     assert nothing('hexa', [], THERE, 7).endswith('; there are machines in /hexapod')
 
