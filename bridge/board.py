@@ -33,6 +33,8 @@ HELLO_PERIOD_US = 250_000
 HOST_SILENCE_US = 500_000
 MAX_OUTPUT_BYTES = 1024
 HIGHEST_U16 = 0xFFFF
+FIRST_OF_BOARD = 0x81
+"""Types from here on are what a board says: from a host they mean nothing."""
 
 
 class Board:
@@ -85,7 +87,6 @@ class Board:
         if self._now_us < self.settings.boot_us:
             return
         for frame in self._reader.feed(received):
-            self._heard_at_us = self._now_us
             match frame.message:
                 case Setpoint():
                     self._take_setpoint(frame.message, frame.sequence)
@@ -134,16 +135,19 @@ class Board:
             self._modes.press_start(now_us)
 
     def _take_setpoint(self, setpoint: Setpoint, sequence: int) -> None:
+        self._heard_at_us = self._now_us
         if not self._is_new(sequence):
             self._refuse(Fault(FaultCode.STALE, NO_JOINT, sequence))
             return
         fault = self._modes.follow(setpoint, self._now_us)
         if fault is None:
             self._accept(sequence)
+            self._last_command = None  # its number may come round: no host repeats it after this
         else:
             self._refuse(fault)
 
     def _take_command(self, command: Command, sequence: int) -> None:
+        self._heard_at_us = self._now_us
         kind = type(command)
         if self._last_command is not None and self._last_command[:2] == (kind, sequence):
             result = self._last_command[2]
@@ -212,5 +216,6 @@ def _saturated(value: int) -> int:
 
 
 def _fault_of(unreadable: Unreadable) -> Fault:
-    code = FaultCode.MALFORMED if unreadable.is_known_type else FaultCode.UNKNOWN_TYPE
+    is_hosts = unreadable.is_known_type and unreadable.type_code < FIRST_OF_BOARD
+    code = FaultCode.MALFORMED if is_hosts else FaultCode.UNKNOWN_TYPE
     return Fault(code, NO_JOINT, unreadable.type_code)

@@ -15,7 +15,6 @@ void battery_begin(void)
     ADCSRA |= _BV(ADSC);
     while (ADCSRA & _BV(ADSC)) /* once, 0.2 ms: the first STATE tells what is there */
         continue;
-    ADCSRA |= _BV(ADSC);
 }
 
 uint16_t battery_mv(void)

@@ -78,10 +78,12 @@ static void take_setpoint(const Frame *frame)
         return;
     }
     Fault fault = safety_follow(get16(frame->payload), counts, joints);
-    if (fault.code == FAULT_NONE)
-        accept(frame->sequence);
-    else
+    if (fault.code != FAULT_NONE) {
         refuse(fault);
+        return;
+    }
+    accept(frame->sequence);
+    last_command.type = 0; /* its number may come round again: no host repeats it after this */
 }
 
 static void take_command(const Frame *frame)

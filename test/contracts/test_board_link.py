@@ -53,6 +53,15 @@ def test_says_hello_again_only_while_the_host_is_silent(driver):
     assert driver.hellos(1.0)
 
 
+def test_what_only_a_board_says_is_no_word_of_a_host(driver):
+    driver.run(1.0)
+    greetings = []
+    for _ in range(10):
+        driver.say(Ack(1, Result.OK))
+        greetings += driver.hellos(0.2)
+    assert len(greetings) >= 6
+
+
 def test_state_comes_fifty_times_a_second_and_echoes_the_last_sequence(armed):
     armed.say(Setpoint(200, MOVED), 1000)
     armed.run(0.005)
@@ -73,6 +82,18 @@ def test_a_repeated_command_is_answered_again_but_not_done_again(armed):
     armed.say(Stop())
     armed.run(0.1)
     assert armed.ask(Clear(), cleared) is Result.STALE
+    assert armed.state().mode is Mode.STOPPED
+
+
+def test_a_stop_is_obeyed_when_its_sequence_has_come_round_since_the_last_one(armed):
+    stopped = armed.say(Stop())
+    armed.run(0.1)
+    armed.press_start()
+    assert armed.state().mode is Mode.ARMED
+    for step in (20_000, 40_000, 60_000):
+        armed.say(Setpoint(200, PARK), (stopped + step) & 0xFFFF)
+        armed.run(0.02)
+    assert armed.ask(Stop(), stopped) is Result.OK
     assert armed.state().mode is Mode.STOPPED
 
 
@@ -112,11 +133,15 @@ def test_sequence_numbers_wrap(armed):
 
 
 def test_unknown_and_malformed_frames_are_refused_and_counted(armed):
-    for code, payload, fault in [(0x10, b'', 'UNKNOWN_TYPE'), (0x01, b'\1', 'MALFORMED')]:
+    for code, payload, fault in [
+        (0x10, b'', 'UNKNOWN_TYPE'),
+        (0x01, b'\1', 'MALFORMED'),
+        (0x81, b'\1', 'UNKNOWN_TYPE'),
+    ]:
         body = bytes([code, 9, 9]) + payload
         armed.board.feed(cobs.encode(body + checksum(body).to_bytes(2, 'little')) + b'\0')
         assert [f.code.name for f in armed.faults()] == [fault]
-    assert armed.state().refused == 2
+    assert armed.state().refused == 3
     assert armed.state().mode is Mode.ARMED
 
 
