@@ -14,6 +14,7 @@ from bridge.program_messages import CycleAxis, Program, ProgramPart, TableBegin,
 RAMP = 1.0
 APPROACH = 0.5
 NEAR_COUNTS = 120
+ROUNDING = 1
 TABLE_BYTES = 5376
 MIN_STEP_MS = 20
 AXES = 6
@@ -116,6 +117,17 @@ class Programs:
         """One period further; the counts to aim at where the step is MOVING or DONE."""
         if not self._is_checked:
             return (Step.DONE, self._from) if self._is_finishing else self._check()
+        step, counts = self._move()
+        if step in (Step.MOVING, Step.DONE):
+            # A fast sine passes through other samples each time than those it was checked by.
+            if not is_within(self._before, counts, [most + ROUNDING for most in self._steps]):
+                return Step.TOO_FAST, self._from
+            self._before = counts
+        return step, counts
+
+    def _move(self) -> tuple[Step, Counts]:
+        if self._approach == 0.0:
+            self._before = self._from
         if self._approach < 1.0:
             return self._go_to_start()
         return self._play_table() if isinstance(self._course, Table) else self._play_cycle()

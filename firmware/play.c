@@ -1,6 +1,7 @@
 #include "play.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "cycle.h"
 #include "motion.h"
@@ -11,6 +12,7 @@
 #define PERIOD_S 0.02f
 #define RAMP_S 1.0f     /* from standing to full speed, and back */
 #define APPROACH_S 0.5f /* from where the joints are to the program's first counts */
+#define ROUNDING 1      /* counts by which a way that is just slow enough may seem too fast */
 #define NEAR_COUNTS 120 /* about 6 degrees: how far that way may be */
 
 static const float STEP[JOINT_COUNT] = STEP_COUNTS;
@@ -24,7 +26,7 @@ static float time;     /* in the program, s */
 static float ramp;     /* 0 standing, 1 at full speed */
 static float approach; /* 0 where the joints were, 1 at the program's first counts */
 static float from[JOINT_COUNT];
-static float before[JOINT_COUNT]; /* the sample before, while it is checked */
+static float before[JOINT_COUNT]; /* the sample before, while it is checked and while it plays */
 
 static bool is_cycle(void)
 {
@@ -100,6 +102,15 @@ void play_finish(void)
     is_finishing = true;
 }
 
+/* A servo could not do the way from the sample before within a period. */
+static bool is_too_fast(const float exact[JOINT_COUNT], float tolerance)
+{
+    for (uint8_t i = 0; i < JOINT_COUNT; i++)
+        if (fabsf(exact[i] - before[i]) > STEP[i] + tolerance)
+            return true;
+    return false;
+}
+
 /* One sample of the cycle a period: reach, pulse range, and speed from the sample before. */
 static uint8_t check_step(void)
 {
@@ -110,11 +121,9 @@ static uint8_t check_step(void)
     rounded(exact, counts);
     if (servo_out_of_range(counts) != NO_JOINT)
         return PLAY_UNREACHABLE;
-    for (uint8_t i = 0; i < JOINT_COUNT; i++) {
-        if (time > 0 && fabsf(exact[i] - before[i]) > STEP[i])
-            return PLAY_TOO_FAST;
-        before[i] = exact[i];
-    }
+    if (time > 0 && is_too_fast(exact, 0))
+        return PLAY_TOO_FAST;
+    memcpy(before, exact, sizeof before);
     time += PERIOD_S;
     if (time > duration + PERIOD_S) {
         is_checked = true;
@@ -123,14 +132,19 @@ static uint8_t check_step(void)
     return PLAY_CHECKING;
 }
 
-static bool aim(const float exact[JOINT_COUNT])
+/* Looked at again: a fast sine passes through other samples each time than those it was checked
+ * by. `step` is what comes of it where it can be followed. */
+static uint8_t aim(const float exact[JOINT_COUNT], uint8_t step)
 {
     uint16_t counts[JOINT_COUNT];
     rounded(exact, counts);
     if (servo_out_of_range(counts) != NO_JOINT)
-        return false;
+        return PLAY_UNREACHABLE;
+    if (is_too_fast(exact, ROUNDING))
+        return PLAY_TOO_FAST;
+    memcpy(before, exact, sizeof before);
     motion_aim(counts);
-    return true;
+    return step;
 }
 
 static uint8_t approach_step(void)
@@ -143,7 +157,7 @@ static uint8_t approach_step(void)
         return PLAY_UNREACHABLE;
     for (uint8_t i = 0; i < JOINT_COUNT; i++)
         start[i] = from[i] + smooth(approach) * (start[i] - from[i]);
-    return aim(start) ? PLAY_MOVING : PLAY_UNREACHABLE;
+    return aim(start, PLAY_MOVING);
 }
 
 static void change_ramp(void)
@@ -162,9 +176,9 @@ static uint8_t cycle_step(void)
         is_finishing = is_finishing || !is_loop;
     }
     change_ramp();
-    if (!cycle_at(time, smooth(ramp), exact) || !aim(exact))
+    if (!cycle_at(time, smooth(ramp), exact))
         return PLAY_UNREACHABLE;
-    return is_finishing && ramp <= 0 ? PLAY_DONE : PLAY_MOVING;
+    return aim(exact, is_finishing && ramp <= 0 ? PLAY_DONE : PLAY_MOVING);
 }
 
 /* A table keeps its way: its pace grows from nothing, and shrinks to nothing. */
@@ -184,15 +198,15 @@ static uint8_t table_step(void)
         is_over = true;
     }
     table_at(program, time, exact);
-    if (!aim(exact))
-        return PLAY_UNREACHABLE;
-    return is_over ? PLAY_DONE : PLAY_MOVING;
+    return aim(exact, is_over ? PLAY_DONE : PLAY_MOVING);
 }
 
 uint8_t play_step(void)
 {
     if (!is_checked)
         return is_finishing ? PLAY_DONE : check_step();
+    if (approach == 0)
+        memcpy(before, from, sizeof before);
     if (approach < 1)
         return approach_step();
     return is_cycle() ? cycle_step() : table_step();

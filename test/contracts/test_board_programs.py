@@ -255,6 +255,21 @@ def test_a_cycle_that_cannot_be_followed_is_refused_before_anything_moves(make_d
     assert states[-1].mode in ARMED
 
 
+def test_a_cycle_whose_samples_hide_its_speed_ends_where_it_would_be_too_fast(make_driver):
+    """24.9 Hz in samples of 50 Hz: all near zero in the first period, farther off in each next."""
+    driver = make_driver()
+    driver.arm(HOME)
+    assert driver.ask(CycleAxis(5, 0.06, 24_900, 0.0)) is Result.OK
+    assert driver.ask(Play(Program.CYCLE, True)) is Result.OK
+    messages = driver.run(4.0)
+    assert [m.code for m in messages if isinstance(m, Fault)] == [FaultCode.TOO_FAST]
+    states = [m for m in messages if isinstance(m, State)]
+    assert Mode.PLAYING in [state.mode for state in states]
+    counts = np.array([[joint.count for joint in state.joints] for state in states])
+    assert np.abs(np.diff(counts, axis=0)).max() <= STEP
+    assert states[-1].mode in ARMED
+
+
 @pytest.mark.parametrize(
     'axis',
     [
