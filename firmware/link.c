@@ -27,7 +27,7 @@ static uint16_t overruns;
 void link_begin(void)
 {
     UCSR0A = _BV(U2X0);
-    UBRR0 = F_CPU / 8 / BAUD - 1;
+    UBRR0 = (F_CPU / 8 + BAUD / 2) / BAUD - 1; /* the nearest, as machine.h has checked */
     UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);
     UCSR0B = _BV(RXEN0) | _BV(TXEN0) | _BV(RXCIE0);
 }

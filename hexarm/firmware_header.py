@@ -15,6 +15,9 @@ from manipulator.errors import ConfigError
 
 WIDEST_COUNT = 36_000
 """18 ms: a wider pulse would still be under way when the board prepares the next one."""
+BAUD_STEP, WORST_BAUD = 2_000_000, 0.025
+"""Bits per second at the chip's fastest; 115200 is 2.1 % off, and still understood."""
+HIGHEST_BATTERY_MV = 9_990
 BOOT_S = 0.0
 
 
@@ -55,6 +58,8 @@ def header(
 ) -> str:
     """machine.h; counts are half microseconds of pulse, by channel."""
     _refuse_wide_pulses(settings)
+    _refuse_baud(baud)
+    _refuse_battery(settings)
     lows, highs = zip(*settings.count_ranges, strict=True)
     steps = (f'{speed * PULSE_PERIOD_US * 1e-6:.8e}f' for speed in settings.count_speeds)
     definitions = {
@@ -82,6 +87,24 @@ def _refuse_wide_pulses(settings: BoardSettings) -> None:
                     f'the board makes at most {WIDEST_COUNT / 2:g} us'
                 ]
             )
+
+
+def _refuse_baud(baud: int) -> None:
+    """The chip divides its crystal by 8 and a whole number."""
+    made = BAUD_STEP / max(round(BAUD_STEP / baud), 1)
+    if abs(made / baud - 1) > WORST_BAUD:
+        nearest = f'the board makes {made:.0f} instead'
+        raise ConfigError([f'link.baud: {baud} bit/s; {nearest}, 250000 is exact'])
+
+
+def _refuse_battery(settings: BoardSettings) -> None:
+    if settings.minimum_battery_mv >= HIGHEST_BATTERY_MV:
+        raise ConfigError(
+            [
+                f'servos.minimum_battery_v: {settings.minimum_battery_mv / 1000:g} V, the board '
+                f'measures below {HIGHEST_BATTERY_MV / 1000:g} V and would never arm'
+            ]
+        )
 
 
 def _row(values: Iterable[object]) -> str:

@@ -40,6 +40,25 @@ def test_pulses_that_do_not_fit_a_period_are_refused():
         header(settings, 250_000, 'wide')
 
 
+@pytest.mark.parametrize('baud', [57_600, 115_200, 250_000, 1_000_000, 2_000_000])
+def test_rates_that_the_chip_comes_near_to_are_taken(baud):
+    settings = BoardSettings(count_ranges=((1100, 4900),), count_speeds=(100.0,))
+    assert definitions(header(settings, baud, 'one'))['BAUD'] == f'{baud}UL'
+
+
+@pytest.mark.parametrize('baud', [230_400, 460_800, 1_500_000, 4_000_000])
+def test_a_rate_that_the_chip_cannot_make_is_refused(baud):
+    settings = BoardSettings(count_ranges=((1100, 4900),), count_speeds=(100.0,))
+    with pytest.raises(ConfigError, match=f'link.baud: {baud} bit/s; the board makes'):
+        header(settings, baud, 'one')
+
+
+def test_a_battery_that_the_board_cannot_measure_is_refused():
+    settings = BoardSettings(((1100, 4900),), (100.0,), minimum_battery_mv=11_100)
+    with pytest.raises(ConfigError, match=r'minimum_battery_v: 11\.1 V, the board measures below'):
+        header(settings, 250_000, 'one')
+
+
 def test_release_on_link_loss_reaches_the_board():
     settings = BoardSettings(count_ranges=((1100, 4900),), count_speeds=(100.0,))
     released = dataclasses.replace(settings, on_link_loss='release')
