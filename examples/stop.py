@@ -6,9 +6,9 @@
 The service `trajectory/stop` brakes along the path within the limits of acceleration and jerk,
 then holds; the next goal moves on. `emergency_stop` (std_msgs/Bool) goes to the bridge and from
 there to the board, past every planner: the servos hold where they are, and nothing moves them
-until the service `serial_bridge/clear_fault` ends the stop. Publishing false does nothing. `hexarm stop`
-and `hexarm clear` do the same by the board's services. Neither replaces a switch in the servos'
-supply.
+until the service `serial_bridge/clear_fault` ends the stop. Publishing false does nothing.
+`hexarm stop` and `hexarm clear` ask the same of the board. None of them replaces a switch in the
+servos' supply.
 """
 
 import argparse
