@@ -167,7 +167,7 @@ def report(result: Result, arm_result: 'ArmResult', arm: Machine, picture: Path)
     for title, rows in (('RoboCake', result.rows()), ('six-axis arm', arm_result.rows())):
         print(f'\n{title}')
         for name, value in rows:
-            print(f'  {name:<52} {value}')
+            print(f'  {name:<40} {value}')
     draw(result, arm_result, arm, picture)
     print(f'\nThe picture is in {picture}.')
     print('To drive it yourself, in a browser: hexarm up hexapod --panel')

@@ -56,13 +56,13 @@ class ArmResult:
         """The table, a line each."""
         degrees, millimetres = np.degrees(self.turned), 1e3 * self.missed
         for name, values, unit in (
-            (f'orientation held over {self.way:.2f} m, error at the end, rms, max', degrees, '°'),
-            ('point looked at missed by, at the end, rms, max', millimetres, ' mm'),
+            (f'turned over {self.way:.2f} m, end, rms, max', degrees, '°'),
+            ('point missed by, end, rms, max', millimetres, ' mm'),
         ):
             kept = values[np.isfinite(values)]
             figures = (kept[-1], np.sqrt(np.mean(kept**2)), kept.max())
             yield name, ', '.join(f'{figure:.3f}{unit}' for figure in figures)
-        yield 'stick released to standing still, longest', f'{1e3 * self.stop:.0f} ms'
+        yield 'stick released to standstill, longest', f'{1e3 * self.stop:.0f} ms'
 
 
 def measure_arm(observation: ArmObservation, kinematics: Kinematics) -> ArmResult:

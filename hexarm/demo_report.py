@@ -52,7 +52,7 @@ class Result:
         yield 'time lag on the circle', f'{self.lag * 1e3:.0f} ms'
         yield 'orientation error rms, max', f'{_rms(turn):.3f}°, {turn.max():.3f}°'
         p50, p99 = (bridge[f'setpoint_to_frame_{p}_ms'] for p in ('p50', 'p99'))
-        yield 'setpoint published to frame written p50, p99', f'{p50} ms, {p99} ms'
+        yield 'setpoint to frame written p50, p99', f'{p50} ms, {p99} ms'
         yield 'frames sent', bridge['frames_sent']
         yield 'goals refused (one was out of reach)', str(self.observation.goals_refused)
 
