@@ -4,7 +4,6 @@ import argparse
 import difflib
 import re
 import sys
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import NoReturn
 
@@ -83,6 +82,8 @@ def _parser() -> Parser:
 
 def _version() -> str:
     """Of the installation, or of setup.py in a source tree that is not installed."""
+    from importlib.metadata import PackageNotFoundError, version  # noqa: PLC0415 (slow, as above)
+
     try:
         return str(version('hexarm'))
     except PackageNotFoundError:
