@@ -34,7 +34,7 @@ setup(
         'plot': ['matplotlib>=3.8'],
         'physics': ['mujoco>=3.2', 'matplotlib>=3.8', 'pillow>=10'],
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.5', 'matplotlib>=3.8'],
-        'panel': ['viser>=1.0'],
+        'panel': ['viser>=1.1'],
         'terminal': ['rich>=13'],
         # Libraries that `make bench` compares with: docs/performance.md.
         'bench': [

@@ -7,6 +7,7 @@ import numpy as np
 from manipulator.kinematics import Kinematics
 from manipulator.skeleton import Stroke
 from panel.bars import wxyz_of
+from panel.gripper import fingers
 from panel.meshes import bar, hull, plate, sphere
 from panel.pieces import PLAIN, Colours, Pieces, colours, pieces
 from panel.view import Stance
@@ -17,6 +18,9 @@ STILL = 2e-5
 PLATE, PLATE_OPACITY = 0.02, 0.6
 """Thickness by the machine's size; the way driven and the reach are seen through it."""
 
+HALF_OPEN = 0.5
+"""How a gripper is drawn of which nothing is known."""
+
 GHOST_OPACITY = 0.28
 GHOST = (120, 190, 255)
 
@@ -25,10 +29,18 @@ class Body:
     """One drawing of the machine under the scene's name `name`; lengths times `scale`."""
 
     def __init__(
-        self, scene: Any, name: str, kinematics: Kinematics, scale: float, is_ghost: bool
+        self,
+        scene: Any,
+        name: str,
+        kinematics: Kinematics,
+        scale: float,
+        *,
+        has_gripper: bool = False,
+        is_ghost: bool = False,
     ) -> None:
         self._kinematics = kinematics
         self._scale = scale
+        self._has_gripper = has_gripper
         self._is_ghost = is_ghost
         self._shown: Stance | None = None
         home = kinematics.home
@@ -79,6 +91,9 @@ class Body:
 
     def _pieces(self, stance: Stance) -> Pieces:
         strokes = self._kinematics.skeleton(stance.pose, stance.joints)
+        if self._has_gripper:
+            opening = HALF_OPEN if stance.opening is None else stance.opening
+            strokes += fingers(stance.pose, opening, 1.0 / self._scale)
         scaled = tuple(Stroke(s.part, s.points * self._scale) for s in strokes)
         return pieces(scaled)
 
@@ -115,4 +130,5 @@ class Body:
 def _are_alike(a: Stance, b: Stance) -> bool:
     """Whether nobody could see the difference."""
     way = np.abs(a.pose.twist_to(b.pose)).max()
-    return bool(max(way, np.abs(a.joints - b.joints).max()) < STILL)
+    is_grip_alike = a.opening == b.opening
+    return is_grip_alike and bool(max(way, np.abs(a.joints - b.joints).max()) < STILL)

@@ -16,6 +16,19 @@ STATE_COLOURS = {
 }
 DIM = '#8b949e'
 
+STOP_AGAIN = 1.0
+"""How often STOP is said while it is held, Hz."""
+
+IN_SIGHT = """
+<style>
+  [id="{0}"] {{ height: 2.8em !important; }}
+  div:has(> [id="{0}"]) {{ position: sticky; top: 0; z-index: 20; }}
+  .mantine-ScrollArea-content div:has([id="{0}"]) {{ overflow: clip !important; }}
+</style>"""
+"""Keeps a button at the top of the panel when what is below it is scrolled; a thumb finds it.
+
+What hides its overflow would be what a button sticks to; what clips it is not."""
+
 
 @dataclass(frozen=True)
 class Wishes:
@@ -30,6 +43,7 @@ class Wishes:
     brake: Callable[[], None]
     set_speed: Callable[[float], None]
     choose_mode: Callable[[str], None]
+    grip: Callable[[float], None]
 
 
 class Buttons:
@@ -43,7 +57,10 @@ class Buttons:
         async def on_stop(event: Any) -> None:
             wishes.emergency_stop()
 
-        stop.on_click(on_stop)  # in the server's own loop: nothing to wait for
+        # Coroutines run in the server's own loop: they wait for no thread.
+        stop.on_hold(on_stop, callback_hz=STOP_AGAIN)  # said as the finger comes down …
+        stop.on_click(on_stop)  # … and by the keyboard
+        gui.add_html(IN_SIGHT.format(stop._impl.uuid))
         self._group(gui, 'Servos', {
             'Enable': lambda: wishes.enable(True),
             'Disable': lambda: wishes.enable(False),

@@ -2,8 +2,11 @@
 
 from rclpy.node import Node
 
-from hexarm.machines import load
+from bridge.calibration import Calibration
+from bridge.servo_config import BoardConfig
+from hexarm.machines import load, read
 from manipulator.nodes.run import run_node
+from panel.gripper import GripperJoint
 
 MACHINE = 'robocake'
 
@@ -14,6 +17,17 @@ def panel() -> int:
     def make() -> Node:
         from panel.nodes.panel_node import PanelNode  # noqa: PLC0415 (needs viser)
 
-        return PanelNode(load, MACHINE)
+        return PanelNode(load, gripper_of, MACHINE)
 
     return run_node(make)
+
+
+def gripper_of(name_or_path: str) -> GripperJoint | None:
+    """The joint that a machine file marks as its gripper; ConfigError says what is wrong."""
+    servos = BoardConfig.from_machine(read(name_or_path), name_or_path).servos
+    calibration = Calibration.from_config(servos)
+    for joint in servos.joints:
+        if joint.is_gripper:
+            closed, opened = calibration.range_of(calibration.names.index(joint.name))
+            return GripperJoint(joint.name, closed, opened)
+    return None

@@ -12,10 +12,11 @@ from manipulator.pose import Pose
 from manipulator.teleop.modes import MODES
 from panel.buttons import Buttons, Wishes
 from panel.goal_sliders import GoalSliders
+from panel.gripper_slider import GripperSlider
 from panel.plots import Plots
 from panel.readout import diagnostics_text
 from panel.scene import Scene
-from panel.view import View
+from panel.view import Stance, View
 
 JOYSTICK_HEIGHT = 200
 FASTEST = 100
@@ -28,6 +29,7 @@ class Page:
         self,
         server: Any,
         machine: Machine,
+        has_gripper: bool,
         title: str,
         joystick: str,
         wishes: Wishes,
@@ -38,11 +40,12 @@ class Page:
                             control_width='large', brand_color=(88, 166, 255))  # fmt: skip
         gui.set_panel_label(title)
         gui.main_panel.dock_right()
-        self.scene = Scene(server, machine)
+        self.scene = Scene(server, machine, has_gripper)
         self._buttons = Buttons(gui, wishes)
         tabs = gui.add_tab_group()
         with tabs.add_tab('Drive'):
             self.sliders = GoalSliders(gui, machine, wish_goal)
+            self._gripper = GripperSlider(gui, wishes.grip) if has_gripper else None
             gui.add_html(joystick_frame(joystick))
             self._joystick_speed = gui.add_slider('joystick [%]', 1, FASTEST, 1, 40)
             modes = gui.add_dropdown('jog mode', tuple(MODES))
@@ -68,6 +71,11 @@ class Page:
     def show_speed(self, share: float) -> None:
         """The speed override that somebody set."""
         self._buttons.show_speed(share)
+
+    def follow_gripper(self, measured: Stance | None) -> None:
+        """The slider of the gripper shows where it is, where that is known."""
+        if self._gripper is not None and measured is not None and measured.opening is not None:
+            self._gripper.follow(measured.opening)
 
     def note(self, view: View, now: float) -> None:
         """A sample for the plots."""

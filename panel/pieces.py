@@ -10,10 +10,22 @@ from manipulator.skeleton import Stroke
 from panel.bars import Bars, bars_between
 from panel.margins import colour
 
-RADII = {'body': 0.012, 'crank': 0.022, 'rod': 0.014, 'platform': 0.016, 'link': 0.055}
+RADII = {
+    'body': 0.012,
+    'crank': 0.022,
+    'rod': 0.014,
+    'platform': 0.016,
+    'link': 0.055,
+    'gripper': 0.011,
+}
 """Of bars, by part, as shares of the machine's size."""
 
-PLAIN = {'body': (58, 68, 82), 'platform': (62, 104, 168), 'link': (62, 104, 168)}
+PLAIN = {
+    'body': (58, 68, 82),
+    'platform': (62, 104, 168),
+    'link': (62, 104, 168),
+    'gripper': (196, 140, 40),
+}
 """Parts whose colour says nothing; cranks, rods and joints are coloured by their margins."""
 
 COLUMNS = ('crank', 'rod')

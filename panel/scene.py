@@ -23,10 +23,10 @@ APART = 5e-3
 """Of the machine's size, or radians, from which the commanded machine is drawn beside it."""
 
 TRAIL_STEP = 0.004
-TRAIL_COLOUR, HULL_COLOUR = (255, 200, 87), (90, 130, 190)
+TRAIL_COLOUR, HULL_COLOUR = (255, 200, 87), (150, 190, 255)
 REACH_LOOKS: dict[str, dict[str, Any]] = {
     'solid': {'opacity': 0.07},
-    'net': {'wireframe': True, 'opacity': 0.16},
+    'net': {'wireframe': True, 'opacity': 0.22},
 }
 CAMERA = np.array([1.2, -1.4, 0.95])
 
@@ -34,7 +34,7 @@ CAMERA = np.array([1.2, -1.4, 0.95])
 class Scene:
     """What a viser server shows in three dimensions."""
 
-    def __init__(self, server: Any, machine: Machine) -> None:
+    def __init__(self, server: Any, machine: Machine, has_gripper: bool) -> None:
         self._scene = server.scene
         self._machine = machine
         kinematics = machine.kinematics
@@ -42,10 +42,12 @@ class Scene:
         points = np.vstack([stroke.points for stroke in strokes])
         self._scale = 1.0 / float(np.ptp(points, axis=0).max())
         low, high = points.min(axis=0) * self._scale, points.max(axis=0) * self._scale
-        self._floor(float(min(low[2], 0.0)))
-        self._camera(server, (low + high) / 2)
-        self._measured = Body(self._scene, '/measured', kinematics, self._scale, is_ghost=False)
-        self._commanded = Body(self._scene, '/commanded', kinematics, self._scale, is_ghost=True)
+        self._floor_height = float(min(low[2], 0.0)) - 0.06
+        self._floor()
+        self._camera(server, (low + high) / 2, float(high[2] - low[2]))
+        look = kinematics, self._scale
+        self._measured = Body(self._scene, '/measured', *look, has_gripper=has_gripper)
+        self._commanded = Body(self._scene, '/commanded', *look, is_ghost=True)
         self._pivot = self._add_axes('/pivot', 0.16, 0.006)
         self._goal = self._add_axes('/goal', 0.22, 0.004)
         self._reach: list[Any] = []
@@ -73,12 +75,14 @@ class Scene:
     def show_reach(self, surface: Array) -> None:
         """Draws the positions reached with home's orientation, a grid from pole to pole."""
         vertices, faces = hull(surface * self._scale)
+        is_cut = bool(vertices[:, 2].min() < self._floor_height)
+        looks = {'net': REACH_LOOKS['net']} if is_cut else REACH_LOOKS  # a floor cuts in patches
         self._reach = [
             self._scene.add_mesh_simple(
                 f'/reach/{name}', vertices, faces, color=HULL_COLOUR, side='double',
                 cast_shadow=False, receive_shadow=False, **look,
             )
-            for name, look in REACH_LOOKS.items()
+            for name, look in looks.items()
         ]  # fmt: skip
 
     def set_reach_visible(self, is_visible: bool) -> None:
@@ -131,16 +135,17 @@ class Scene:
         if not np.allclose(handle.wxyz, wxyz_of(pose), atol=STILL):
             handle.wxyz = wxyz_of(pose)
 
-    def _floor(self, height: float) -> None:
+    def _floor(self) -> None:
         self._scene.add_grid(
             '/floor', width=6.0, height=6.0, cell_size=0.1, section_size=0.5, plane='xy',
             cell_color=(48, 54, 61), section_color=(68, 76, 86),
-            position=(0.0, 0.0, height - 0.06), shadow_opacity=0.0,
+            position=(0.0, 0.0, self._floor_height), shadow_opacity=0.0,
         )  # fmt: skip
         self._scene.world_axes.visible = False
         self._scene.configure_default_lights(cast_shadow=False)  # shadows cost most of the drawing
 
-    def _camera(self, server: Any, centre: Array) -> None:
-        server.initial_camera.position = tuple(centre + CAMERA)
+    def _camera(self, server: Any, centre: Array, height: float) -> None:
+        """Looks at all of the machine: at what is tall from further away."""
+        server.initial_camera.position = tuple(centre + (0.7 + 0.45 * height) * CAMERA)
         server.initial_camera.look_at = tuple(centre)
         server.initial_camera.fov = 0.75

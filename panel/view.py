@@ -10,10 +10,14 @@ from manipulator.pose import Pose
 
 @dataclass(frozen=True, eq=False)
 class Stance:
-    """One pose of the platform or tool in the base frame, and the joints that go with it."""
+    """One pose of the platform or tool in the base frame, and the joints that go with it.
+
+    opening is the gripper's, 0 closed to 1 open, where there is one and it is known.
+    """
 
     pose: Pose
     joints: Array
+    opening: float | None = None
 
 
 @dataclass(frozen=True)

@@ -73,8 +73,12 @@ class JogTopics:
         """Opens the gripper by `step` of its way, or closes it for negative ones."""
         opening = min(max(self._opening + step, 0.0), 1.0)
         if opening != self._opening:
-            self._opening = opening
-            self._gripper.publish(Float64(data=opening))
+            self.open_to(opening)
+
+    def open_to(self, opening: float) -> None:
+        """Opens the gripper to a share of its way, 0 (closed) to 1."""
+        self._opening = opening
+        self._gripper.publish(Float64(data=opening))
 
     def home(self, is_held: bool) -> None:
         """Goes home while held: asks once the machine is free, and stops it at release."""

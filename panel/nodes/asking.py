@@ -32,11 +32,16 @@ class Asking:
     """
 
     def __init__(
-        self, node: Node, on_stop: Callable[[], None], choose_mode: Callable[[str], None]
+        self,
+        node: Node,
+        on_stop: Callable[[], None],
+        choose_mode: Callable[[str], None],
+        grip: Callable[[float], None],
     ) -> None:
         self._node = node
         self._on_stop = on_stop
         self._choose_mode = choose_mode
+        self._grip = grip
         self._wishes: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._goal: Pose | None = None
         self.said = ''
@@ -61,6 +66,7 @@ class Asking:
                 lambda: self._speeds.publish(Float64(data=share))
             ),
             choose_mode=lambda mode: self._wishes.put(lambda: self._choose_mode(mode)),
+            grip=lambda opening: self._wishes.put(lambda: self._grip(opening)),
         )
 
     def wish_goal(self, pose: Pose) -> None:

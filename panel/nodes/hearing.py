@@ -1,5 +1,6 @@
 """What the panel's node hears of a machine, kept until the page shows it."""
 
+import contextlib
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -15,6 +16,7 @@ from manipulator.frames import Frames
 from manipulator.machine import Machine
 from manipulator.nodes.messages import PLATFORM_FRAME, joints_of, point_of, pose_of
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
+from panel.gripper import GripperJoint
 from panel.view import NodeReport, Stance, View
 
 STREAMS = {
@@ -51,8 +53,9 @@ class _Newest:
 class Hearing:
     """Subscriptions of the panel; messages are only kept, and decoded when the page is drawn."""
 
-    def __init__(self, node: Node, machine: Machine) -> None:
+    def __init__(self, node: Node, machine: Machine, gripper: GripperJoint | None) -> None:
         self._node = node
+        self._gripper = gripper
         self._kinematics = machine.kinematics
         self._frames: Frames = machine.frames
         self._streams = {
@@ -100,9 +103,17 @@ class Hearing:
         if pose is None or joints is None:
             return None
         try:
-            return Stance(pose_of(pose), joints_of(joints, self._kinematics.joint_names))
+            found = joints_of(joints, self._kinematics.joint_names)
+            return Stance(pose_of(pose), found, self._opening(joints))
         except ManipulatorError:
             return None
+
+    def _opening(self, joints: JointState) -> float | None:
+        """The gripper's, None where the machine has none or the message does not name it."""
+        with contextlib.suppress(ManipulatorError):
+            if self._gripper is not None:
+                return self._gripper.opening(joints_of(joints, (self._gripper.name,))[0])
+        return None
 
     def _node_reports(self) -> tuple[NodeReport, ...]:
         now = time.monotonic()

@@ -20,6 +20,7 @@ from manipulator.pose import Pose
 from manipulator.reach.words import explained
 from manipulator.words import counted
 from manipulator.workspace.inside import surface
+from panel.gripper import GripperJoint
 from panel.meshes import sphere
 from panel.nodes.asking import Asking
 from panel.nodes.hearing import Hearing
@@ -49,26 +50,33 @@ PORT = 'port number of the page; where it is taken, the next free one'
 class PanelNode(Node):
     """Everything of a machine on http://host:port; see docs/panel.md."""
 
-    def __init__(self, load: Callable[[str], Machine], default_machine: str) -> None:
+    def __init__(
+        self,
+        load: Callable[[str], Machine],
+        gripper_of: Callable[[str], GripperJoint | None],
+        default_machine: str,
+    ) -> None:
         super().__init__('panel')
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         host = declare(self, 'host', '127.0.0.1', HOST)
         port = declare(self, 'port', 8080, PORT, (1, 65535))
         self._machine = load(name)
+        gripper = gripper_of(name)
         self._joystick = JoystickSocket(self._why_still)
-        self._hearing = Hearing(self, self._machine)
+        self._hearing = Hearing(self, self._machine, gripper)
         self._topics = JogTopics(self, 'panel')
-        self._asking = Asking(self, self._joystick.stop, self._topics.choose)
+        self._asking = Asking(self, self._joystick.stop, self._topics.choose, self._grip)
         limits = self._machine.motion
         self._full = np.repeat([limits.linear.speed, limits.angular.speed], 3)
         label = f'{Path(name).stem} · {self.get_namespace()}'
         self._server = start_server(host, port, label, self._joystick.serve)
         joystick = Path(__file__).parents[1].joinpath('joystick.html').read_text(encoding='utf-8')
         self._page = Page(
-            self._server, self._machine, label, joystick, self._asking.wishes, self._wish_goal
-        )
+            self._server, self._machine, gripper is not None, label, joystick,
+            self._asking.wishes, self._wish_goal,
+        )  # fmt: skip
         self._reach = NewestWorker[tuple[Pose, Array | None]](self._show_reach)
-        self._moved_at = float('-inf')
+        self._moved_at = self._gripped_at = float('-inf')
         self._ticks = 0
         self._reach_at = self._machine.kinematics.home
         self._is_reach_asked = self._is_hull_drawn = False
@@ -112,7 +120,10 @@ class PanelNode(Node):
         if not self._is_reach_asked:
             self._is_reach_asked = True
             self._ask_reach(self._page.sliders.pose)
-        if view.commanded is None or time.monotonic() - self._moved_at < HAND_RESTS:
+        now = time.monotonic()
+        if now - self._gripped_at > HAND_RESTS:
+            self._page.follow_gripper(view.measured)
+        if view.commanded is None or now - self._moved_at < HAND_RESTS:
             return
         pose = view.commanded.pose
         if view.mode in FOLLOWED and self._is_elsewhere(pose):
@@ -128,6 +139,10 @@ class PanelNode(Node):
         self._moved_at = time.monotonic()
         self._asking.wish_goal(pose)
         self._ask_reach(pose)
+
+    def _grip(self, opening: float) -> None:
+        self._gripped_at = time.monotonic()
+        self._topics.open_to(opening)
 
     def _ask_reach(self, pose: Pose) -> None:
         self._page.scene.show_goal(pose)

@@ -35,7 +35,7 @@ def start_server(host: str, port: int, label: str, serve_joystick: Handler) -> A
         server.stop()
         raise Refused(
             f'viser {viser.__version__} opens its port in a way that this panel does not know: '
-            "python3 -m pip install 'viser>=1.0,<1.2'"
+            "python3 -m pip install 'viser>=1.1,<1.2'"
         )
     server.request_share_url = _refuse_to_share
     return server

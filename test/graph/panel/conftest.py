@@ -1,0 +1,277 @@
+"""The panel's page in a real browser, against a whole graph on a fake board."""
+
+import importlib.util
+import os
+import shutil
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import PoseStamped, TwistStamped
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import JointState
+
+from hexarm.graph import Graph, machine_graph
+from hexarm.panel_process import panel_address, panel_process
+from manipulator.nodes.messages import pose_of, seconds
+
+CHROMIUM = shutil.which('chromium') or '/usr/bin/chromium'
+QUIET = ('background-networking', 'component-update', 'sync', 'default-apps', 'extensions')
+FLAGS = [
+    '--no-sandbox',
+    '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader',
+    '--no-first-run',
+    *(f'--disable-{name}' for name in QUIET),
+]
+SMALL = 0.1
+"""Share of the pixels: a machine without a graphics card draws them all by itself."""
+
+PATIENCE = 60_000
+MOVING = 3e-4
+"""Radians between two reports of a servo's true angle, 20 ms apart, from which it moves."""
+
+CIRCLE = {
+    'cycle.amplitude': '[0.006, 0.006, 0.0, 0.0, 0.0, 0.0]',
+    'cycle.phase': '[0.0, 1.5708, 0.0, 0.0, 0.0, 0.0]',
+}
+"""A cycle on which some servo is always on its way: nothing else would tell when it stops."""
+
+HELD = 'moving while you hold'
+
+
+@pytest.fixture(scope='module')
+def browser():
+    """Chromium; where it cannot be had, the tests are skipped, or fail where all must run."""
+    found = [name for name in ('playwright', 'viser') if importlib.util.find_spec(name) is None]
+    missing = found or [path for path in (CHROMIUM,) if not os.path.exists(path)]
+    if missing and os.environ.get('REQUIRE_ALL') != '1':
+        pytest.skip(f'not installed: {", ".join(missing)}')
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 (an error only if required)
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope='module')
+def panel(browser, patient_robocake):
+    return panel_process(patient_robocake)
+
+
+@pytest.fixture(scope='module')
+def hexapod_graph(patient_robocake, panel, tmp_path_factory):
+    """The hexapod's processes and its panel."""
+    link = tmp_path_factory.mktemp('port') / 'board'
+    nodes = circling(machine_graph('hexapod', patient_robocake, 'fake', link), CIRCLE)
+    with Graph([*nodes, panel], 'hexapod') as graph:
+        yield graph
+
+
+def circling(nodes, cycle):
+    """The same nodes; the trajectory node has other parameters for its cycle."""
+    return [
+        replace(node, parameters=node.parameters | cycle) if node.entry == 'trajectory' else node
+        for node in nodes
+    ]
+
+
+@pytest.fixture(scope='module')
+def with_cycle():
+    return circling
+
+
+@pytest.fixture(scope='module')
+def open_page(browser):
+    """Opens the page of a panel, with few pixels where nobody looks at them."""
+
+    def opened(panel, size=(760, 760), pixels=SMALL):
+        view = {'width': size[0], 'height': size[1]}
+        page = browser.new_context(viewport=view, has_touch=True).new_page()
+        page.set_default_timeout(PATIENCE)
+        page.goto(f'{panel_address(panel)}/?fixedDpr={pixels}')
+        found = PanelPage(page)
+        found.says('drag to move')
+        return found
+
+    return opened
+
+
+@pytest.fixture(scope='module')
+def two_pages(open_page, panel, user):
+    """The hexapod's panel, open twice."""
+    user.wait('the panel', lambda: 'hexapod/panel' in user.diagnostics, 30.0)
+    return [open_page(panel) for _ in range(2)]
+
+
+@pytest.fixture
+def page(two_pages):
+    return two_pages[0]
+
+
+@pytest.fixture
+def machine(user, two_pages):
+    """The hexapod as seen from outside; at home and able to move."""
+    with Seen(user) as seen:
+        yield seen
+    for page in two_pages:
+        page.let_go()
+
+
+@pytest.fixture(scope='module')
+def seen():
+    """Makes what sees a machine from outside."""
+    return Seen
+
+
+class PanelPage:
+    """One open page, and the hand on it."""
+
+    def __init__(self, page):
+        self.page = page
+        self.let_go = page.mouse.up
+        page.evaluate(
+            "addEventListener('pointerdown', (event) => {"
+            ' window.pressedAt = performance.timeOrigin + event.timeStamp; }, true)'
+        )
+
+    @property
+    def said(self):
+        """The line below the joystick."""
+        return self.page.frame_locator('iframe').locator('#said').inner_text()
+
+    def says(self, words):
+        """Waits until the joystick says so."""
+        self.page.frame_locator('iframe').get_by_text(words).wait_for()
+
+    def values(self):
+        """What stands in the fields beside the sliders: speed, then x, y, z …"""
+        return [field.input_value() for field in self.page.get_by_role('textbox').all()]
+
+    def type(self, field, text):
+        """Types into the field with this number."""
+        box = self.page.get_by_role('textbox').nth(field)
+        box.fill(text)
+        box.press('Enter')
+
+    def centre(self, pad):
+        """Of a pad of the joystick, on the page, and half of its width and height."""
+        box = self.page.frame_locator('iframe').locator(pad).bounding_box()
+        right, up = box['width'] / 2, box['height'] / 2
+        return np.array([box['x'] + right, box['y'] + up]), np.array([right, up])
+
+    def hold(self, pad, right, up):
+        """Presses the mouse on a pad of the joystick and pushes it."""
+        self.page.bring_to_front()
+        centre, half = self.centre(pad)
+        self.page.mouse.move(*centre)
+        self.page.mouse.down()
+        self.page.mouse.move(*(centre + half * [right, -up]))
+
+    def press_stop(self):
+        """Presses STOP and stays on it; when the browser had the press, in s (time.time)."""
+        button = self.page.get_by_role('button', name='STOP').bounding_box()
+        self.page.mouse.move(button['x'] + button['width'] / 2, button['y'] + button['height'] / 2)
+        before = time.time()
+        self.page.mouse.down()
+        pressed = self.page.evaluate('pressedAt') / 1000
+        assert before - 0.05 < pressed < time.time() + 0.05
+        return pressed
+
+
+class Seen:
+    """What a machine does, with the time on this computer's clock; at home and able to move."""
+
+    def __init__(self, client):
+        self.client = client
+        self.poses, self.twists, self.joints = [], [], []
+        node, qos = client.node, QoSProfile(depth=2000)
+        self._subscriptions = [
+            node.create_subscription(
+                PoseStamped, 'pose', lambda m: self.poses.append(pose_of(m)), qos
+            ),
+            node.create_subscription(TwistStamped, 'cmd_vel/panel', self.twists.append, qos),
+            node.create_subscription(JointState, 'true_joint_states', self.joints.append, qos),
+        ]
+
+    def __enter__(self):
+        self.begin()
+        return self
+
+    def __exit__(self, *exception):
+        for subscription in self._subscriptions:
+            self.client.node.destroy_subscription(subscription)
+
+    def begin(self):
+        """Home again; what was heard before is forgotten."""
+        self.make_ready()
+        self.client.wait('rest', lambda: self.client.motion('mode') == 'hold', 10.0)
+        self.client.home()
+        self.client.spin(0.3)
+        self.twists.clear()
+        self.client.wait('poses', lambda: self.poses, 10.0)
+        self.start = self.poses[-1]
+
+    def make_ready(self):
+        """Enabled, whatever a test, or a computer that was too busy for the line, left."""
+        if self.client.machine_state.message == 'stopped':
+            self.client.trigger('serial_bridge/clear_fault')
+            self.client.spin(0.3)
+        if self.client.machine_state.message != 'enabled':
+            self.client.enable()
+
+    def way(self):
+        """How far it has come since it began, in x, y, z."""
+        return self.poses[-1].position - self.start.position
+
+    def has_moved(self, axis, metres):
+        return self.way()[axis] * np.sign(metres) > abs(metres)
+
+    def jog(self, page, pad, push, axis, metres):
+        """Holds the page's joystick until it has moved so far.
+
+        A computer that is too busy to draw the page loses the press, as it should: then again.
+        """
+        give_up = time.monotonic() + 40.0
+        while time.monotonic() < give_up:
+            self.make_ready()
+            page.hold(pad, *push)
+            self.client.spin(0.3)
+            while not self.has_moved(axis, metres) and page.said == HELD:
+                self.client.spin(0.1)
+            if self.has_moved(axis, metres):
+                return
+            page.let_go()
+        raise AssertionError(f'{page.said}; it moved by {self.way()}')
+
+    def seconds_to_rest(self, since):
+        """From a moment (time.time) until the joints stand still for good; waits for that."""
+        self.client.spin(1.2)
+        times = np.array([seconds(m.header.stamp) for m in self.joints])
+        joints = np.array([m.position for m in self.joints])
+        steps = np.abs(np.diff(joints, axis=0)).max(axis=1)
+        before = (times[1:] < since) & (times[1:] > since - 1.0)
+        assert steps[before].max() > MOVING, 'it did not move before'
+        moving = times[1:][steps > MOVING]
+        assert moving[-1] < times[-1] - 0.5, 'it never stood still'
+        return moving[-1] - since
+
+    def seconds_to_stop(self, page):
+        """From a press on STOP of the page until a machine on its cycle stands still."""
+        self.begin()
+        self.client.trigger('trajectory/start_cycle')
+        self.client.spin(1.0)
+        taken = self.seconds_to_rest(page.press_stop())
+        assert self.client.machine_state.message == 'stopped'
+        page.let_go()
+        self.client.spin(0.3)  # the release says STOP once more
+        return taken
+
+    def stays(self, seconds):
+        """Asserts that the machine stands still for a while."""
+        self.client.spin(0.7)
+        before = self.poses[-1].position
+        self.client.spin(seconds)
+        assert np.abs(self.poses[-1].position - before).max() < 2e-4
