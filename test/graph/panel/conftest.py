@@ -1,4 +1,4 @@
-"""The panel's page in a real browser, against a whole graph on a fake board."""
+"""The panel's page in a real browser, and what sees the machine move, for any machine."""
 
 import importlib.util
 import os
@@ -12,8 +12,7 @@ from geometry_msgs.msg import PoseStamped, TwistStamped
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
-from hexarm.graph import Graph, machine_graph
-from hexarm.panel_process import panel_address, panel_process
+from hexarm.panel_process import panel_address
 from manipulator.nodes.messages import pose_of, seconds
 
 CHROMIUM = shutil.which('chromium') or '/usr/bin/chromium'
@@ -32,12 +31,6 @@ PATIENCE = 60_000
 MOVING = 3e-4
 """Radians between two reports of a servo's true angle, 20 ms apart, from which it moves."""
 
-CIRCLE = {
-    'cycle.amplitude': '[0.006, 0.006, 0.0, 0.0, 0.0, 0.0]',
-    'cycle.phase': '[0.0, 1.5708, 0.0, 0.0, 0.0, 0.0]',
-}
-"""A cycle on which some servo is always on its way: nothing else would tell when it stops."""
-
 HELD = 'moving while you hold'
 
 
@@ -54,20 +47,6 @@ def browser():
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         yield browser
         browser.close()
-
-
-@pytest.fixture(scope='module')
-def panel(browser, patient_robocake):
-    return panel_process(patient_robocake)
-
-
-@pytest.fixture(scope='module')
-def hexapod_graph(patient_robocake, panel, tmp_path_factory):
-    """The hexapod's processes and its panel."""
-    link = tmp_path_factory.mktemp('port') / 'board'
-    nodes = circling(machine_graph('hexapod', patient_robocake, 'fake', link), CIRCLE)
-    with Graph([*nodes, panel], 'hexapod') as graph:
-        yield graph
 
 
 def circling(nodes, cycle):
@@ -97,27 +76,6 @@ def open_page(browser):
         return found
 
     return opened
-
-
-@pytest.fixture(scope='module')
-def two_pages(open_page, panel, user):
-    """The hexapod's panel, open twice."""
-    user.wait('the panel', lambda: 'hexapod/panel' in user.diagnostics, 30.0)
-    return [open_page(panel) for _ in range(2)]
-
-
-@pytest.fixture
-def page(two_pages):
-    return two_pages[0]
-
-
-@pytest.fixture
-def machine(user, two_pages):
-    """The hexapod as seen from outside; at home and able to move."""
-    with Seen(user) as seen:
-        yield seen
-    for page in two_pages:
-        page.let_go()
 
 
 @pytest.fixture(scope='module')
