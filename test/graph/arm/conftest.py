@@ -1,0 +1,147 @@
+"""The graph of the serial arm, on stepper drives with encoders, and who jogs and hears it."""
+
+import re
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import PointStamped, TwistStamped
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+
+from hexarm.client import Client
+from hexarm.graph import Graph, machine_graph
+from hexarm.machines import load
+from hexarm.up import check_alive
+from manipulator.nodes.messages import joints_of, seconds
+from manipulator.nodes.qos import COMMAND, MEASUREMENT
+
+MACHINE = load('arm_6r_stepper')
+NAMES = MACHINE.kinematics.joint_names
+DT = 0.01
+PERIOD = 0.02
+
+
+class Joystick:
+    """Twists on cmd_vel/joy while the deadman is held, as joy_teleop publishes them."""
+
+    def __init__(self, user):
+        self.user = user
+        self.publisher = user.node.create_publisher(TwistStamped, 'cmd_vel/joy', COMMAND)
+        self.modes = user.node.create_publisher(String, 'jog_mode', COMMAND)
+        self.points = user.node.create_publisher(PointStamped, 'look_at', COMMAND)
+        for publisher in (self.publisher, self.modes, self.points):
+            user.wait('a listener', lambda p=publisher: p.get_subscription_count() > 0, 10.0)
+
+    def mode(self, name, point=None):
+        if point is not None:
+            message = PointStamped()
+            message.point.x, message.point.y, message.point.z = map(float, point)
+            self.points.publish(message)
+        self.modes.publish(String(data=name))
+        self.user.spin(0.1)
+
+    def send(self, twist=(0, 0, 0, 0, 0, 0), frame=''):
+        message = TwistStamped()
+        message.header.stamp = self.user.node.get_clock().now().to_msg()
+        message.header.frame_id = frame
+        v, w = message.twist.linear, message.twist.angular
+        v.x, v.y, v.z, w.x, w.y, w.z = map(float, twist)
+        self.publisher.publish(message)
+
+    def hold(self, twist, duration):
+        end = time.monotonic() + duration
+        while time.monotonic() < end:
+            self.send(twist)
+            self.user.spin(PERIOD)
+
+
+class Heard:
+    """All joint states (or commands) since it began."""
+
+    def __init__(self, user, topic='joint_states'):
+        self.messages = []
+        self.node = user.node
+        self.subscription = user.node.create_subscription(
+            JointState, topic, self.messages.append, MEASUREMENT
+        )
+        user.wait(topic, lambda: bool(self.messages), 5.0)
+        self.messages.clear()
+
+    @property
+    def joints(self):
+        return np.array([joints_of(m, NAMES) for m in self.messages])
+
+    @property
+    def stamps(self):
+        return np.array([seconds(m.header.stamp) for m in self.messages])
+
+    @property
+    def poses(self):
+        return [MACHINE.kinematics.forward(q).pose for q in self.joints]
+
+    def check_smooth(self):
+        """No step of position or velocity beyond the joints' limits, tick by tick."""
+        limits = MACHINE.motion.joint
+        joints, gaps = self.joints, np.diff(self.stamps)
+        steps = np.diff(joints, axis=0)
+        regular = np.abs(gaps - DT) < 0.4 * DT
+        assert regular.mean() > 0.5
+        assert (np.abs(steps[regular]) <= 1.01 * limits.speed * DT).all()
+        both = regular[1:] & regular[:-1]
+        assert (np.abs(np.diff(steps, axis=0))[both] <= 1.01 * limits.acceleration * DT**2).all()
+
+    def done(self):
+        self.node.destroy_subscription(self.subscription)
+
+
+@pytest.fixture(scope='module')
+def arm_graph(tmp_path_factory):
+    """The arm's five processes; its board waits longer than a busy test machine may stall."""
+    folder = tmp_path_factory.mktemp('arm')
+    shipped = Path(__file__).resolve().parents[3] / 'config' / 'arm_6r_stepper.yaml'
+    patient = re.sub('setpoint_deadline_ms: .*', 'setpoint_deadline_ms: 1000', shipped.read_text())
+    (folder / 'arm.yaml').write_text(patient)
+    nodes = machine_graph('arm', str(folder / 'arm.yaml'), 'fake', folder / 'board')
+    with Graph(nodes, 'arm') as graph:
+        yield graph
+
+
+@pytest.fixture(scope='module')
+def user(arm_graph):
+    with Client('arm', lambda: check_alive(arm_graph)) as client:
+        client.enable()
+        yield client
+
+
+@pytest.fixture
+def arm(user):
+    """The enabled arm at home, in the plain jog mode."""
+    user.wait('standing still', lambda: user.motion('mode') == 'hold', 5.0)
+    user.home()
+    return user
+
+
+@pytest.fixture
+def joystick(arm):
+    made = Joystick(arm)
+    made.mode('free')
+    yield made
+    made.mode('free')
+    for publisher in (made.publisher, made.modes, made.points):
+        arm.node.destroy_publisher(publisher)
+
+
+@pytest.fixture
+def listen(arm):
+    """Begins to hear all joints on a topic."""
+    begun = []
+
+    def begin(topic='joint_states'):
+        begun.append(Heard(arm, topic))
+        return begun[-1]
+
+    yield begin
+    for heard in begun:
+        heard.done()
