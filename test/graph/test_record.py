@@ -100,11 +100,13 @@ def test_the_count_that_it_tells_is_that_of_the_file(heard, recording):
 
 
 def test_messages_are_stored_as_they_were_on_the_wire(recording):
+    kinds = {'/hexapod/joint_states': JointState, '/hexapod/machine_state': DiagnosticStatus}
     with AnyReader([recording[0]]) as reader:
-        kinds = {'/hexapod/joint_states': JointState, '/hexapod/machine_state': DiagnosticStatus}
-        for connection, _, raw in reader.messages():
-            if connection.topic in kinds:
-                deserialize_message(raw, kinds[connection.topic])
+        stored = [(c.topic, raw) for c, _, raw in reader.messages() if c.topic in kinds]
+    heard = [deserialize_message(raw, kinds[topic]) for topic, raw in stored]
+    joints = [m.name for m in heard if isinstance(m, JointState)]
+    assert joints[-1] == [f'crank_{i}' for i in range(1, 7)]
+    assert 'enabled' in [m.message for m in heard if isinstance(m, DiagnosticStatus)]
 
 
 def test_qualities_are_those_of_the_publishers(recording):
