@@ -6,7 +6,6 @@ import select
 import sys
 import termios
 import tty
-from types import TracebackType
 
 from manipulator.errors import InvalidInput
 
@@ -31,12 +30,7 @@ class Terminal:
         termios.tcsetattr(self._file, termios.TCSADRAIN, mode)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         """The terminal as it was."""
         self.restore()
 
