@@ -1,6 +1,7 @@
 """What the panel asks of the graph: goals, services, the emergency stop, the speed override."""
 
 import queue
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -22,6 +23,7 @@ TRIGGERS = (
     'trajectory/stop',
     'trajectory/start_cycle',
 )
+ANSWERED_WITHIN = 4.0
 SWITCHES = ('serial_bridge/enable', 'trajectory/pause')
 
 
@@ -44,6 +46,7 @@ class Asking:
         self._grip = grip
         self._wishes: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._goal: Pose | None = None
+        self._waiting: dict[Future, tuple[str, float]] = {}
         self.said = ''
         self._goals = node.create_publisher(PoseStamped, 'goal_pose', COMMAND)
         self._stops = node.create_publisher(Bool, 'emergency_stop', COMMAND)
@@ -80,6 +83,7 @@ class Asking:
                 self._wishes.get_nowait()()
             except queue.Empty:
                 break
+        self._give_up()
 
     def send_goal(self) -> bool:
         """The newest goal, if there is one; whether it was sent."""
@@ -105,8 +109,20 @@ class Asking:
         if not client.service_is_ready():
             self.said = f'{name}: nobody answers'
             return
-        client.call_async(request).add_done_callback(lambda future: self._say(name, future))
+        future = client.call_async(request)
+        self._waiting[future] = name, time.monotonic() + ANSWERED_WITHIN
+        future.add_done_callback(self._say)
 
-    def _say(self, name: str, future: Future) -> None:
+    def _say(self, future: Future) -> None:
+        name, _ = self._waiting.pop(future)
         answer = future.result()
         self.said = '' if answer.success else f'{name}: {answer.message}'
+
+    def _give_up(self) -> None:
+        """Says which services do not answer: a node that was killed looks ready for 20 s."""
+        now = time.monotonic()
+        for future, (name, until) in list(self._waiting.items()):
+            if now > until:
+                del self._waiting[future]
+                self._clients[name].remove_pending_request(future)
+                self.said = f'{name}: no answer within {ANSWERED_WITHIN:g} s, does its node run?'

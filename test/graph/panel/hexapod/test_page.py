@@ -1,6 +1,7 @@
 """What the hexapod's page shows, what its sliders and STOP do, and who may open it."""
 
 import os
+import signal
 from http.client import HTTPConnection
 from urllib.parse import urlsplit
 
@@ -31,6 +32,16 @@ def test_stop_stops_within_three_tenths_of_a_second(page, machine):
     taken = [machine.seconds_to_stop(page) for _ in range(5)]
     print('STOP: the servos stood', ', '.join(f'{s:.3f}' for s in taken), 's after the press')
     assert np.median(taken) <= 0.3
+
+
+def test_a_node_that_does_not_answer_is_named(page, machine, hexapod_graph):
+    trajectory = hexapod_graph.pids()['trajectory']
+    os.kill(trajectory, signal.SIGSTOP)
+    try:
+        page.page.get_by_role('button', name='Home').click()
+        page.page.get_by_text('trajectory/home: no answer within').wait_for()
+    finally:
+        os.kill(trajectory, signal.SIGCONT)
 
 
 def test_other_sites_are_turned_away(panel, two_pages):
