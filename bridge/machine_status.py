@@ -25,7 +25,7 @@ _MODES = {
     Mode.ARMING: MachineStatus(OK, 'arming'),
     Mode.ARMED: MachineStatus(OK, 'enabled'),
     Mode.HOLDING: MachineStatus(WARN, 'holding', 'no joint command within the deadline'),
-    Mode.STOPPED: MachineStatus(WARN, 'stopped', 'stopped: ~/clear_fault ends it'),
+    Mode.STOPPED: MachineStatus(WARN, 'stopped', 'until ~/clear_fault is called'),
     Mode.FAULT: MachineStatus(ERROR, 'fault'),
     Mode.CHECKING: MachineStatus(OK, 'playing', 'the board checks its program'),
     Mode.PLAYING: MachineStatus(OK, 'playing', 'the board plays its program'),

@@ -8,7 +8,6 @@ import random
 import tempfile
 from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
 
 from bridge.board_thread import BoardThread, FakeMachine
 from bridge.fake_line import FakeLine
@@ -54,12 +53,7 @@ class FakeServos:
         self._board.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         """Ends the board's thread and removes its port."""
         self._board.close()
         self._folder.cleanup()

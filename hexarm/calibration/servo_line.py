@@ -9,7 +9,6 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import TimeoutError as NoAnswer
 from contextlib import contextmanager
-from types import TracebackType
 
 from bridge.calibration import COUNTS_PER_US
 from bridge.events import Disconnected, Event, FaultReported, Incompatible
@@ -55,12 +54,7 @@ class ServoLine:
             raise
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         """Servos off, as far as there is a board to obey; then the port is given back."""
         with _undisturbed():
             until = time.monotonic() + ANSWER_WITHIN
