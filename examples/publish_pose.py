@@ -25,6 +25,9 @@ from manipulator.pose import Pose
 from manipulator.unit_hints import check_turns
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+JOINS_WITHIN = 10.0
+"""Seconds that it may take to find the machine's nodes."""
+
 LEVEL = (0.0, 0.0, 0.0, 1.0)
 
 
@@ -65,9 +68,9 @@ class Mover:
 
     def go_to(self, xyz, quaternion=LEVEL):
         """Publishes a goal and waits for its end; exits with the reason when it is not reached."""
-        self.wait(self.is_heard, f'no machine hears {self.goals.topic_name}')
+        self.wait(self.is_heard, f'no machine hears {self.goals.topic_name}', JOINS_WITHIN)
         stamp = self.publish(xyz, quaternion)
-        self.wait(lambda: self.result(stamp), 'not there, and nothing has moved')
+        self.wait(lambda: self.result(stamp), 'not there, and nothing has moved', self.patience)
         if self.result(stamp) != 'reached':
             sys.exit(self.status.message)
 
@@ -88,12 +91,12 @@ class Mover:
             return None
         return values['result'] if values['result'] != 'moving' else None
 
-    def wait(self, is_so, otherwise):
-        """Hears messages until `is_so` says yes; gives up when nothing happens for too long."""
+    def wait(self, is_so, otherwise, patience):
+        """Hears messages until `is_so` says yes; gives up when nothing happens for so long."""
         begin = time.monotonic()
         while not is_so():
-            if time.monotonic() - max(begin, self.progress_at) > self.patience:
-                sys.exit(f'{otherwise} for {self.patience:g} s')
+            if time.monotonic() - max(begin, self.progress_at) > patience:
+                sys.exit(f'{otherwise} for {patience:g} s')
             rclpy.spin_once(self.node, timeout_sec=0.05)
 
 

@@ -93,7 +93,7 @@ def test_path_of_too_many_poses_is_refused_by_length_and_the_stream_goes_on(enab
     )
     enabled.wait('setpoints', lambda: len(stream) > 10, 5.0)
     paths.publish(huge_path(count))
-    enabled.wait('refusal', lambda: f'{count} poses' in enabled.motion_status.message, 20.0)
+    enabled.wait('refusal', lambda: f'{count:,} poses' in enabled.motion_status.message, 20.0)
     stream.clear()
     enabled.wait('setpoints', lambda: len(stream) > 10, 5.0)
     assert set(states) == {'enabled'}

@@ -57,18 +57,11 @@ def test_a_frozen_process_stops_the_machine_and_nothing_jumps_when_it_goes_on(ci
 
 
 @pytest.mark.parametrize('name', PROCESSES)
-def test_a_killed_process_stops_the_machine(name, tmp_path, tolerant_robocake):
-    with Rig(tmp_path, f'killed_{name}', machine=tolerant_robocake) as rig:
-        rig.enable()
-        rig.circle(0.7)
-        assert rig.stop_time(name, signal.SIGKILL) < GENEROUS
-
-
-@pytest.mark.parametrize('name', PROCESSES)
-def test_a_killed_process_is_started_again_and_nothing_jumps(circling, name):
+def test_a_killed_process_stops_the_machine_and_nothing_jumps_when_it_is_started_again(
+    circling, name
+):
     rig = circling
-    rig.send(name, signal.SIGKILL)
-    rig.user.spin(1.0)
+    assert rig.stop_time(name, signal.SIGKILL) < GENEROUS
     before = time.monotonic()
     rig.start(name)
     rig.user.spin(1.5)
