@@ -184,7 +184,7 @@ class SerialBridge(Node):
 
     def _remember(self) -> None:
         """Keeps it for a bridge that starts after this one whether a STOP stands."""
-        self._memory.keep(self._session.is_stop_wanted)
+        self._memory.keep(lambda: self._session.is_stop_wanted)
 
     def _on_written(self, ticket: Ticket, now: float) -> None:
         self._is_followed = True

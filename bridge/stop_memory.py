@@ -45,6 +45,7 @@ class StopMemory(threading.Thread):
         super().__init__(name='stop memory', daemon=True)
         self.path = path
         self._on_trouble = on_trouble
+        self._lock = threading.Lock()
         # What may not even be looked at was not written by us.
         self._is_kept = self._written = os.access(path, os.F_OK)
         self._has_news = threading.Event()
@@ -56,11 +57,15 @@ class StopMemory(threading.Thread):
         """A STOP stands that nobody has cleared."""
         return self._is_kept
 
-    def keep(self, is_stop_wanted: bool) -> None:
-        """From now on this is what the next bridge is told."""
-        if is_stop_wanted != self._is_kept:
-            self._is_kept = is_stop_wanted
-            self._has_news.set()
+    def keep(self, is_stop_wanted: Callable[[], bool]) -> None:
+        """From now on this is what the next bridge is told.
+
+        Asked under a lock: else a thread that asked before a STOP could say so after it.
+        """
+        with self._lock:
+            before, self._is_kept = self._is_kept, is_stop_wanted()
+            if self._is_kept != before:
+                self._has_news.set()
 
     def run(self) -> None:
         """The thread's work, until `close`."""

@@ -56,8 +56,8 @@ class ArmResult:
         """The table, a line each."""
         degrees, millimetres = np.degrees(self.turned), 1e3 * self.missed
         for name, values, unit in (
-            (f'turned over {self.way:.2f} m, end, rms, max', degrees, '°'),
-            ('point missed by, end, rms, max', millimetres, ' mm'),
+            (f'turned, over {self.way:.2f} m: end, rms, max', degrees, '°'),
+            ('point missed by: end, rms, max', millimetres, ' mm'),
         ):
             kept = values[np.isfinite(values)]
             figures = (kept[-1], np.sqrt(np.mean(kept**2)), kept.max())

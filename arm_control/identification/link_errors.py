@@ -20,6 +20,9 @@ from manipulator.pose import Pose
 PARALLEL = 1e-3
 """Sine of the angle of two axes below which an offset is no longer told from the next one."""
 
+COAXIAL = 1e-3
+"""Metres between parallel axes below which their common normal may point anywhere."""
+
 
 @dataclass(frozen=True, eq=False)
 class LinkError:
@@ -73,7 +76,7 @@ def _of_link(chain: Chain, i: int) -> Iterator[LinkError]:
     arm = point - chain.points[i]
     arm = arm - (arm @ axis) * axis
     length = float(np.linalg.norm(arm))
-    normal = arm / length if length > PARALLEL else perpendicular(axis)
+    normal = arm / length if length > COAXIAL else perpendicular(axis)
     yield LinkError(i + 1, 'length', normal, point)
     yield LinkError(i + 1, 'twist', normal, point)
     yield LinkError(i + 1, 'skew', np.cross(axis, normal), point)

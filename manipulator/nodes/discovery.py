@@ -1,8 +1,8 @@
 """An address of its own for a process that joins the graph, not that of one that has just died.
 
 Fast DDS gives a process the lowest pair of UDP ports that is free. After a kill that is the dead
-process's pair, while the others go on addressing the dead one for the 20 s of its lease: what they
-send to that address is marked for the dead, and its heir drops it. bench/rejoin.py measures it.
+process's pair, while the others believe in the dead one for the 20 s of its lease: its heir goes
+unheard, or hears nothing, for seconds. At another pair it does not: bench/rejoin.py measures both.
 """
 
 import contextlib

@@ -88,6 +88,7 @@ class Pilot:
         is_lost = state not in DRIVABLE or (state == HOLDING and state != self._state)
         was_followed, self._state, self._is_followed = self._is_followed, state, is_followed
         if is_lost:
+            self._forget_misfit()
             self.release(f'the machine is {state}')
         elif self._player is not None and is_followed and not was_followed:
             self.status = self._player.status
@@ -166,7 +167,7 @@ class Pilot:
         return self.machine.frames.platform(pose)
 
     def _take_over(self, T_base_platform: Pose, near: Array) -> None:
-        self._misfits, self._misfit = 0, ''
+        self._forget_misfit()
         pose = self.machine.frames.pivot(T_base_platform)
         joints = self.machine.kinematics.inverse(pose, near)
         player = self._player = Player(self.machine, pose, joints, self._dt)
@@ -191,10 +192,15 @@ class Pilot:
             worst = int(np.argmax(gaps))
             kinematics = self._bare.kinematics
             self._misfit = (
-                f'its pose fits all joints but {kinematics.joint_names[worst]}, which is off by '
+                f'its pose does not fit {kinematics.joint_names[worst]}, which is off by '
                 f'{gaps[worst]:.2g} {kinematics.joint_unit}: disable and enable it, it then parks'
             )
             self.status = MotionStatus('disabled', 'idle', self.status.goal_stamp, self._misfit)
+
+    def _forget_misfit(self) -> None:
+        if self._misfit:
+            self.status = DISABLED
+        self._misfits, self._misfit = 0, ''
 
     def _take_frames(self, frames: Frames) -> None:
         old, self.machine = self.machine, in_frames(self._bare, frames)

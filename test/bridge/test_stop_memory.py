@@ -33,10 +33,10 @@ def until(is_so):
 def test_a_stop_is_remembered_until_it_is_cleared(path):
     assert not StopMemory(path).is_kept
     with running(path) as memory:
-        memory.keep(True)
+        memory.keep(lambda: True)
     assert StopMemory(path).is_kept
     with running(path) as memory:
-        memory.keep(False)
+        memory.keep(lambda: False)
     assert not StopMemory(path).is_kept
 
 
@@ -61,7 +61,7 @@ def test_a_user_without_a_home_has_it_too():
 def test_a_long_port_name_makes_no_file_that_cannot_be(tmp_path):
     path = stop_file('/a', '/dev/' + 'x' * 5000, {'XDG_STATE_HOME': str(tmp_path)})
     with running(path) as memory:
-        memory.keep(True)
+        memory.keep(lambda: True)
     assert path.exists()
 
 
@@ -70,7 +70,7 @@ def test_where_nothing_can_be_written_it_says_so_once_and_tries_again(path, monk
     path.parent.write_text('a file where the folder should be')
     said = []
     with running(path, said) as memory:
-        memory.keep(True)
+        memory.keep(lambda: True)
         assert memory.is_kept
         until(lambda: said)
         time.sleep(0.1)
@@ -85,8 +85,8 @@ def test_nobody_waits_for_a_slow_disk(path, monkeypatch):
     monkeypatch.setattr(Path, 'touch', lambda self: is_slow.wait(10.0))
     with running(path) as memory:
         before = time.monotonic()
-        memory.keep(True)
-        memory.keep(False)
-        memory.keep(True)
+        memory.keep(lambda: True)
+        memory.keep(lambda: False)
+        memory.keep(lambda: True)
         assert time.monotonic() - before < 1.0
         is_slow.set()

@@ -3,6 +3,7 @@
 import dataclasses
 import os
 
+import numpy as np
 import pytest
 
 from bridge.board import Board
@@ -89,6 +90,12 @@ class BoardDriver:
 
     def counts(self):
         return tuple(joint.count for joint in self.state().joints)
+
+    def record(self, seconds):
+        """Modes and counts (n, joints), 50 times a second."""
+        states = [m for m in self.run(seconds) if isinstance(m, State)]
+        counts = [[joint.count for joint in state.joints] for state in states]
+        return [state.mode for state in states], np.array(counts)
 
     def faults(self):
         return [m for m in self.run(0.04) if isinstance(m, Fault)]

@@ -12,7 +12,7 @@ from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from bench.rig import Tap, TappedLine
+from bench.tap import Tap, TappedLine
 from bridge.board_thread import BoardThread, FakeMachine
 from bridge.calibration import Calibration
 from bridge.messages import Stop

@@ -98,6 +98,9 @@ def test_a_leg_bent_the_wrong_way_and_almost_straight_is_named(pilot):
     ):
         _ = pilot.player
     assert 'disable and enable it' in pilot.status.reason
+    pilot.note_machine_state('disarmed', is_followed=False)
+    assert 'disable and enable it' not in pilot.status.reason
+    pilot.note_machine_state('enabled', is_followed=True)
     pilot.see(HOME)
     assert pilot.step() is not None
     assert pilot.player.status.reason == ''

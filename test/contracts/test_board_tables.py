@@ -1,4 +1,4 @@
-"""What every board does by itself: plays an uploaded table, plays a cycle about home."""
+"""What every board does with a table of counts: takes it row by row, plays it, refuses it."""
 
 import math
 
@@ -6,43 +6,16 @@ import numpy as np
 import pytest
 
 from bridge.board_courses import table_crc
-from bridge.messages import (
-    Arm,
-    Disarm,
-    Fault,
-    FaultCode,
-    Mode,
-    Result,
-    Setpoint,
-    State,
-    Stop,
-)
-from bridge.program_messages import (
-    CycleAxis,
-    Finish,
-    Play,
-    Program,
-    TableBegin,
-    TableEnd,
-    TableRow,
-)
+from bridge.messages import Arm, Disarm, FaultCode, Mode, Result, Setpoint, Stop
+from bridge.program_messages import Finish, Play, Program, TableBegin, TableEnd, TableRow
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
-HOME = (3000,) * 6
 MOVED = tuple(count + 20 for count in PARK)
 ARMED = (Mode.ARMED, Mode.HOLDING)  # it waits 2 s for a host, then holds
 STEP = 252  # counts that a servo can do in one pulse period
 WAVE = [
     tuple(round(c + 150 * math.sin(math.pi * k / 20)) for c in PARK) for k in range(41)
 ]  # 2 s at 50 ms, from PARK and back to it
-TURN = CycleAxis(5, 0.0625, 500, 0.0)  # yaw, with a period of 2 s
-
-
-def record(driver, seconds):
-    """Modes and counts (n, joints), 50 times a second."""
-    states = [m for m in driver.run(seconds) if isinstance(m, State)]
-    counts = [[joint.count for joint in state.joints] for state in states]
-    return [state.mode for state in states], np.array(counts)
 
 
 @pytest.fixture
@@ -54,7 +27,7 @@ def loaded(armed):
 
 def test_a_table_is_played_once_smoothly_and_ends_at_its_last_row(loaded):
     assert loaded.ask(Play(Program.TABLE, False)) is Result.OK
-    modes, counts = record(loaded, 5.0)
+    modes, counts = loaded.record(5.0)
     assert modes[0] in (Mode.CHECKING, Mode.PLAYING)
     assert modes[-1] in ARMED
     assert tuple(counts[-1]) == WAVE[-1]
@@ -70,13 +43,13 @@ def test_a_table_is_played_once_smoothly_and_ends_at_its_last_row(loaded):
 
 def test_a_loop_goes_on_without_a_host_until_it_is_finished_smoothly(loaded):
     loaded.ask(Play(Program.TABLE, True))
-    modes, counts = record(loaded, 12.0)
+    modes, counts = loaded.record(12.0)
     assert set(modes[5:]) == {Mode.PLAYING}
     # 41 rows, 50 ms apart, the way back to the first one included: twice that is 205 periods.
     assert np.abs(counts[355:] - counts[150:-205]).max() <= 1
     assert np.ptp(counts[150:, 0]) == pytest.approx(300, abs=2)
     assert loaded.ask(Finish()) is Result.OK
-    modes, counts = record(loaded, 2.0)
+    modes, counts = loaded.record(2.0)
     assert modes[-1] in ARMED
     speed = np.abs(np.diff(counts[:, 0]))
     assert speed.max() <= 12
@@ -93,7 +66,7 @@ def test_after_a_program_a_board_that_nobody_drives_does_what_its_machine_says(
     driver.say(Setpoint(2000, PARK))
     assert driver.upload([PARK, MOVED, PARK], 100) is Result.OK
     assert driver.ask(Play(Program.TABLE, False)) is Result.OK
-    modes, counts = record(driver, 4.0)
+    modes, counts = driver.record(4.0)
     assert set(modes[:5]) <= {Mode.CHECKING, Mode.PLAYING}
     assert Mode.ARMED in modes
     assert tuple(counts[modes.index(Mode.ARMED) + 50]) == PARK
@@ -161,7 +134,7 @@ def test_a_program_that_begins_elsewhere_is_refused(armed):
     rows = [tuple(count + 121 for count in row) for row in WAVE]
     armed.upload(rows)
     assert armed.ask(Play(Program.TABLE, False)) is Result.NOT_AT_START
-    _, counts = record(armed, 0.2)
+    _, counts = armed.record(0.2)
     assert set(map(tuple, counts.tolist())) == {PARK}
 
 
@@ -183,7 +156,7 @@ def test_a_stop_ends_a_program_at_once(loaded):
     loaded.ask(Play(Program.TABLE, True))
     loaded.run(2.5)
     loaded.ask(Stop())
-    _, counts = record(loaded, 1.0)
+    _, counts = loaded.record(1.0)
     assert len(set(map(tuple, counts[1:].tolist()))) == 1
     assert loaded.state().mode is Mode.STOPPED
 
@@ -197,113 +170,5 @@ def test_setpoints_are_refused_while_it_plays_and_arm_takes_over(loaded):
     assert loaded.ask(TableBegin(2, 50)) is Result.NO_PROGRAM
     assert loaded.ask(Arm(PARK)) is Result.OK
     assert loaded.state().mode is Mode.ARMED
-    _, counts = record(loaded, 0.5)
+    _, counts = loaded.record(0.5)
     assert len(set(map(tuple, counts.tolist()))) == 1
-
-
-def test_a_cycle_is_solved_by_the_board_itself(make_driver):
-    driver = make_driver()
-    driver.arm(HOME)
-    solve = driver.board.settings.solve
-    assert driver.ask(TURN) is Result.OK
-    assert driver.ask(CycleAxis(2, 0.003, 500, math.pi / 2)) is Result.OK
-    assert driver.ask(Play(Program.CYCLE, True)) is Result.OK
-    driver.run(6.0)
-    modes, counts = record(driver, 4.0)
-    assert set(modes) == {Mode.PLAYING}
-    angle = np.arange(200) * 0.02 * math.pi
-    wanted = np.array(
-        [solve([0, 0, 0.003 * math.cos(a), 0, 0, 0.0625 * math.sin(a)]) for a in angle]
-    )
-    shifts = [np.abs(np.roll(wanted, k, axis=0) - counts).max() for k in range(100)]
-    assert min(shifts) <= 1.0
-    driver.ask(Finish())
-    modes, counts = record(driver, 3.0)
-    assert modes[-1] in ARMED
-    assert counts[-1] == pytest.approx(solve([0] * 6), abs=0.51)
-    assert np.abs(np.diff(counts, axis=0)).max() < 60
-
-
-def test_a_cycle_once_is_one_period_and_home_again(make_driver):
-    driver = make_driver()
-    driver.arm(HOME)
-    driver.ask(TURN)
-    driver.ask(Play(Program.CYCLE, False))
-    modes, counts = record(driver, 8.0)
-    assert modes[-1] in ARMED
-    assert 2.5 < 0.02 * modes.count(Mode.PLAYING) < 4.0
-    assert counts[-1] == pytest.approx(driver.board.settings.solve([0] * 6), abs=0.51)
-
-
-@pytest.mark.parametrize(
-    ('axis', 'code'),
-    [
-        (CycleAxis(0, 0.03, 500, 0.0), FaultCode.OUT_OF_REACH),
-        (CycleAxis(2, 0.0179, 500, 0.0), FaultCode.OUT_OF_REACH),
-        (CycleAxis(5, 0.125, 12_500, 0.4), FaultCode.TOO_FAST),
-    ],
-)
-def test_a_cycle_that_cannot_be_followed_is_refused_before_anything_moves(make_driver, axis, code):
-    driver = make_driver()
-    driver.arm(HOME)
-    driver.ask(axis)
-    driver.say(Play(Program.CYCLE, True))
-    messages = driver.run(4.0)
-    assert [m.code for m in messages if isinstance(m, Fault)] == [code]
-    states = [m for m in messages if isinstance(m, State)]
-    assert {joint.count for state in states for joint in state.joints} == {3000}
-    assert states[-1].mode in ARMED
-
-
-def test_a_cycle_whose_samples_hide_its_speed_ends_where_it_would_be_too_fast(make_driver):
-    """24.9 Hz in samples of 50 Hz: all near zero in the first period, farther off in each next."""
-    driver = make_driver()
-    driver.arm(HOME)
-    assert driver.ask(CycleAxis(5, 0.06, 24_900, 0.0)) is Result.OK
-    assert driver.ask(Play(Program.CYCLE, True)) is Result.OK
-    messages = driver.run(4.0)
-    assert [m.code for m in messages if isinstance(m, Fault)] == [FaultCode.TOO_FAST]
-    states = [m for m in messages if isinstance(m, State)]
-    assert Mode.PLAYING in [state.mode for state in states]
-    counts = np.array([[joint.count for joint in state.joints] for state in states])
-    assert np.abs(np.diff(counts, axis=0)).max() <= STEP
-    assert states[-1].mode in ARMED
-
-
-@pytest.mark.parametrize(
-    'axis',
-    [
-        CycleAxis(6, 0.001, 500, 0.0),
-        CycleAxis(0, math.nan, 500, 0.0),
-        CycleAxis(0, 0.001, 500, math.inf),
-        CycleAxis(0, 0.001, 25_001, 0.0),
-    ],
-)
-def test_an_axis_without_sense_is_refused(armed, axis):
-    assert armed.ask(axis) is Result.OUT_OF_RANGE
-
-
-def test_a_cycle_that_repeats_only_after_more_than_a_minute_is_refused(make_driver):
-    driver = make_driver()
-    driver.arm(HOME)
-    driver.ask(CycleAxis(0, 0.001, 500, 0.0))
-    driver.ask(CycleAxis(1, 0.001, 501, 0.0))
-    assert driver.ask(Play(Program.CYCLE, True)) is Result.OUT_OF_RANGE
-
-
-def test_a_board_without_kinematics_has_no_cycle(make_driver):
-    driver = make_driver(solve=None)
-    driver.arm()
-    assert driver.ask(TURN) is Result.NO_PROGRAM
-
-
-def test_a_cycle_outlives_a_reset_and_a_table_does_not(make_driver):
-    driver = make_driver()
-    driver.arm(HOME)
-    driver.ask(TURN)
-    driver.upload(WAVE[:3])
-    driver.run(2.0)
-    driver.reset()
-    driver.arm(HOME)
-    assert driver.ask(Play(Program.TABLE, False)) is Result.NO_PROGRAM
-    assert driver.ask(Play(Program.CYCLE, False)) is Result.OK

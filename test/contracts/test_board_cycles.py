@@ -1,0 +1,126 @@
+"""What every board does with a cycle about home, which it solves by itself."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bridge.messages import Fault, FaultCode, Mode, Result, State
+from bridge.program_messages import CycleAxis, Finish, Play, Program
+
+PARK = (3000, 2900, 3100, 3000, 2900, 3100)
+HOME = (3000,) * 6
+ARMED = (Mode.ARMED, Mode.HOLDING)  # it waits 2 s for a host, then holds
+STEP = 252  # counts that a servo can do in one pulse period
+WAVE = [
+    tuple(round(c + 150 * math.sin(math.pi * k / 20)) for c in PARK) for k in range(41)
+]  # 2 s at 50 ms, from PARK and back to it
+TURN = CycleAxis(5, 0.0625, 500, 0.0)  # yaw, with a period of 2 s
+
+
+def test_a_cycle_is_solved_by_the_board_itself(make_driver):
+    driver = make_driver()
+    driver.arm(HOME)
+    solve = driver.board.settings.solve
+    assert driver.ask(TURN) is Result.OK
+    assert driver.ask(CycleAxis(2, 0.003, 500, math.pi / 2)) is Result.OK
+    assert driver.ask(Play(Program.CYCLE, True)) is Result.OK
+    driver.run(6.0)
+    modes, counts = driver.record(4.0)
+    assert set(modes) == {Mode.PLAYING}
+    angle = np.arange(200) * 0.02 * math.pi
+    wanted = np.array(
+        [solve([0, 0, 0.003 * math.cos(a), 0, 0, 0.0625 * math.sin(a)]) for a in angle]
+    )
+    shifts = [np.abs(np.roll(wanted, k, axis=0) - counts).max() for k in range(100)]
+    assert min(shifts) <= 1.0
+    driver.ask(Finish())
+    modes, counts = driver.record(3.0)
+    assert modes[-1] in ARMED
+    assert counts[-1] == pytest.approx(solve([0] * 6), abs=0.51)
+    assert np.abs(np.diff(counts, axis=0)).max() < 60
+
+
+def test_a_cycle_once_is_one_period_and_home_again(make_driver):
+    driver = make_driver()
+    driver.arm(HOME)
+    driver.ask(TURN)
+    driver.ask(Play(Program.CYCLE, False))
+    modes, counts = driver.record(8.0)
+    assert modes[-1] in ARMED
+    assert 2.5 < 0.02 * modes.count(Mode.PLAYING) < 4.0
+    assert counts[-1] == pytest.approx(driver.board.settings.solve([0] * 6), abs=0.51)
+
+
+@pytest.mark.parametrize(
+    ('axis', 'code'),
+    [
+        (CycleAxis(0, 0.03, 500, 0.0), FaultCode.OUT_OF_REACH),
+        (CycleAxis(2, 0.0179, 500, 0.0), FaultCode.OUT_OF_REACH),
+        (CycleAxis(5, 0.125, 12_500, 0.4), FaultCode.TOO_FAST),
+    ],
+)
+def test_a_cycle_that_cannot_be_followed_is_refused_before_anything_moves(make_driver, axis, code):
+    driver = make_driver()
+    driver.arm(HOME)
+    driver.ask(axis)
+    driver.say(Play(Program.CYCLE, True))
+    messages = driver.run(4.0)
+    assert [m.code for m in messages if isinstance(m, Fault)] == [code]
+    states = [m for m in messages if isinstance(m, State)]
+    assert {joint.count for state in states for joint in state.joints} == {3000}
+    assert states[-1].mode in ARMED
+
+
+def test_a_cycle_whose_samples_hide_its_speed_ends_where_it_would_be_too_fast(make_driver):
+    """24.9 Hz in samples of 50 Hz: all near zero in the first period, farther off in each next."""
+    driver = make_driver()
+    driver.arm(HOME)
+    assert driver.ask(CycleAxis(5, 0.06, 24_900, 0.0)) is Result.OK
+    assert driver.ask(Play(Program.CYCLE, True)) is Result.OK
+    messages = driver.run(4.0)
+    assert [m.code for m in messages if isinstance(m, Fault)] == [FaultCode.TOO_FAST]
+    states = [m for m in messages if isinstance(m, State)]
+    assert Mode.PLAYING in [state.mode for state in states]
+    counts = np.array([[joint.count for joint in state.joints] for state in states])
+    assert np.abs(np.diff(counts, axis=0)).max() <= STEP
+    assert states[-1].mode in ARMED
+
+
+@pytest.mark.parametrize(
+    'axis',
+    [
+        CycleAxis(6, 0.001, 500, 0.0),
+        CycleAxis(0, math.nan, 500, 0.0),
+        CycleAxis(0, 0.001, 500, math.inf),
+        CycleAxis(0, 0.001, 25_001, 0.0),
+    ],
+)
+def test_an_axis_without_sense_is_refused(armed, axis):
+    assert armed.ask(axis) is Result.OUT_OF_RANGE
+
+
+def test_a_cycle_that_repeats_only_after_more_than_a_minute_is_refused(make_driver):
+    driver = make_driver()
+    driver.arm(HOME)
+    driver.ask(CycleAxis(0, 0.001, 500, 0.0))
+    driver.ask(CycleAxis(1, 0.001, 501, 0.0))
+    assert driver.ask(Play(Program.CYCLE, True)) is Result.OUT_OF_RANGE
+
+
+def test_a_board_without_kinematics_has_no_cycle(make_driver):
+    driver = make_driver(solve=None)
+    driver.arm()
+    assert driver.ask(TURN) is Result.NO_PROGRAM
+
+
+def test_a_cycle_outlives_a_reset_and_a_table_does_not(make_driver):
+    driver = make_driver()
+    driver.arm(HOME)
+    driver.ask(TURN)
+    driver.upload(WAVE[:3])
+    driver.run(2.0)
+    driver.reset()
+    driver.arm(HOME)
+    assert driver.ask(Play(Program.TABLE, False)) is Result.NO_PROGRAM
+    assert driver.ask(Play(Program.CYCLE, False)) is Result.OK
