@@ -22,6 +22,16 @@ HOLDING = 'holding'
 DRIVABLE = ('enabled', HOLDING)
 """States in which the board follows setpoints; it holds when they came too late."""
 
+WAYS_OUT = {
+    'disconnected': 'no board answers',
+    'booting': 'its board is not there yet',
+    'arming': 'its servos are being switched on',
+    'playing': 'its board plays a program of its own',
+    'stopped': 'clear the stop first',
+    'fault': 'clear the fault first',
+}
+"""What is missing before anybody may drive, by the bridge's word."""
+
 POSE_PATIENCE, POSE_DEADLINE = 0.2, 0.5
 """Seconds without a pose after which motion pauses, and after which it is dropped."""
 
@@ -70,7 +80,7 @@ class Pilot:
     def _missing(self) -> str:
         if self._state in DRIVABLE:
             return self._misfit or 'its pose is not known yet'
-        return 'clear the stop first' if self._state == 'stopped' else 'enable it first'
+        return WAYS_OUT.get(self._state, 'enable it first')
 
     @property
     def is_driving(self) -> bool:

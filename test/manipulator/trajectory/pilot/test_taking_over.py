@@ -67,9 +67,17 @@ def test_goal_that_still_waited_when_the_machine_was_lost_is_named(driving):
     assert (driving.status.result, driving.status.goal_stamp) == ('stopped', 9.0)
 
 
-def test_a_stopped_machine_says_that_the_stop_must_be_cleared(driving):
-    driving.note_machine_state('stopped', is_followed=False)
-    with pytest.raises(Refused, match='the machine is stopped: clear the stop first'):
+@pytest.mark.parametrize(
+    ('state', 'way_out'),
+    [
+        ('stopped', 'clear the stop first'),
+        ('disconnected', 'no board answers'),
+        ('disarmed', 'enable it first'),
+    ],
+)
+def test_a_machine_that_nobody_may_drive_says_what_is_missing(driving, state, way_out):
+    driving.note_machine_state(state, is_followed=False)
+    with pytest.raises(Refused, match=f'the machine is {state}: {way_out}'):
         _ = driving.player
 
 
