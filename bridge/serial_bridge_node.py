@@ -2,7 +2,6 @@
 
 import time
 
-from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
@@ -23,23 +22,22 @@ from bridge.gripper import Gripper
 from bridge.latencies import Latencies
 from bridge.link_monitor import LinkMonitor
 from bridge.link_thread import LinkThread, Ticket
-from bridge.machine_status import MachineStatus
 from bridge.messages import Arm, Clear, Command, Disarm
 from bridge.programs_node import BoardPrograms
 from bridge.serial_port import SerialPort
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
+from bridge.state_topic import LEVELS, StateTopic
 from bridge.stop_memory import StopMemory, stop_file
 from bridge.stop_node import StopNode
 from hexarm import machines
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.nodes.bounded import decoded
-from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
+from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.messages import seconds
 from manipulator.nodes.parameters import declare
-from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
+from manipulator.nodes.qos import COMMAND, MEASUREMENT
 
-LEVELS = (OK, WARN, ERROR)
 SAY_AGAIN_AFTER = 2.0
 MOST_BYTES = 10_000
 """Of a joint_command: that of seven joints has less than 500."""
@@ -72,7 +70,6 @@ class SerialBridge(Node):
         self._command_at: float | None = None
         self._receipt_to_frame, self._setpoint_to_frame = Latencies(), Latencies()
         self._is_followed = False
-        self._said: tuple[MachineStatus, dict[str, object]] | None = None
         self._link = LinkThread(
             lambda: SerialPort(self._port, self._baud),
             self._session,
@@ -94,7 +91,7 @@ class SerialBridge(Node):
 
     def _make_interfaces(self) -> None:
         self._joint_states = self.create_publisher(JointState, 'joint_states', MEASUREMENT)
-        self._machine_state = self.create_publisher(DiagnosticStatus, 'machine_state', LATCHED)
+        self._machine_state = StateTopic(self)
         self.create_subscription(JointState, 'joint_command', self._on_command, COMMAND, raw=True)
         self.create_subscription(Float64, 'gripper', self._on_gripper, COMMAND)
         self.create_service(SetBool, '~/enable', self._on_enable)
@@ -217,14 +214,7 @@ class SerialBridge(Node):
             'board': self._monitor.board,
             'joints_unknown': ' '.join(self._monitor.unknown_joints),
         }
-        if (current, values) == self._said:
-            return
-        if self._said is None or self._said[0] != current:
-            reason = f' ({current.reason})' if current.reason else ''
-            self.get_logger().info(f'machine {current.word}{reason}')
-        self._said = current, values
-        name = f'{self.get_name()}: machine state'
-        self._machine_state.publish(status(LEVELS[current.level], name, current.word, values))
+        self._machine_state.say(current, values)
 
     def _warn(self, text: str) -> None:
         self.get_logger().warning(text, throttle_duration_sec=SAY_AGAIN_AFTER)

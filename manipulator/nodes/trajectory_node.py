@@ -53,6 +53,7 @@ class TrajectoryNode(Node):
         self._teleop = Teleop(self._pilot, delay)
         self._seen: MotionStatus | None = None
         self._published: MotionStatus | None = None
+        self._state_heard = float('-inf')
         self._refusals = 0
         self._last_refusal = ''
         self._jitter = Jitter(self._dt)
@@ -82,6 +83,7 @@ class TrajectoryNode(Node):
         subscribe(PointStamped, 'pivot', self._on_pivot, COMMAND)
 
     def _on_machine_state(self, message: DiagnosticStatus) -> None:
+        self._state_heard = time.monotonic()
         values = {pair.key: pair.value for pair in message.values}
         is_followed, is_measured = (
             values.get('followed') == 'yes',
@@ -120,8 +122,10 @@ class TrajectoryNode(Node):
 
     def _tick(self) -> None:
         self._pilot.note_stall(self._jitter.tick())
+        now = time.monotonic()
         self._pilot.note_silence(self._poses.age)
-        self._teleop.drive(time.monotonic())
+        self._pilot.note_bridge_silence(now - self._state_heard)
+        self._teleop.drive(now)
         self._paths.poll()
         pose = self._pilot.step()
         if pose is not None:

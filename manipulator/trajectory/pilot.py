@@ -23,6 +23,7 @@ DRIVABLE = ('enabled', HOLDING)
 """States in which the board follows setpoints; it holds when they came too late."""
 
 WAYS_OUT = {
+    '': 'no bridge says how it is',
     'disconnected': 'no board answers',
     'booting': 'its board is not there yet',
     'arming': 'its servos are being switched on',
@@ -34,6 +35,9 @@ WAYS_OUT = {
 
 POSE_PATIENCE, POSE_DEADLINE = 0.2, 0.5
 """Seconds without a pose after which motion pauses, and after which it is dropped."""
+
+STATE_DEADLINE = 1.5
+"""Seconds without the bridge's word after which its last one counts for nothing."""
 
 PRESENT = 0.1
 """Of the tolerance of following, how far the joints may be from the pose where motion begins."""
@@ -129,6 +133,13 @@ class Pilot:
             self.release(f'no pose for {POSE_DEADLINE:g} s')
         elif self._player is not None:
             self._player.blind(seconds > POSE_PATIENCE)
+
+    def note_bridge_silence(self, seconds: float) -> None:
+        """How long the bridge has not said the machine's state: a dead one's must not be used."""
+        if seconds > STATE_DEADLINE and self._state:
+            self._state, self._is_followed = '', False
+            self._forget_misfit()
+            self.release(f'no word of the bridge for {STATE_DEADLINE:g} s')
 
     def note_stall(self, seconds: float) -> None:
         """How long the caller itself stood still: by then the board holds, and goals are old."""

@@ -166,7 +166,7 @@ def test_namespace_without_a_machine_says_so_and_leaves_no_file(hexarm, tmp_path
 
 def test_misspelt_topic_alone_is_not_blamed_on_the_graph(user, hexarm, tmp_path):
     path = tmp_path / 'nothing.mcap'
-    words = ('-o', str(path), '--for', '2.5', '--topics', 'poes')
+    words = ('-o', str(path), '--for', '6', '--topics', 'poes')
     said = ends_with(hexarm('record', 'hexapod', *words), 1)
     assert 'there is no topic /hexapod/poes, did you mean /hexapod/pose?' in said
     assert 'is a graph running' not in said

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticStatus
 
 from manipulator.errors import Refused
 
@@ -94,3 +95,13 @@ def test_a_low_battery_is_a_fault_that_must_be_cleared(enabled):
     enabled.wait('a good battery', lambda: enabled.report()['battery_v'] == '7.6', 5.0)
     enabled.trigger('serial_bridge/clear_fault')
     enabled.wait_for_state('enabled')
+
+
+def test_the_state_is_said_again_and_again_for_those_who_must_know_that_the_bridge_lives(rig):
+    heard = []
+    subscription = rig.node.create_subscription(
+        DiagnosticStatus, 'machine_state', lambda m: heard.append(m.message), 10
+    )
+    rig.wait('the same state four times', lambda: len(heard) >= 4, 10.0)
+    rig.node.destroy_subscription(subscription)
+    assert set(heard) == {rig.machine_state.message}

@@ -61,3 +61,19 @@ def test_joints_that_do_not_follow_end_the_motion_and_name_one(driving):
     assert 'away from its command' in driving.status.reason
     driving.see(HOME)
     assert np.abs(driving.step().twist_to(HOME)).max() < 1e-12
+
+
+def test_what_a_bridge_said_that_has_died_counts_for_nothing(driving):
+    driving.note_bridge_silence(1.4)
+    assert driving.is_driving
+    driving.note_bridge_silence(1.6)
+    assert not driving.is_driving
+    assert driving.status.reason == 'no word of the bridge for 1.5 s'
+    driving.see(HOME)
+    with pytest.raises(Refused, match='no bridge says how it is'):
+        _ = driving.player
+    driving.note_machine_state('enabled', is_followed=False)
+    driving.see(HOME)
+    assert driving.step() is not None
+    with pytest.raises(Refused, match='does not follow setpoints yet'):
+        _ = driving.player
