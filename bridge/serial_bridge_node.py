@@ -22,12 +22,12 @@ from bridge.gripper import Gripper
 from bridge.latencies import Latencies
 from bridge.link_monitor import LinkMonitor
 from bridge.link_thread import LinkThread, Ticket
+from bridge.machine_state_node import LEVELS, StateTopic
 from bridge.messages import Arm, Clear, Command, Disarm
 from bridge.programs_node import BoardPrograms
 from bridge.serial_port import SerialPort
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
-from bridge.state_topic import LEVELS, StateTopic
 from bridge.stop_memory import StopMemory, stop_file
 from bridge.stop_node import StopNode
 from hexarm import machines

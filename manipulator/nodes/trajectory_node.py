@@ -121,8 +121,9 @@ class TrajectoryNode(Node):
             self.get_logger().warning(f'pivot: {error}', throttle_duration_sec=1.0)
 
     def _tick(self) -> None:
-        self._pilot.note_stall(self._jitter.tick())
-        now = time.monotonic()
+        since_last, now = self._jitter.tick(), time.monotonic()
+        self._state_heard += max(since_last - self._dt, 0.0)  # said meanwhile, and not yet heard
+        self._pilot.note_stall(since_last)
         self._pilot.note_silence(self._poses.age)
         self._pilot.note_bridge_silence(now - self._state_heard)
         self._teleop.drive(now)

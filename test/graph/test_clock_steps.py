@@ -93,7 +93,10 @@ def goes_on(user, clock, step):
     user.setpoints, user.heights = 0, []
     user.wait('setpoints', lambda: user.setpoints > 50, 10.0)
     has_moved = max(user.heights) - min(user.heights) > 1e-3
-    return has_moved and (user.words, user.motion('mode')) == ([], 'cycle')
+    return has_moved and (set(user.words) | {'enabled'}, user.motion('mode')) == (
+        {'enabled'},
+        'cycle',
+    )
 
 
 def test_the_clock_is_set_and_the_platform_goes_on(user, clock):

@@ -42,6 +42,7 @@ def test_a_node_that_does_not_answer_is_named(page, machine, hexapod_graph):
         page.page.get_by_text('trajectory/home: no answer within').wait_for()
     finally:
         os.kill(trajectory, signal.SIGCONT)
+        machine.client.spin(1.0)  # it takes the machine over anew
 
 
 def test_other_sites_are_turned_away(panel, two_pages):

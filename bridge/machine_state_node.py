@@ -1,4 +1,7 @@
-"""`machine_state`: said at every change, and over and over, so that a dead bridge is noticed."""
+"""The part of serial_bridge that says `machine_state`: at every change, and over and over.
+
+A listener can tell by it that the bridge lives.
+"""
 
 import threading
 from collections.abc import Mapping
