@@ -189,6 +189,7 @@ def test_arguments_that_do_not_fit_start_nothing(chosen, error, reason):
         started('hexapod', **chosen)
 
 
+@pytest.mark.usefixtures('chip_tools')
 def test_chip_on_a_simulator_is_a_process_of_its_own():
     nodes = started('hexapod', port='simavr')
     (chip,) = (n for n in nodes if isinstance(n, ExecuteProcess))

@@ -1,7 +1,6 @@
 """Boards that must all pass the same tests, behind `feed(bytes)`, `step(dt)`, `take_output()`."""
 
 import dataclasses
-import os
 
 import numpy as np
 import pytest
@@ -16,7 +15,7 @@ from bridge.messages import Ack, Arm, Fault, Hello, ResetCause, Result, State
 from bridge.program_messages import TableBegin, TableEnd, TableRow
 from bridge.servo_config import BoardConfig
 from firmware.simulator.board import SimulatedBoard
-from hexarm import firmware_build, machines
+from hexarm import machines
 from hexarm.board_solver import board_solver
 
 ROBOCAKE = BoardConfig.from_machine(machines.read('robocake'))
@@ -110,16 +109,9 @@ class BoardDriver:
 BOARDS = {'python': Board, 'chip': SimulatedBoard}
 
 
-def skip_without_tools():
-    missing = firmware_build.missing_tools()
-    if missing and os.environ.get('REQUIRE_ALL') != '1':
-        pytest.skip(f'not installed: {", ".join(missing)}')
-
-
 @pytest.fixture
-def make_both():
+def make_both(chip_tools):
     """A BoardDriver of each board, for settings that differ from the usual ones."""
-    skip_without_tools()
     return lambda **changes: [BoardDriver(board, **changes) for board in BOARDS.values()]
 
 
@@ -127,7 +119,7 @@ def make_both():
 def make_driver(request):
     """A BoardDriver for settings that differ from the usual ones."""
     if request.param == 'chip':
-        skip_without_tools()
+        request.getfixturevalue('chip_tools')
     return lambda **changes: BoardDriver(BOARDS[request.param], **changes)
 
 

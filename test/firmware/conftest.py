@@ -1,19 +1,13 @@
 """The simulated board with a host that talks to it, for what only a chip can show."""
 
-import os
-
 import pytest
 
 from firmware.simulator.host import Host
-from hexarm import firmware_build
 
 
 @pytest.fixture(scope='session', autouse=True)
-def tools():
-    """Skips where the tools are missing, unless nothing may be skipped."""
-    missing = firmware_build.missing_tools()
-    if missing and os.environ.get('REQUIRE_ALL') != '1':
-        pytest.skip(f'not installed: {", ".join(missing)}')
+def tools(chip_tools):
+    """Nothing here goes without them."""
 
 
 @pytest.fixture

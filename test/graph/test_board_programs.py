@@ -1,7 +1,6 @@
 """Programs over topics and services: uploaded, played by the board alone, ended smoothly."""
 
 import math
-import os
 
 import pytest
 from builtin_interfaces.msg import Duration
@@ -60,9 +59,7 @@ def rig(request, tmp_path_factory):
     link = tmp_path_factory.mktemp('port') / 'board'
     board = Executable('bridge', 'fake_hardware', {'machine': 'robocake', 'link': str(link)})
     if request.param == 'chip':
-        missing = firmware_build.missing_tools()
-        if missing and os.environ.get('REQUIRE_ALL') != '1':
-            pytest.skip(f'not installed: {", ".join(missing)}')
+        request.getfixturevalue('chip_tools')
         command = firmware_build.chip_process('robocake', link)
         board = Executable('firmware', 'chip', command=command)
     parameters = {'machine': 'robocake', 'port': str(link), 'board_cycle.amplitude': AMPLITUDE}

@@ -1,20 +1,11 @@
 """`hexarm up hexapod --port simavr`: the whole graph against the firmware on a simulated chip."""
 
-import os
 import signal
 import time
 
 import pytest
 
-from hexarm import firmware_build
-
-pytestmark = pytest.mark.graph
-
-
-def require_tools():
-    missing = firmware_build.missing_tools()
-    if missing and os.environ.get('REQUIRE_ALL') != '1':
-        pytest.skip(f'not installed: {", ".join(missing)}')
+pytestmark = [pytest.mark.graph, pytest.mark.usefixtures('chip_tools')]
 
 
 def up(hexarm):
@@ -29,7 +20,6 @@ def up(hexarm):
 
 
 def test_the_graph_enables_parks_and_leaves_no_chip_behind(hexarm, processes_left):
-    require_tools()
     process = up(hexarm)
     (chip,) = [pid for pid, words in processes_left().items() if 'pty_chip' in words]
     process.send_signal(signal.SIGINT)
@@ -41,7 +31,6 @@ def test_the_graph_enables_parks_and_leaves_no_chip_behind(hexarm, processes_lef
 
 
 def test_the_chip_ends_when_up_itself_is_killed(hexarm, processes_left):
-    require_tools()
     process = up(hexarm)
     process.kill()
     process.wait()
