@@ -88,13 +88,14 @@ class BoardModes:
     def obey(self, command: Command, now_us: int) -> Result:
         """Does what a host asks, or says why not and changes nothing.
 
-        The machine is the host's from then on, until its deadline passes, and what the start
-        button wanted to play is forgotten; only uploading a program claims nothing.
+        What the start button wanted to play is forgotten then, and the machine is the host's until
+        its deadline passes; only uploading a program claims nothing.
         """
         result = self._obey(command, now_us)
-        if result is Result.OK and not isinstance(command, ProgramPart):
+        if result is Result.OK:
             self._program_after_arming = None
-            self._is_hosts = self.mode not in (Mode.DISARMED, Mode.HOLDING)
+            if not isinstance(command, ProgramPart):
+                self._is_hosts = self.mode not in (Mode.DISARMED, Mode.HOLDING)
         return result
 
     def stop(self, now_us: int) -> Result:

@@ -5,6 +5,9 @@ from manipulator.words import counted
 
 UPTIME_SLACK_MS = 250
 SHORTEST_ADVANCE_MS = 125
+LONGEST_STALL_MS = 2**26
+"""19 hours: by which a board's clock may be ahead of ours, which a sleeping computer's stands."""
+LONGEST_LAG_MS = 2**30
 
 
 def misfit(hello: Hello, joint_count: int) -> str:
@@ -17,12 +20,13 @@ def misfit(hello: Hello, joint_count: int) -> str:
 
 
 def has_restarted(before: Hello, hello: Hello, elapsed: float) -> bool:
-    """Whether the board's clock (it wraps) ran less than half as long as ours since its HELLO.
+    """Whether the board's clock (it wraps at 49.7 days) ran less than half as long as ours.
 
-    elapsed: seconds between the two. A board's resonator is off by a percent, and a simulated
-    board may stall: neither counts. Two HELLOs of one run are 250 ms apart on that clock, so less
-    is a restart as well.
+    elapsed: seconds between the two HELLOs. A board's resonator is off by a percent, and a
+    simulated board may stall: neither counts. Two HELLOs of one run are 250 ms apart on that
+    clock, so less is a restart as well.
     """
     advance = hello.uptime_ms - before.uptime_ms & 0xFFFF_FFFF
-    is_too_slow = advance + UPTIME_SLACK_MS < 1000 * elapsed / 2
-    return is_too_slow or advance < SHORTEST_ADVANCE_MS or advance >= 0x8000_0000
+    lag = (round(1000 * elapsed) - advance + 2**31 & 0xFFFF_FFFF) - 2**31
+    most = min(500 * elapsed + UPTIME_SLACK_MS, LONGEST_LAG_MS)
+    return advance < SHORTEST_ADVANCE_MS or not -LONGEST_STALL_MS < lag <= most

@@ -153,9 +153,13 @@ uint8_t safety_play(uint8_t program, bool is_loop)
     return result;
 }
 
-void safety_claim(void)
+void safety_forget_start(void)
 {
     program_after_arming = 0;
+}
+
+void safety_claim(void)
+{
     is_hosts = mode != MODE_DISARMED && mode != MODE_HOLDING;
 }
 

@@ -26,8 +26,10 @@ uint8_t safety_stop(void);
 uint8_t safety_clear(void);
 uint8_t safety_play(uint8_t program, bool is_loop);
 
-/* Call after a command of a host was obeyed: the machine is the host's from then on, until its
- * deadline passes, and what the start button wanted to play is forgotten. */
+/* Call after a command of a host was obeyed: what the start button wanted to play is forgotten. */
+void safety_forget_start(void);
+
+/* The machine is the host's from now on, until its deadline passes. */
 void safety_claim(void);
 
 /* Deadline and buttons; call in every round of the loop. */

@@ -52,6 +52,12 @@ def test_a_host_that_speaks_while_the_button_arms_is_the_master(starting, comman
     assert starting.counts() == START
 
 
+def test_what_is_uploaded_while_the_button_arms_is_not_played_in_its_place(starting):
+    assert starting.upload([START, tuple(count + 200 for count in PARK), START], 200) is Result.OK
+    assert modes(starting, 4.0) == [Mode.ARMING, Mode.ARMED, Mode.HOLDING]
+    assert starting.counts() == START
+
+
 @pytest.mark.parametrize(('command', 'mode'), [(Disarm(), Mode.DISARMED), (Stop(), Mode.STOPPED)])
 def test_a_host_that_ends_the_arming_ends_what_was_to_be_played(starting, command, mode):
     assert starting.ask(command) is Result.OK
