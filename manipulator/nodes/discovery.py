@@ -2,7 +2,7 @@
 
 Fast DDS gives a process the lowest pair of UDP ports that is free. After a kill that is the dead
 process's pair, while the others believe in the dead one for the 20 s of its lease: its heir goes
-unheard, or hears nothing, for seconds. At another pair it does not: bench/rejoin.py measures both.
+unheard, or hears nothing, for seconds. At another pair it mostly does not: docs/safety.md.
 """
 
 import contextlib
