@@ -47,13 +47,12 @@ def main():
 
     node.create_subscription(PoseStamped, f'{arguments.namespace}/pose', on_pose, 5)
     print(f'{arguments.turns:g} turns of {arguments.period:g} s')
-    begin = time.monotonic()
-    goals = 0
-    while (elapsed := time.monotonic() - begin) < arguments.turns * arguments.period:
-        if elapsed >= goals * PERIOD_OF_GOALS:
-            mover.publish(point(2 * math.pi * elapsed / arguments.period))
-            goals += 1
-        rclpy.spin_once(node, timeout_sec=0.005)
+    # Each goal is the next on the circle, however late: a stall must not cut across it.
+    for k in range(round(arguments.turns * arguments.period / PERIOD_OF_GOALS)):
+        mover.publish(point(2 * math.pi * k * PERIOD_OF_GOALS / arguments.period))
+        until = time.monotonic() + PERIOD_OF_GOALS
+        while (left := until - time.monotonic()) > 0:
+            rclpy.spin_once(node, timeout_sec=left)
 
     if radii:
         deviation = max(abs(radius - arguments.radius) for radius in radii)

@@ -83,8 +83,10 @@ def test_what_is_no_namespace_is_refused_before_ros_is_started(command, capsys):
 
 
 def test_ctrl_c_while_modules_are_imported_is_silent():
+    # A shell's background job ignores SIGINT, and hands that down.
     script = (
         'import sys, signal, builtins; real = builtins.__import__\n'
+        'signal.signal(signal.SIGINT, signal.default_int_handler)\n'
         'def late(name, *rest):\n'
         '    if name == "numpy": signal.raise_signal(signal.SIGINT)\n'
         '    return real(name, *rest)\n'
