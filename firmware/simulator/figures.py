@@ -36,7 +36,8 @@ def jitter_us(seconds: float = 60.0) -> float:
 
 def stand_still_ms(deadline_ms: int | None) -> list[float]:
     """From the last setpoint (or, without a deadline, from a STOP) to the last pulse that differs
-    from the one before, at phases all over the period.
+    from the one before by more than a count, at phases all over the period. (The simulated edges
+    are exact to 4 cycles, half a count.)
     """
     host, found = armed(), []
     for phase in range(0, 40_000, 40_000 // PHASES):
@@ -51,7 +52,8 @@ def stand_still_ms(deadline_ms: int | None) -> list[float]:
         start = host.chip.cycle
         host.run(0.6)
         rises, widths = host.pulses()
-        changed = np.flatnonzero(np.any(np.abs(np.diff(widths, axis=0)) > 4, axis=1)) + 1
+        changes = np.abs(np.diff(widths, axis=0)).max(axis=1)
+        changed = np.flatnonzero(changes > CYCLES_A_COUNT) + 1
         found.append(1e3 * max(int(rises[changed[-1], 0]) - start, 0) / CLOCK_HZ)
         if deadline_ms is None:
             host.board.reset(ResetCause.POWER_ON)
