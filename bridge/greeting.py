@@ -8,6 +8,7 @@ SHORTEST_ADVANCE_MS = 125
 LONGEST_STALL_MS = 2**26
 """19 hours: by which a board's clock may be ahead of ours, which a sleeping computer's stands."""
 LONGEST_LAG_MS = 2**30
+"""12 days, a quarter of the clock: a lag beyond it could as well be a lead."""
 
 
 def misfit(hello: Hello, joint_count: int) -> str:

@@ -100,10 +100,7 @@ static uint8_t obey(const Frame *frame)
 uint8_t command_obey(const Frame *frame)
 {
     uint8_t result = obey(frame);
-    if (result != RESULT_OK)
-        return result;
-    safety_forget_start();
-    if (!changes_program(frame->type))
-        safety_claim();
+    if (result == RESULT_OK)
+        safety_note_host(!changes_program(frame->type));
     return result;
 }

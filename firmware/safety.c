@@ -153,14 +153,11 @@ uint8_t safety_play(uint8_t program, bool is_loop)
     return result;
 }
 
-void safety_forget_start(void)
+void safety_note_host(bool is_claim)
 {
     program_after_arming = 0;
-}
-
-void safety_claim(void)
-{
-    is_hosts = mode != MODE_DISARMED && mode != MODE_HOLDING;
+    if (is_claim)
+        is_hosts = mode != MODE_DISARMED && mode != MODE_HOLDING;
 }
 
 /* A machine that stood still under a STOP does not fall because somebody has cleared it. */

@@ -26,11 +26,9 @@ uint8_t safety_stop(void);
 uint8_t safety_clear(void);
 uint8_t safety_play(uint8_t program, bool is_loop);
 
-/* Call after a command of a host was obeyed: what the start button wanted to play is forgotten. */
-void safety_forget_start(void);
-
-/* The machine is the host's from now on, until its deadline passes. */
-void safety_claim(void);
+/* Call after a command of a host was obeyed: what the start button wanted to play is forgotten, and
+ * after a claim the machine is the host's from then on, until its deadline passes. */
+void safety_note_host(bool is_claim);
 
 /* Deadline and buttons; call in every round of the loop. */
 void safety_watch(void);
