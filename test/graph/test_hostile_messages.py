@@ -92,12 +92,22 @@ def spoil(owner, field, value, bad):
     return True
 
 
+def is_discovered(user, node, interfaces):
+    """Whether the graph names the node and, by now, every topic that it is said to listen to."""
+    if (node, OURS.rstrip('/')) not in user.node.get_node_names_and_namespaces():
+        return False
+    heard = user.node.get_subscriber_names_and_types_by_node(node, OURS.rstrip('/'))
+    said = {OURS + name for kind, name in interfaces.documented(node) if kind == 'in'}
+    return said <= {topic for topic, _ in heard}
+
+
 @pytest.fixture(scope='module')
-def senders(user):
+def senders(user, interfaces):
     """A publisher for every topic that a node of ours listens to, matched with its listeners."""
     found = {}
     user.enable()
     for node in NODES:
+        user.wait(f'all of {node}', lambda n=node: is_discovered(user, n, interfaces), 30.0)
         ask = user.node.get_subscriber_names_and_types_by_node
         for topic, (name, *_) in ask(node, OURS.rstrip('/')):
             if not topic.startswith(OURS) or topic in found:

@@ -25,9 +25,10 @@ def test_home_pose_is_heard_on_pose(arm):
 
 def test_goal_is_reached_and_the_encoders_say_so(arm, listen):
     goal = HOME.moved([0.1, -0.05, 0.05, 0.0, 0.2, 0.1])
-    heard = listen()
     arm.go_to(goal)
     arm.spin(0.2)
+    heard = listen()  # what was said on the way may still wait to be heard
+    arm.wait('joints', lambda: len(heard.messages) > 3, 5.0)
     error = heard.poses[-1].twist_to(goal)
     assert np.abs(error[:3]).max() < 5e-4
     assert np.abs(error[3:]).max() < np.radians(0.05)
