@@ -128,9 +128,11 @@ class TrajectoryNode(Node):
         self._pilot.note_bridge_silence(now - self._state_heard)
         self._teleop.drive(now)
         self._paths.poll()
-        pose = self._pilot.step()
-        if pose is not None:
-            self._setpoints.publish(pose_message(pose, self.get_clock().now().to_msg()))
+        pose, stamp = self._pilot.step(), self.get_clock().now().to_msg()
+        # Frozen until here, this tick is late; frozen from here on, its stamp tells the others.
+        self._pilot.note_stall(time.monotonic() - now)
+        if pose is not None and self._pilot.is_driving:
+            self._setpoints.publish(pose_message(pose, stamp))
         self._say_news()
 
     def _say_news(self) -> None:
