@@ -82,3 +82,24 @@ Event: TypeAlias = (
     | CommandFailed
     | FaultReported
 )
+
+
+def without_passed_states(events: list[Event]) -> list[Event]:
+    """Of STATEs that came at once and in a row, the last one of each mode.
+
+    A process that was frozen finds in its port what has piled up: told one by one, as if it were
+    news, it would have the machine driven back to where its joints were long ago.
+    """
+    kept: list[Event] = []
+    for event in events:
+        if kept and _is_passed(kept[-1], event):
+            kept.pop()
+        kept.append(event)
+    return kept
+
+
+def _is_passed(old: Event, new: Event) -> bool:
+    match old, new:
+        case StateReceived(before), StateReceived(after):
+            return before.mode is after.mode
+    return False

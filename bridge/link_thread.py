@@ -14,7 +14,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Protocol
 
-from bridge.events import Acknowledged, CommandFailed, Event
+from bridge.events import Acknowledged, CommandFailed, Event, without_passed_states
 from bridge.messages import Command, Setpoint, Stop
 from bridge.session import Session
 from manipulator.errors import LinkError, Refused
@@ -133,7 +133,7 @@ class LinkThread(threading.Thread):
         if self._port is not None and has_input:
             received, now = self._port.read(), time.monotonic()
             self._read_at = now + len(received) / self._bytes_per_second
-            self._tell(self.session.receive(received, now))
+            self._tell(without_passed_states(self.session.receive(received, now)))
         # A thread that was held up may not call the board silent before it has listened again.
         self._tell(self.session.tick(looked_at))
         self._write()

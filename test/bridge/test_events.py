@@ -1,0 +1,32 @@
+from types import SimpleNamespace
+
+import pytest
+
+from bridge.events import Disconnected, StateReceived, without_passed_states
+from bridge.messages import Mode
+
+
+def told(*modes):
+    """STATEs of these modes, numbered; None is an event of another kind."""
+    return [
+        Disconnected('why')
+        if mode is None
+        else StateReceived(SimpleNamespace(mode=mode, number=i))
+        for i, mode in enumerate(modes)
+    ]
+
+
+@pytest.mark.parametrize(
+    ('modes', 'kept'),
+    [
+        ((), []),
+        ((Mode.ARMED,), [0]),
+        ((Mode.ARMED, Mode.ARMED, Mode.HOLDING, Mode.HOLDING), [1, 3]),
+        ((Mode.DISARMED, Mode.DISARMED), [1]),
+        ((Mode.ARMED, Mode.DISARMED, Mode.ARMED), [0, 1, 2]),
+        ((Mode.ARMED, None, Mode.ARMED), [0, 1, 2]),
+    ],
+)
+def test_the_last_state_of_each_mode_is_told_in_order(modes, kept):
+    events = told(*modes)
+    assert without_passed_states(events) == [events[i] for i in kept]
