@@ -46,7 +46,8 @@ setup(
             'daqp>=0.5',
         ],
         'test': [
-            'pytest>=8',
+            'pytest>=8.2',
+            'pytest-rerunfailures>=16.1',  # only where the computer itself stood still
             'hypothesis>=6.100',
             'mypy>=1.11',
             'playwright>=1.45',  # drives the system's Chromium, for the panel's page

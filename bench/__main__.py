@@ -10,6 +10,7 @@ from pathlib import Path
 from bench.computer import this_computer
 from bench.page import page, table
 from bench.section import measured, names
+from bench.stall_watch import StallWatch
 
 
 def main(arguments: list[str]) -> int:
@@ -22,9 +23,11 @@ def main(arguments: list[str]) -> int:
     if unknown:
         parser.error(f'nothing measures {", ".join(unknown)}; there are {", ".join(known)}')
     chosen, computer, sections = options.names or known, this_computer(), []
-    for count, name in enumerate(chosen, start=1):
-        print(f'[{count}/{len(chosen)}] {name}', file=sys.stderr, flush=True)
-        sections.append(measured(name))
+    with StallWatch() as stalls:
+        for count, name in enumerate(chosen, start=1):
+            print(f'[{count}/{len(chosen)}] {name}', file=sys.stderr, flush=True)
+            sections.append(measured(name))
+        computer['longest time that the host took a core away'] = stalls.summary
     print(table(computer, sections))
     if options.write:
         options.write.write_text(page(computer, sections))

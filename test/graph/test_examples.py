@@ -16,7 +16,7 @@ from manipulator.nodes.messages import pose_of
 from manipulator.nodes.qos import LATCHED
 from manipulator.pose import Pose
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / 'examples').glob('*.py'))
 

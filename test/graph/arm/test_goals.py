@@ -10,7 +10,7 @@ from manipulator.errors import Refused
 from manipulator.nodes.messages import joints_of
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 
 HOME = load('arm_6r_stepper').kinematics.home
 

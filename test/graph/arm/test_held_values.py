@@ -5,7 +5,7 @@ import pytest
 
 from hexarm.machines import load
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 
 HOME = load('arm_6r_stepper').kinematics.home
 

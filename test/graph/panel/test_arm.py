@@ -13,7 +13,7 @@ from hexarm.panel_process import panel_process
 from hexarm.up import check_alive
 from manipulator.nodes.qos import LATCHED
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 
 SHIPPED = Path(__file__).resolve().parents[3] / 'config' / 'arm_6r.yaml'
 Z, GRIPPER = 3, 7

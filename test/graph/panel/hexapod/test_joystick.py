@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 
 JOG = 0.003
 """Metres that tell a jog from standing still. The reach is 15 mm, so jogs are slow: a busy

@@ -12,7 +12,7 @@ from PIL import Image
 from hexarm.panel_process import panel_address
 from manipulator.pose import Pose
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 
 PICTURED = Pose.from_xyz_rpy((0.006, -0.004, 0.0455), (0.05, 0.09, -0.03))
 

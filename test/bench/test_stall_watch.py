@@ -1,0 +1,24 @@
+"""The watch on the computer itself: a process that is frozen cannot tell a freeze of its core."""
+
+import signal
+import time
+
+from bench.stall_watch import StallWatch
+
+
+def test_a_core_that_was_away_is_told_and_only_since_then():
+    with StallWatch() as watch:
+        time.sleep(1.0)  # it starts
+        watch.process.send_signal(signal.SIGSTOP)
+        time.sleep(0.4)
+        watch.process.send_signal(signal.SIGCONT)
+        deadline = time.monotonic() + 10.0
+        while watch.longest() < 0.3 and time.monotonic() < deadline:
+            time.sleep(0.01)
+        assert 0.3 < watch.longest() < 5.0
+        assert watch.summary == f'{watch.longest():.1f} s'
+        assert watch.longest(since=time.monotonic()) == 0.0
+
+
+def test_a_computer_that_went_on_has_nothing_to_tell():
+    assert StallWatch().summary == 'less than 0.1 s'
