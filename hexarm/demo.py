@@ -122,15 +122,19 @@ def tour(client: 'Client') -> Observation:
 
 
 def drive(client: 'Client', goal: Pose) -> None:
-    """Goes to the goal, and once more where a busy computer let the board's deadline pass."""
+    """Goes to the goal; again where a busy computer stopped the machine, on the way or before."""
     from hexarm.client import Stopped  # noqa: PLC0415 (needs ROS)
 
-    try:
-        client.go_to(goal)
-    except Stopped as stop:
-        say(f'  {stop}: once more')
+    for tries_left in (2, 1, 0):
         client.wait('the machine', lambda: client.motion('mode') != 'disabled', 10.0)
-        client.go_to(goal)
+        try:
+            client.go_to(goal)
+        except (Stopped, Refused) as reason:
+            if not tries_left:
+                raise
+            say(f'  {reason}: once more')
+        else:
+            return
 
 
 def moves() -> Iterator[tuple[str, Pose]]:

@@ -80,6 +80,7 @@ def enabled(rig):
     return rig
 
 
+@pytest.mark.real_time
 def test_a_table_is_uploaded_played_in_a_loop_and_ended(enabled):
     enabled.upload(swing(), 'table of 20 rows, 100 ms apart, is on board')
     enabled.ask('serial_bridge/play_table', True)
@@ -88,6 +89,7 @@ def test_a_table_is_uploaded_played_in_a_loop_and_ended(enabled):
     enabled.wait_for_state('enabled')
 
 
+@pytest.mark.real_time
 def test_a_cycle_is_played_once_and_ends_enabled(enabled):
     enabled.ask('serial_bridge/play_cycle', False)
     enabled.wait_for_state('playing')

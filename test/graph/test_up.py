@@ -101,6 +101,7 @@ def test_demo_ends_cleanly_on_ctrl_c(hexarm, processes_left, tmp_path):
     wait_until_none_is_left(processes_left)
 
 
+@pytest.mark.real_time
 def test_demo_goes_through_and_its_picture_and_errors_are_good(hexarm, processes_left, tmp_path):
     picture = tmp_path / 'demo.png'
     process = hexarm('demo', '--picture', str(picture))
