@@ -17,7 +17,7 @@ from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.pose import Pose
 from manipulator.trajectory.shapes import arc
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 
 RADIUS, HEIGHT = 0.008, 0.045
 

@@ -16,7 +16,7 @@ from manipulator.nodes.messages import pose_message, pose_of
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.pose import Pose
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 
 
 def heard_pose(user):

@@ -15,7 +15,7 @@ import pytest
 
 from hexarm.graph import Executable, Graph
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 
 SPACE = 'monitored'
 LEAVES_SCREEN = b'\x1b[?1049l'

@@ -23,7 +23,7 @@ from manipulator.nodes.messages import seconds
 from manipulator.nodes.qos import LATCHED as LATCHED_QUALITIES
 from manipulator.pose import Pose
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 
 ROOT = Path(__file__).resolve().parents[2]
 STREAMS = ('setpoint', 'joint_command', 'joint_states', 'pose')

@@ -14,7 +14,7 @@ from manipulator.nodes.messages import joints_of, pose_of
 from manipulator.nodes.qos import MEASUREMENT
 from manipulator.pose import Pose
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 PULSE = 0.5 / 10.0 * 1e-3  # half a microsecond at 10 µs/mm
 PLAY = 0.2e-3
 

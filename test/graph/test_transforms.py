@@ -18,7 +18,7 @@ from visualization_msgs.msg import MarkerArray
 
 from hexarm.client import Client
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 
 ROOT = Path(__file__).resolve().parents[2]
 HOME = [2.0943951] * 6

@@ -2,7 +2,7 @@
 
 import pytest
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 
 
 def test_missing_library_is_one_line_and_status_1(refusal, tmp_path, monkeypatch):

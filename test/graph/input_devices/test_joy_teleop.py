@@ -7,7 +7,7 @@ import time
 import pytest
 from sensor_msgs.msg import Joy
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 NAMESPACE = 'joysticks'
 LB, STOP, HOME, CLOSE = 4, 1, 7, 0
 PATIENCE = 10.0

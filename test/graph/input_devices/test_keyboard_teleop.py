@@ -12,7 +12,7 @@ from contextlib import contextmanager
 
 import pytest
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.real_time]
 NAMESPACE = 'keyboards'
 ZERO = (0.0,) * 6
 PATIENCE = 10.0
