@@ -25,6 +25,7 @@ class Following:
         self._allowed_ticks = round(PATIENCE / dt)
         self._astray_for = 0
         self._worst = ''
+        self._measured: Array | None = None
 
     def command(self, joints: Array) -> None:
         """Notes what is commanded at this tick."""
@@ -33,6 +34,7 @@ class Following:
 
     def measure(self, joints: Array) -> None:
         """Notes where the joints are."""
+        self._measured = joints
         if not self._commanded:
             return
         away = np.abs(np.array(self._commanded) - joints)
@@ -41,6 +43,13 @@ class Following:
         self._strays = int(away[nearest, worst] > self._tolerance)
         self._astray_for *= self._strays
         self._worst = f'{self._names[worst]} is {away[nearest, worst]:.3g} away from its command'
+
+    @property
+    def has_arrived(self) -> bool:
+        """Whether the joints are where the last command sent them; so they are before any is."""
+        if self._measured is None or not self._commanded:
+            return True
+        return bool(np.abs(self._commanded[-1] - self._measured).max() <= self._tolerance)
 
     @property
     def trouble(self) -> str:

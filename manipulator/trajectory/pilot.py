@@ -183,9 +183,15 @@ class Pilot:
             return None
         pose = self._player.step()
         self._following.command(self._player.joints)
-        if self._is_followed:
+        if self._is_followed and not self._is_early(self._player.status):
             self.status = self._player.status
         return self.machine.frames.platform(pose)
+
+    def _is_early(self, status: MotionStatus) -> bool:
+        """Whether it says that the goal under way is reached, and the joints are not there yet."""
+        is_ours = self.status.result == 'moving' and self.status.goal_stamp == status.goal_stamp
+        is_there = self._following is None or self._following.has_arrived
+        return is_ours and status.result == 'reached' and not is_there
 
     def _take_over(self, T_base_platform: Pose, near: Array) -> None:
         self._forget_misfit()

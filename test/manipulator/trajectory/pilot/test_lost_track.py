@@ -63,6 +63,31 @@ def test_joints_that_do_not_follow_end_the_motion_and_name_one(driving):
     assert np.abs(driving.step().twist_to(HOME)).max() < 1e-12
 
 
+def test_a_goal_is_not_reached_while_the_joints_are_still_elsewhere(driving):
+    high = Pose.from_xyz_rpy((0.0, 0.0, 0.049))
+    driving.player.pursue(Goal(high, 4.0))
+    said = []
+    while driving.step() is not None:
+        driving.see(HOME)
+        said.append(driving.status.result)
+        assert len(said) < 300
+    assert set(said) == {'moving'}
+    assert driving.status.result == 'stopped'
+    assert 'away from its command' in driving.status.reason
+
+
+def test_joints_that_come_late_reach_the_goal_when_they_are_there(driving):
+    high = Pose.from_xyz_rpy((0.0, 0.0, 0.049))
+    driving.player.pursue(Goal(high, 4.0))
+    while np.abs(driving.step().twist_to(high)).max() > 1e-9:
+        driving.see(HOME)
+    driving.step()
+    assert driving.status.result == 'moving'
+    driving.see(high)
+    driving.step()
+    assert (driving.status.result, driving.status.goal_stamp) == ('reached', 4.0)
+
+
 def test_what_a_bridge_said_that_has_died_counts_for_nothing(driving):
     driving.note_bridge_silence(1.4)
     assert driving.is_driving
