@@ -111,7 +111,7 @@ def tour(client: 'Client') -> Observation:
         client.spin(PAUSE)
     try:
         say('a goal out of reach: x = 40 mm')
-        client.go_to(Pose.from_xyz_rpy((0.04, 0.0, 0.045)))
+        drive(client, Pose.from_xyz_rpy((0.04, 0.0, 0.045)), is_possible=False)
     except Refused as refusal:
         say(f'  {refusal}')
     say(f'a circle of {RADIUS * 1e3:g} mm with a turning tilt of {math.degrees(TILT):g}°')
@@ -121,15 +121,19 @@ def tour(client: 'Client') -> Observation:
     return observation
 
 
-def drive(client: 'Client', goal: Pose) -> None:
-    """Goes to the goal; again where a busy computer stopped the machine, on the way or before."""
-    from hexarm.client import Stopped  # noqa: PLC0415 (needs ROS)
+def drive(client: 'Client', goal: Pose, *, is_possible: bool = True) -> None:
+    """Goes to the goal; again where a busy computer stopped the machine, on the way or before.
 
+    A goal that is possible is refused only by a machine that is not ready.
+    """
+    from hexarm.client import NotReady, Stopped  # noqa: PLC0415 (needs ROS)
+
+    busy = (Stopped, NotReady, Refused) if is_possible else (Stopped, NotReady)
     for tries_left in (2, 1, 0):
         client.wait('the machine', lambda: client.motion('mode') != 'disabled', 10.0)
         try:
             client.go_to(goal)
-        except (Stopped, Refused) as reason:
+        except busy as reason:
             if not tries_left:
                 raise
             say(f'  {reason}: once more')

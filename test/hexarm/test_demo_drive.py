@@ -2,7 +2,7 @@
 
 import pytest
 
-from hexarm.client import Stopped
+from hexarm.client import NotReady, Stopped
 from hexarm.demo import drive
 from manipulator.errors import Refused
 from manipulator.pose import Pose
@@ -34,6 +34,13 @@ def test_a_machine_that_stopped_or_was_not_ready_is_asked_again(capsys):
     drive(client, GOAL)
     assert client.goals == [GOAL] * 3
     assert capsys.readouterr().out.count('once more') == 2
+
+
+def test_a_refusal_that_was_to_be_expected_is_not_asked_for_again():
+    client = StallingClient(NotReady('no answer'), Refused('out of reach'))
+    with pytest.raises(Refused, match='out of reach'):
+        drive(client, GOAL, is_possible=False)
+    assert client.goals == [GOAL] * 2
 
 
 def test_a_goal_that_fails_three_times_is_given_up():
