@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable
 from types import FrameType
 
@@ -16,6 +17,9 @@ from rclpy.utilities import try_shutdown
 from manipulator.errors import ManipulatorError
 from manipulator.nodes.discovery import fresh_address
 from manipulator.requirements import missing
+
+GOODBYE = 3.0
+"""Seconds that a node may take to leave the graph once it has closed what it holds."""
 
 
 def run_node(make_node: Callable[[], Node]) -> int:
@@ -43,6 +47,7 @@ def run_node(make_node: Callable[[], Node]) -> int:
         close = getattr(node, 'close', None)
         if close is not None:
             close()
+        _leave_within(GOODBYE)
         executor.shutdown()
         node.destroy_node()
         try_shutdown()
@@ -59,6 +64,13 @@ def run_named(*executables: Callable[[], int | None]) -> int | None:
         return 2
     sys.argv[:2] = [name]
     return named[name]()
+
+
+def _leave_within(seconds: float) -> None:
+    """Ends the process even where taking leave of the graph does not come back."""
+    timer = threading.Timer(seconds, _leave)
+    timer.daemon = True
+    timer.start()
 
 
 def _leave() -> None:
