@@ -10,6 +10,7 @@ from arm_control.chain import Chain
 from arm_control.numerical import TOLERANCE, Numerical
 from arm_control.parallel_axes import ParallelAxes
 from arm_control.spherical_wrist import SphericalWrist
+from arm_control.tracking import tracked_by_newton
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 
@@ -54,6 +55,10 @@ class AlmostClosed:
             starts = np.where(lost, self.ideal.branches(Pose(place, pose.rotation), near), starts)
         first = np.broadcast_to(near[..., None, :], (*starts.shape[:-2], 1, starts.shape[-1]))
         return np.concatenate([first, np.where(np.isnan(starts), first, starts)], axis=-2)
+
+    def along(self, poses: Pose, near: Array) -> Array:
+        """See `InverseMethod`."""
+        return tracked_by_newton(self.numerical.chain, poses, near, self.branches)
 
     def refusal(self, pose: Pose) -> str:
         """Which triangle of the ideal arm does not close, or how near the real one comes."""

@@ -98,6 +98,10 @@ class SerialArm:
         branches = self.inverse_all(pose, start)
         return nearest_branch(branches, start, self.limits.low, self.limits.high)
 
+    def inverse_along(self, poses: Pose, near: Array) -> Array:
+        """See `Kinematics`: joints go on beyond their ranges, without turning back by 360°."""
+        return self.method.along(poses, self._checked(near))
+
     def forward(self, joints: Array, near: Pose | None = None) -> ForwardSolution:
         """The tool's pose: explicit, so that `near` changes nothing.
 
@@ -108,6 +112,10 @@ class SerialArm:
             raise NoSolution(f'joints {checked.tolist()} are not six finite angles')
         pose = self.chain.forward(checked)
         return ForwardSolution(pose, 0, 0.0, float(self.sigma_min(pose, checked)))
+
+    def forward_along(self, joints: Array, near: Pose) -> Pose:
+        """See `Kinematics`: explicit, so that `near` changes nothing."""
+        return self.chain.forward(self._checked(joints))
 
     def jacobian(self, pose: Pose, joints: Array) -> Array:
         """The tool's twist of unit joint rates (..., 6, 6), from the joints alone.

@@ -27,6 +27,13 @@ class InverseMethod(Protocol):
         """
         ...
 
+    def along(self, poses: Pose, near: Array) -> Array:
+        """The branch (N, 6) that goes on from joints `near` (6,) through N poses; see tracking.py.
+
+        Continuous, also beyond the joint ranges; NaN where it does not close.
+        """
+        ...
+
     def refusal(self, pose: Pose) -> str:
         """Why one pose has no branch: what, how far, and how far would be reachable."""
         ...

@@ -6,6 +6,7 @@ import numpy as np
 
 from arm_control.branches import without_repeats
 from arm_control.chain import Chain
+from arm_control.tracking import tracked_by_newton
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 
@@ -42,6 +43,10 @@ class Numerical:
         )
         joints, error = self.descend(pose, starts)
         return without_repeats(np.where((error < TOLERANCE)[..., None], joints, np.nan))
+
+    def along(self, poses: Pose, near: Array) -> Array:
+        """See `InverseMethod`."""
+        return tracked_by_newton(self.chain, poses, near, self.branches)
 
     def refusal(self, pose: Pose) -> str:
         """How near the best attempt came."""

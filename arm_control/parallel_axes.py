@@ -6,6 +6,7 @@ import numpy as np
 
 from arm_control.chain import Chain
 from arm_control.subproblems import facing_angle, perpendicular, projection_angles, rotate
+from arm_control.tracking import tracked
 from arm_control.two_link import TwoLink, lattice
 from manipulator.arrays import Array
 from manipulator.pose import Pose
@@ -33,6 +34,10 @@ class ParallelAxes:
         _, sense_3, sense_4 = np.sign(self.chain.axes[1:4] @ self.chain.axes[1])
         q4 = sense_4 * (angle - q2 - sense_3 * q3)
         return lattice((q1, q2, q3, q4, q5, q6))
+
+    def along(self, poses: Pose, near: Array) -> Array:
+        """See `InverseMethod`."""
+        return tracked(self.branches(poses, near), near)
 
     def refusal(self, pose: Pose) -> str:
         """Which triangle of the arm does not close: joint 1's, or every elbow's."""

@@ -6,6 +6,7 @@ import numpy as np
 
 from arm_control.chain import Chain
 from arm_control.subproblems import facing_angle, perpendicular, projection_angles, rotate
+from arm_control.tracking import tracked
 from arm_control.two_link import TwoLink, lattice
 from manipulator.arrays import Array
 from manipulator.pose import Pose
@@ -32,6 +33,10 @@ class SphericalWrist:
         for axis, angle in ((w1, q1), (w2, q2), (w3, q3)):
             columns = rotate(axis, -angle[..., None], columns)
         return lattice((q1, q2, q3, *self._wrist(columns, near)))
+
+    def along(self, poses: Pose, near: Array) -> Array:
+        """See `InverseMethod`."""
+        return tracked(self.branches(poses, near), near)
 
     def refusal(self, pose: Pose) -> str:
         """Which triangle of the arm does not close."""

@@ -14,6 +14,7 @@ from hexapod_control.geometry import LEGS
 from hexapod_control.leg_jacobian import leg_jacobian, rods, smallest_singular_value
 from hexapod_control.margin_test import keeps_margin
 from manipulator.arrays import Array, Mask
+from manipulator.continuity import first_jump
 from manipulator.errors import ConfigError, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
 from manipulator.links import PLATFORM, Link
@@ -21,6 +22,9 @@ from manipulator.pose import Pose
 from manipulator.skeleton import Stroke, outline
 
 SINGULAR = 1e-6
+
+SAME = 0.02
+"""Difference of joints (rad or m) that is a measurement's, not another branch's."""
 
 
 class LegGeometry(Protocol):
@@ -91,6 +95,23 @@ class ParallelPlatform(ABC):
     def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
         """As `inverse`, with NaN for each leg that does not close."""
 
+    def inverse_along(self, poses: Pose, near: Array) -> Array:
+        """See `Kinematics`: on home's branch where `near` is on it and all of it is continuous.
+
+        Where two branches meet, as at a stretched crank, nearness alone cannot tell them apart.
+        """
+        as_home = self.inverse_or_nan(poses)
+        if (np.abs(as_home[0] - near) < SAME).all() and first_jump(as_home) is None:
+            return as_home
+        joints = self.inverse_or_nan(poses, near)
+        jump = first_jump(joints)
+        if jump is not None:
+            last = joints[jump]
+            for i in range(jump + 1, len(joints)):
+                joints[i] = self.inverse_or_nan(poses[i], last)
+                last = joints[i] if np.isfinite(joints[i]).all() else last
+        return joints
+
     @abstractmethod
     def base_points(self, joints: Array) -> Array:
         """Where the rods begin, (..., 6, 3), base frame, metres; NaN for NaN joints."""
@@ -106,6 +127,14 @@ class ParallelPlatform(ABC):
     @abstractmethod
     def leverage(self, pose: Pose, joints: Array) -> Array:
         """The inverse singularity's margin (..., 6), 0 to 1: |gain| by the most it can be."""
+
+    def forward_along(self, joints: Array, near: Pose) -> Pose:
+        """See `Kinematics`."""
+        poses = []
+        for row in joints:
+            near = self.forward(row, near).pose
+            poses.append(near)
+        return Pose(np.array([p.position for p in poses]), np.array([p.rotation for p in poses]))
 
     def forward(self, joints: Array, near: Pose | None = None) -> ForwardSolution:
         """The pose for joints (6,); see `Kinematics` and docs/kinematics.md, section 3.

@@ -175,8 +175,15 @@ class Client:
 
         `seconds` as for go_to.
         """
+        self._go('home', seconds)
+
+    def park(self, seconds: float = 10.0) -> None:
+        """Goes to the joints at which the servos are switched on and off; as `home`."""
+        self._go('park', seconds)
+
+    def _go(self, place: str, seconds: float) -> None:
         before = self.motion('goal_stamp')
-        self.trigger('trajectory/home')
+        self.trigger(f'trajectory/{place}')
         self._await_result(lambda: self.motion('goal_stamp') != before, seconds)
 
     def _reaches(self, publisher: Any, listener: str) -> bool:

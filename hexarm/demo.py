@@ -1,6 +1,7 @@
 """`hexarm demo`: both machines' graphs on fake boards, goals, a gamepad, a table and a picture."""
 
 import argparse
+import contextlib
 import math
 import os
 import time
@@ -16,7 +17,7 @@ from hexarm.graph import Executable, Graph, link_folder, machine_graph
 from hexarm.machines import load
 from hexarm.panel_process import offered_panel
 from hexarm.statuses import INTERRUPTED
-from hexarm.up import Interrupted, StopSignal, check_alive, park
+from hexarm.up import Interrupted, StopSignal, check_alive
 from manipulator.errors import Refused
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -94,7 +95,18 @@ def on_graph(
                 check_alive(graph)
 
             with Client(kind, interrupt) as client:
-                return tour(client)
+                observed = tour(client)
+                put_away(client)
+                return observed
+
+
+def put_away(client: 'Client') -> None:
+    """Parks, where the computer lets it, and switches the servos of the fake board off."""
+    from hexarm.client import NotReady, Stopped  # noqa: PLC0415 (needs ROS)
+
+    with contextlib.suppress(Refused, Stopped, NotReady):
+        client.park()
+    client.disable()
 
 
 def tour(client: 'Client') -> Observation:
@@ -116,9 +128,7 @@ def tour(client: 'Client') -> Observation:
         say(f'  {refusal}')
     say(f'a circle of {RADIUS * 1e3:g} mm with a turning tilt of {math.degrees(TILT):g}°')
     stream(client, recorder)
-    observation = recorder.observation(load(MACHINE).kinematics)
-    park(client)
-    return observation
+    return recorder.observation(load(MACHINE).kinematics)
 
 
 def drive(client: 'Client', goal: Pose, *, is_possible: bool = True) -> None:

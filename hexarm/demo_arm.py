@@ -10,7 +10,6 @@ from sensor_msgs.msg import JointState
 from hexarm.demo_arm_report import ArmObservation, Phase
 from hexarm.demo_pad import ScriptedPad
 from hexarm.graph import Executable
-from hexarm.up import park
 from manipulator.machine import Machine
 from manipulator.nodes.messages import joints_of, seconds
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
@@ -62,7 +61,6 @@ def arm_tour(client: 'Client', machine: Machine, say: 'Callable[[str], None]') -
     pad.next_mode(-2)
     say('to and fro, looking at one point')
     phase('look', *({'seconds': s, 'forward': f} for s, f in ((1.0, 1), (2.0, -1), (1.0, 1))))
-    park(client)
     return ArmObservation(
         times=np.array([seconds(m.header.stamp) for m in messages]),
         joints=np.array([joints_of(m, names) for m in messages]),

@@ -6,6 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from bridge.calibration import Calibration
+from bridge.servo_config import ServosConfig
+from manipulator.arrays import Array, frozen
 from manipulator.config import MAX_CHARACTERS, build, parse_yaml
 from manipulator.errors import ConfigError
 from manipulator.frames import Frames
@@ -100,7 +103,18 @@ def load(name_or_path: str) -> Machine:
         machine = replace(machine, sag=_sag(machine_file, machine.kinematics))
     except ConfigError as error:
         raise ConfigError(error.problems, str(find(name_or_path))) from error
-    return replace(machine, frames=Frames.from_config(machine_file.frames))
+    park = _park(machine_file, machine.kinematics)
+    return replace(machine, frames=Frames.from_config(machine_file.frames), park=park)
+
+
+def _park(machine_file: MachineFile, kinematics: Kinematics) -> Array | None:
+    """The joints at park, in the kinematics' order; None where the servos cannot be used."""
+    try:
+        calibration = Calibration.from_config(build(ServosConfig, machine_file.servos, 'servos'))
+        order = [calibration.names.index(name) for name in kinematics.joint_names]
+    except (ConfigError, ValueError):
+        return None
+    return frozen(calibration.park[order])
 
 
 def _sag(machine_file: MachineFile, kinematics: Kinematics) -> Sag | None:

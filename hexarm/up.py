@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import signal
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -73,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
                     _watch(client)
                 except Interrupted:
                     stop.is_set = False
-                    park(client)
+                    park(client, stop)
     return 0
 
 
@@ -147,26 +148,54 @@ def enable(client: 'Client', namespace: str) -> None:
             client.spin(0.2)
 
 
-def park(client: 'Client') -> None:
-    """Goes home if it still can, and switches the servos off in any case."""
-    from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
+def park(client: 'Client', stop: StopSignal) -> None:
+    """Goes to park and switches the servos off; where it cannot, asks before it lets go.
 
+    In a terminal the answer is another Ctrl-C. Without one the servos stay on: what the board then
+    does is what the machine file says of a lost link.
+    """
     if client.machine_state.message in SERVOS_OFF:
         return
     try:
-        if client.machine_state.message == 'enabled':
-            print('parking', flush=True)
-            with contextlib.suppress(NotReady):
-                client.wait('the pose', lambda: client.motion('mode') not in ('', 'disabled'), 1.0)
-            client.home()
+        _go_to_park(client)
     except Interrupted:
-        print('interrupted again: not parked')
+        print('not parked: interrupted again', flush=True)
     except ManipulatorError as error:
-        print(f'not parked: {error}')
+        print(f'not parked: {error}', flush=True)
+        if not _may_let_go(client, stop):
+            return
+    stop.is_set = False
     try:
         client.disable()
     except ManipulatorError as error:
         print(f'the servos are still on: {error}')
+
+
+def _go_to_park(client: 'Client') -> None:
+    """Raises Refused, Stopped or NotReady where it does not get there."""
+    from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
+
+    if client.machine_state.message != 'enabled':
+        raise Refused(f'the machine is {client.machine_state.message}')
+    print('parking; Ctrl-C again switches the servos off where they are', flush=True)
+    with contextlib.suppress(NotReady):
+        client.wait('the pose', lambda: client.motion('mode') not in ('', 'disabled'), 1.0)
+    client.park()
+
+
+def _may_let_go(client: 'Client', stop: StopSignal) -> bool:
+    """Whether somebody at a terminal confirms that the servos may be switched off here."""
+    if not sys.stdin.isatty():
+        print('the servos stay on, where they are: hexarm disable switches them off', flush=True)
+        return False
+    print('The servos hold. Ctrl-C switches them off here: an arm may fall.', flush=True)
+    stop.is_set = False
+    try:
+        while client.machine_state.message not in SERVOS_OFF:
+            client.spin(0.2)
+    except Interrupted:
+        return True
+    return False
 
 
 def _watch(client: 'Client') -> None:

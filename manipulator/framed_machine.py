@@ -65,11 +65,19 @@ class FramedKinematics:
         """See `Kinematics`."""
         return self.inner.inverse_or_nan(self.frames.platform(pose), near)
 
+    def inverse_along(self, poses: Pose, near: Array) -> Array:
+        """See `Kinematics`."""
+        return self.inner.inverse_along(self.frames.platform(poses), near)
+
     def forward(self, joints: Array, near: Pose | None = None) -> ForwardSolution:
         """See `Kinematics`."""
         start = None if near is None else self.frames.platform(near)
         solution = self.inner.forward(joints, start)
         return replace(solution, pose=self.frames.pivot(solution.pose))
+
+    def forward_along(self, joints: Array, near: Pose) -> Pose:
+        """See `Kinematics`."""
+        return self.frames.pivot(self.inner.forward_along(joints, self.frames.platform(near)))
 
     def jacobian(self, pose: Pose, joints: Array) -> Array:
         """The twist of the pivot in work axes: v + ω × r, then both turned."""

@@ -63,10 +63,25 @@ class Kinematics(Protocol):
         """As `inverse`, with NaN for each joint that does not close: for arrays of poses."""
         ...
 
+    def inverse_along(self, poses: Pose, near: Array) -> Array:
+        """Joints (N, n) for a row of N poses on one branch, that which `near` (n,) is on.
+
+        Continuous, also beyond the joint ranges: what jumps changes its branch there. NaN for each
+        joint that does not close.
+        """
+        ...
+
     def forward(self, joints: Array, near: Pose | None = None) -> ForwardSolution:
         """The pose for joints (n,): from `near` (warm), else from home (cold).
 
         Raises NoSolution when none is found, or a cold start's answer cannot be trusted.
+        """
+        ...
+
+    def forward_along(self, joints: Array, near: Pose) -> Pose:
+        """The poses (N,) for joints (N, n) in a row, each warm from the one before, first `near`.
+
+        Raises NoSolution where none is found.
         """
         ...
 

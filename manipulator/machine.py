@@ -4,9 +4,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
+from manipulator.arrays import Array
 from manipulator.frames import Frames, FramesConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
+from manipulator.limits.joint_range import JointRange
+from manipulator.limits.limit_of import LimitOf
 from manipulator.motion_limits import MotionConfig, MotionLimits
 from manipulator.sag import Sag
 from manipulator.teleop.jogger import Jogger
@@ -39,7 +44,8 @@ class Machine:
     frames are those that its user works in; kinematics and constraints are in the base frame,
     unless the machine was made by `in_frames`. make_jogger makes what follows twists with this
     machine, or with the same in other frames. sag is what the drives stay behind by, where that is
-    to be compensated.
+    to be compensated. park (n,) are the joints at which the servos are switched on and off, None
+    where the file has no usable servos.
     """
 
     kinematics: Kinematics
@@ -48,3 +54,15 @@ class Machine:
     make_jogger: 'Callable[[Machine], Jogger]'
     frames: Frames = field(default_factory=Frames)
     sag: Sag | None = None
+    park: Array | None = None
+
+    @property
+    def joint_ranges(self) -> tuple[Array, Array]:
+        """Where each joint's travel begins and ends, (n,) each; ±∞ where it has no end."""
+        count = len(self.kinematics.joint_names)
+        low, high = np.full(count, -np.inf), np.full(count, np.inf)
+        for limit in self.constraints.limits:
+            inner = limit.inner if isinstance(limit, LimitOf) else limit
+            if isinstance(inner, JointRange):
+                low, high = np.maximum(low, inner.low), np.minimum(high, inner.high)
+        return low, high

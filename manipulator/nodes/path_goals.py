@@ -1,4 +1,4 @@
-"""`goal_path`: heard and worked out in processes of their own, then driven like a goal."""
+"""`goal_path`: received in a process of its own, timed by the worker, then driven like a goal."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,19 +9,23 @@ from nav_msgs.msg import Path
 from rclpy.node import Node
 from std_msgs.msg import Header
 
+from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError, Refused
+from manipulator.machine import Machine
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, check_frame, pose_message, seconds
 from manipulator.nodes.parameters import declare
+from manipulator.nodes.path_cdr import read_poses
 from manipulator.nodes.path_ear import PathEar
 from manipulator.nodes.path_listener import MOST_POSES, HeardPath
-from manipulator.nodes.path_process import PathTask
-from manipulator.nodes.path_work import PathWork
 from manipulator.pose import Pose
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.path import Tolerance
+from manipulator.trajectory.path_timing import PathRequest, TimedPath, plan_path
 from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.player import Player
+from manipulator.trajectory.worker import Effort, Job, Worker
 from manipulator.words import counted
 
 OVERTAKEN = 'a newer command came while the path was worked out'
@@ -36,14 +40,41 @@ class RawPath:
     serialized: bytes
 
 
+@dataclass(frozen=True, eq=False)
+class PathTask:
+    """A serialized nav_msgs/Path in `frame`, and who is to drive it from joints `near` (n,)."""
+
+    machine: Machine
+    serialized: bytes
+    frame: str
+    speed: float
+    tolerance: Tolerance
+    near: Array
+    dt: float
+
+    def planned(self, effort: Effort) -> TimedPath | Pose:
+        """See `plan_path`; poses of the platform are turned into those of the pivot."""
+        poses, stamps = read_poses(self.serialized, self.frame)
+        if self.frame == BASE_FRAME:
+            poses = self.machine.frames.pivot(poses)
+        request = PathRequest(poses, self.speed, self.tolerance, stamps)
+        return plan_path(self.machine, request, self.near, self.dt, effort)
+
+
 class PathGoals:
     """The path that is being worked out, if any; `poll` is called at every tick."""
 
     def __init__(
-        self, node: Node, pilot: Pilot, dt: float, say: Callable[[MotionStatus], None]
+        self,
+        node: Node,
+        pilot: Pilot,
+        dt: float,
+        worker: Worker,
+        say: Callable[[MotionStatus], None],
     ) -> None:
         self._node, self._pilot, self._dt, self._say = node, pilot, dt, say
-        self._work: PathWork | None = None
+        self._worker = worker
+        self._work: Job[TimedPath | Pose] | None = None
         self._stamp = 0.0
         fastest = pilot.machine.motion.linear.speed
         for name, default, description, bounds in (
@@ -66,21 +97,25 @@ class PathGoals:
             self._cancel()
             self._say(MotionStatus(self._pilot.status.mode, 'stopped', self._stamp, OVERTAKEN))
             return
-        outcome, player = self._work.outcome, self._pilot.player
-        if outcome is None:
+        if self._work.is_done:
+            work, self._work = self._work, None
+            self._take(work, self._pilot.player)
+
+    def close(self) -> None:
+        """Ends the process that receives paths."""
+        self._cancel()
+        self._ear.close()
+
+    def _take(self, work: 'Job[TimedPath | Pose]', player: Player) -> None:
+        try:
+            outcome = work.result()
+        except ManipulatorError as error:
+            player.refuse(self._stamp, str(error))
             return
-        self._work = None
-        if isinstance(outcome, str):
-            player.refuse(self._stamp, outcome)
-        elif isinstance(outcome, Pose):
+        if isinstance(outcome, Pose):
             player.pursue(Goal(outcome, self._stamp))
         else:
             player.pursue(Goal(outcome.at(0.0).pose, self._stamp, then=outcome))
-
-    def close(self) -> None:
-        """Ends both processes."""
-        self._cancel()
-        self._ear.close()
 
     def _cancel(self) -> None:
         if self._work is not None:
@@ -110,7 +145,6 @@ class PathGoals:
             self._pilot.machine,
             message.serialized,
             frame,
-            frame == BASE_FRAME,
             self._parameter('path_speed'),
             Tolerance(self._parameter('path_tolerance'), self._parameter('path_turn_tolerance')),
             player.joints,
@@ -118,7 +152,7 @@ class PathGoals:
         )
         player.expect(stamp)
         self._cancel()
-        self._stamp, self._work = stamp, PathWork(task)
+        self._stamp, self._work = stamp, self._worker.submit(task.planned)
 
     def _parameter(self, name: str) -> float:
         return float(self._node.get_parameter(name).value)

@@ -9,7 +9,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
-from manipulator.errors import ManipulatorError
+from manipulator.errors import ManipulatorError, Refused
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import OK, WARN, Diagnostics, Report, status
 from manipulator.nodes.intake import Intake
@@ -29,14 +29,24 @@ from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
-from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.following import Tolerances
+from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.lag import lag_of
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.teleop import Teleop
+from manipulator.trajectory.worker import InThread
 
 DELAY = 'age in seconds of a measured pose by the time that its correction moves the joints'
-TOLERANCE = 'how far a joint may be from its commands of the last half second (rad or m)'
+TOLERANCE = (
+    'how far a joint may be from its commands of the last half second (rad or m); '
+    '0: 6 % of its range, at most 0.2 rad'
+)
+GOAL_TOLERANCE = (
+    'how far a measured joint may be from a goal that is reached (rad or m); '
+    '0: 1 % of its range, at most 0.5 degrees'
+)
+GOAL_MOTION = 'how a machine at rest goes to goal_pose: line, joint, or any (a line where it can)'
 
 
 class TrajectoryNode(Node):
@@ -46,10 +56,14 @@ class TrajectoryNode(Node):
         super().__init__('trajectory')
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         rate = declare(self, 'rate', 100.0, 'setpoints per second (Hz)', (10.0, 500.0))
-        tolerance = declare(self, 'following_tolerance', 0.2, TOLERANCE, (0.0001, 10.0))
+        tolerance = declare(self, 'following_tolerance', 0.0, TOLERANCE, (0.0, 10.0))
+        goal_tolerance = declare(self, 'goal_tolerance', 0.0, GOAL_TOLERANCE, (0.0, 10.0))
+        declare(self, 'goal_motion', Motion.LINE.value, GOAL_MOTION, is_read_only=False)
         delay = declare(self, 'measurement_delay', 0.06, DELAY, (0.0, 1.0))
         self._dt = 1.0 / rate
-        self._pilot = Pilot(load(name), self._dt, tolerance)
+        machine, self._worker = load(name), InThread()
+        tolerances = Tolerances.of(machine, tolerance, goal_tolerance)
+        self._pilot = Pilot(machine, self._dt, tolerances, self._worker)
         self._teleop = Teleop(self._pilot, delay)
         self._seen: MotionStatus | None = None
         self._published: MotionStatus | None = None
@@ -58,15 +72,16 @@ class TrajectoryNode(Node):
         self._last_refusal = ''
         self._jitter = Jitter(self._dt)
         self._connect()
-        self._paths = PathGoals(self, self._pilot, self._dt, self._say)
+        self._paths = PathGoals(self, self._pilot, self._dt, self._worker, self._say)
         self._teleop_topics = TeleopTopics(self, self._teleop)
-        self._answers = TrajectoryServices(self, self._pilot, self._teleop, self._dt)
+        self._answers = TrajectoryServices(self, self._pilot, self._teleop, self._dt, self._worker)
         self._timer = SteadyTimer(self, self._dt, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('setpoint', 'pose'))
 
     def close(self) -> None:
         """Ends what runs beside this node."""
         self._paths.close()
+        self._worker.close()
 
     def _connect(self) -> None:
         self._goals = Intake(self, 'goal_pose', self._on_goal, self._on_bad_goal)
@@ -102,7 +117,16 @@ class TrajectoryNode(Node):
 
     def _on_goal(self, message: PoseStamped) -> None:
         pose = goal_of(message, self._pilot.machine.frames)
-        self._pilot.player.pursue(Goal(pose, seconds(message.header.stamp)))
+        stamp, motion = seconds(message.header.stamp), self._goal_motion()
+        self._pilot.player.pursue(Goal(pose, stamp, motion=motion))
+
+    def _goal_motion(self) -> Motion:
+        word = self.get_parameter('goal_motion').value
+        try:
+            return Motion(word)
+        except ValueError:
+            known = ', '.join(motion.value for motion in Motion)
+            raise Refused(f'parameter goal_motion: {word!r} is not one of {known}') from None
 
     def _on_bad_goal(self, message: PoseStamped, error: ManipulatorError) -> None:
         mode, stamp = self._pilot.status.mode, seconds(message.header.stamp)
@@ -128,6 +152,7 @@ class TrajectoryNode(Node):
         self._pilot.note_bridge_silence(now - self._state_heard)
         self._teleop.drive(now)
         self._paths.poll()
+        self._answers.poll()
         pose, stamp = self._pilot.step(), self.get_clock().now().to_msg()
         # Frozen until here, this tick is late; frozen from here on, its stamp tells the others.
         self._pilot.note_stall(time.monotonic() - now)

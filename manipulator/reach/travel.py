@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.continuity import joints_along
 from manipulator.errors import InvalidInput
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -101,7 +100,7 @@ def path_report(machine: Machine, poses: Pose, near: Array | None = None) -> Pat
             share = first / (len(inside) - 1)
             faults.append(Fault(k, share, way[first], reach(machine, way[first], near).reason))
         if near is not None:
-            near = joints_along(machine, way, near)[-1]
+            near = machine.kinematics.inverse_along(way, near)[-1]
     return PathReport(tuple(faults))
 
 
@@ -126,5 +125,7 @@ def _free_metres(
                 return float(begin)
             return last_free(machine, pose, way, metres[first - 1], metres[first], near)
         if near is not None:
-            near = joints_along(machine, displaced(machine, pose, metres[:, None] * way), near)[-1]
+            near = machine.kinematics.inverse_along(
+                displaced(machine, pose, metres[:, None] * way), near
+            )[-1]
     return longest

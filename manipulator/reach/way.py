@@ -3,7 +3,6 @@
 import numpy as np
 
 from manipulator.arrays import Array, Mask
-from manipulator.continuity import joints_along
 from manipulator.limits.joint_range import JointRange
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -39,7 +38,7 @@ def admits(machine: Machine, poses: Pose, near: Array | None = None) -> Mask:
     if near is None:
         joints = kinematics.inverse_or_nan(poses)
     else:
-        joints = joints_along(machine, poses, near)
+        joints = machine.kinematics.inverse_along(poses, near)
     inside = np.asarray(np.isfinite(joints).all(axis=-1), dtype=np.bool_)
     if inside.all():
         return machine.constraints.admits(poses, joints)

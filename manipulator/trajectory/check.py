@@ -1,28 +1,45 @@
 """Whether a machine can drive a plan: every tick inside the limits, no joint too fast."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import sqrt
 
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.continuity import joints_along
+from manipulator.continuity import first_jump
 from manipulator.errors import Refused, Unreachable
+from manipulator.limits.constraints import Constraints
 from manipulator.machine import Machine
-from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
 from manipulator.trajectory.plan import MotionState, Plan
+from manipulator.trajectory.worker import Effort
 from manipulator.unit_hints import hint_at_metres
 
 TOLERANCE = 1.005
 
+AT_ONCE = 1024
+"""Ticks that are solved together: it bounds the memory that a long plan needs."""
+
+ROUNDING = 1e-9
+"""Of a tick, by which a duration that is a whole number of them may be off."""
+
+JUMPS = 3.0
+"""Degrees by which a joint that is named in a jump has moved."""
+
+OVERLAP = 2
+"""Ticks that two neighbouring stretches share, so that no difference between ticks is missed."""
+
 
 @dataclass(frozen=True)
 class Demand:
-    """What a plan asks for most, as the factor by which it would have to be slowed down."""
+    """What a plan asks for most, as the factor by which it would have to be slowed down.
+
+    quantity names it, as 'speed of joint_4'; time is when, in the plan's own time.
+    """
 
     slowness: float
     quantity: str
+    time: float = 0.0
 
     @property
     def fits(self) -> bool:
@@ -30,62 +47,129 @@ class Demand:
         return self.slowness <= TOLERANCE
 
 
-def check_plan(plan: Plan, machine: Machine, near: Array, dt: float) -> Demand:
-    """Drives the plan in thought, tick by tick, from joints `near`.
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """Ticks of a plan one after the other: times (N,), states and joints (N, n) at them."""
+
+    times: Array
+    state: MotionState
+    joints: Array
+
+
+def check_plan(
+    plan: Plan, machine: Machine, near: Array, dt: float, effort: Effort | None = None
+) -> Demand:
+    """Simulates the plan, tick by tick, on the branch of the inverse that joints `near` are on.
 
     Returns what it demands of speed and acceleration. A plan that begins beyond a limit may not
-    go further out. Raises Refused, with time, leg, value and
-    limit, where the way leaves the reach of the machine.
+    go further out. Raises Refused, with the place, joint or leg, value and limit, where the path
+    leaves the reach of the machine or would need another branch, and where planning would cost
+    more `effort` than a plan may.
     """
-    times = np.arange(0.0, plan.checked_duration + dt, dt)
-    state = plan.at(times)
-    joints = joints_along(machine, state.pose, near)
-    constraints = machine.constraints
-    admitted = constraints.admits(state.pose, joints)
-    if not admitted[0] and np.isfinite(joints[0]).all():
-        constraints = constraints.stretched_to(state.pose[0], joints[0])
-        admitted = constraints.admits(state.pose, joints)
-    if not admitted.all():
-        first = int(np.argmin(admitted))
-        reason = why_not(machine, state.pose[first], near if first == 0 else joints[first - 1])
-        raise Refused(f'after {times[first]:.2f} s of the way: {reason}')
-    return demand(state, joints, machine.motion, dt)
+    constraints, worst = machine.constraints, Demand(0.0, '')
+    for part in _stretches(plan, machine, near, dt, effort or Effort()):
+        if part.times[0] == 0.0 and np.isfinite(part.joints[0]).all():
+            constraints = constraints.stretched_to(part.state.pose[0], part.joints[0])
+        fault = first_fault(machine, constraints, part.state.pose, part.joints)
+        if fault is not None:
+            tick, reason = fault
+            raise Refused(f'{plan.where(float(part.times[tick]))}: {reason}')
+        found = demand(part, machine, dt)
+        worst = max(worst, found, key=lambda one: one.slowness)
+    return worst
 
 
-def why_not(machine: Machine, pose: Pose, near: Array) -> str:
-    """What keeps the machine from a pose, in words."""
+def first_fault(
+    machine: Machine, constraints: Constraints, poses: Pose, joints: Array
+) -> tuple[int, str] | None:
+    """The first of N poses in a row that the machine cannot take, and why; None where it can all.
+
+    joints (N, n) are those of `Kinematics.inverse_along`.
+    """
+    admitted, jump = constraints.admits(poses, joints), first_jump(joints)
+    first = len(joints) if admitted.all() else int(np.argmin(admitted))
+    if jump is not None and jump + 1 <= first:
+        return jump + 1, _jump_words(machine, joints[jump], joints[jump + 1])
+    if first == len(joints):
+        return None
+    return first, _why_not(machine, constraints, poses[first], joints[: first + 1])
+
+
+def demand(part: Stretch, machine: Machine, dt: float) -> Demand:
+    """The worst ratio to a limit; accelerations count by their square root, as time does."""
+    speed = np.diff(part.joints, axis=0) / dt
+    acceleration = np.diff(speed, axis=0) / dt
+    limits, names = machine.motion.for_plans, machine.kinematics.joint_names
+    linear, angular = part.state.twist[:, :3], part.state.twist[:, 3:]
+    readings = {
+        'platform speed': _norms(linear) / limits.linear.speed,
+        'turning speed': _norms(angular) / limits.angular.speed,
+        **_of_joints('speed', names, speed, limits.joint.speed),
+        'platform acceleration': np.sqrt(
+            _norms(part.state.acceleration[:, :3]) / limits.linear.acceleration
+        ),
+        'turning acceleration': np.sqrt(
+            _norms(part.state.acceleration[:, 3:]) / limits.angular.acceleration
+        ),
+        **{
+            name: np.sqrt(ratios)
+            for name, ratios in _of_joints(
+                'acceleration', names, acceleration, limits.joint.acceleration
+            ).items()
+        },
+    }
+    peaks = {name: float(ratios.max(initial=0.0)) for name, ratios in readings.items()}
+    worst = max(peaks, key=lambda name: peaks[name])
+    tick = int(np.argmax(readings[worst])) if readings[worst].size else 0
+    return Demand(peaks[worst], worst, float(part.times[tick]))
+
+
+def _stretches(
+    plan: Plan, machine: Machine, near: Array, dt: float, effort: Effort
+) -> Iterator[Stretch]:
+    """The plan's ticks up to its last moment, AT_ONCE at a time; joints go on from `near`."""
+    count = int(np.ceil(plan.checked_duration / dt - ROUNDING)) + 1
+    begin, joints = 0, near[None]
+    while True:
+        end = min(begin + AT_ONCE, count)
+        effort.spend(end - begin)
+        times: Array = dt * np.arange(begin, end, dtype=np.float64)
+        state = plan.at(times)
+        own = plan.joints_at(times)
+        joints = machine.kinematics.inverse_along(state.pose, joints[0]) if own is None else own
+        yield Stretch(times, state, joints)
+        if end == count:
+            return
+        begin = end - OVERLAP
+        joints = joints[-OVERLAP:]
+
+
+def _of_joints(what: str, names: Sequence[str], rates: Array, limit: Array) -> dict[str, Array]:
+    ratios = np.abs(rates) / limit
+    return {f'{what} of {name}': ratios[:, k] for k, name in enumerate(names)}
+
+
+def _jump_words(machine: Machine, before: Array, after: Array) -> str:
+    kinematics, change = machine.kinematics, np.degrees(np.abs(after - before))
+    named = zip(kinematics.joint_names, change, strict=True)
+    moved = [f'{name} by {degrees:.0f}°' for name, degrees in named if degrees > JUMPS]
+    return f'the joints would have to jump, {", ".join(moved)}: the posture there is singular'
+
+
+def _why_not(machine: Machine, constraints: Constraints, pose: Pose, joints: Array) -> str:
+    """What keeps the machine from a pose, in words; joints (k, n) are those up to it."""
     try:
         with hint_at_metres(machine.kinematics, pose):
-            machine.constraints.check(pose, machine.kinematics.inverse(pose, near))
+            if not np.isfinite(joints[-1]).all():
+                near = joints[-2] if len(joints) > 1 and np.isfinite(joints[-2]).all() else None
+                machine.kinematics.inverse(pose, near)
+                return 'the inverse kinematics ends there: the posture is singular'
+            constraints.check(pose, joints[-1])
     except Unreachable as error:
         return str(error)
     return 'out of reach'
 
 
-def demand(state: MotionState, joints: Array, limits: MotionLimits, dt: float) -> Demand:
-    """The worst ratio to a limit; accelerations count by their square root, as time does."""
-    speed = np.diff(joints, axis=0) / dt
-    acceleration = np.diff(speed, axis=0) / dt
-    limits = limits.for_plans
-    readings = {
-        'platform speed': _norm(state.twist[:, :3]) / limits.linear.speed,
-        'turning speed': _norm(state.twist[:, 3:]) / limits.angular.speed,
-        'joint speed': _largest(speed / limits.joint.speed),
-        'platform acceleration': sqrt(
-            _norm(state.acceleration[:, :3]) / limits.linear.acceleration
-        ),
-        'turning acceleration': sqrt(
-            _norm(state.acceleration[:, 3:]) / limits.angular.acceleration
-        ),
-        'joint acceleration': sqrt(_largest(acceleration / limits.joint.acceleration)),
-    }
-    worst = max(readings, key=lambda name: readings[name])
-    return Demand(readings[worst], worst)
-
-
-def _norm(vectors: Array) -> float:
-    return float(np.sqrt(np.einsum('ij,ij->i', vectors, vectors).max()))
-
-
-def _largest(values: Array) -> float:
-    return float(np.abs(values).max()) if values.size else 0.0
+def _norms(vectors: Array) -> Array:
+    lengths: Array = np.sqrt(np.einsum('ij,ij->i', vectors, vectors))
+    return lengths

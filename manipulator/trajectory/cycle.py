@@ -10,7 +10,7 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
-from manipulator.trajectory.plan import MotionState
+from manipulator.trajectory.plan import MotionState, PosePlan
 
 LONGEST_PERIOD = 60.0
 FREQUENCY_STEP = 1000
@@ -18,7 +18,7 @@ FREQUENCY_STEP = 1000
 
 
 @dataclass(frozen=True, eq=False)
-class Cycle:
+class Cycle(PosePlan):
     """x(t) = Σ A sin(2π f t + φ) on x, y, z, roll, pitch and yaw about the centre pose.
 
     amplitude, frequency and phase are (terms, 6) or (6,): metres and radians, hertz, radians.
@@ -79,6 +79,10 @@ class Cycle:
             np.concatenate([v[..., :3], omega], axis=-1),
             np.concatenate([a[..., :3], alpha], axis=-1),
         )
+
+    def where(self, time: float) -> str:
+        """See `Plan`."""
+        return f'{time:.2f} s into the cycle'
 
     def _offsets(self, t: Array) -> tuple[Array, Array, Array]:
         frequency = np.round(self.frequency * FREQUENCY_STEP) / FREQUENCY_STEP

@@ -1,10 +1,13 @@
-"""Whether the joints follow what is commanded, or something between here and them is stuck."""
+"""Whether the joints follow what is commanded, and whether they have arrived."""
 
 from collections import deque
+from dataclasses import dataclass
+from math import radians
 
 import numpy as np
 
-from manipulator.arrays import Array
+from manipulator.arrays import Array, frozen
+from manipulator.machine import Machine
 
 WINDOW = 0.5
 """Seconds by which the joints may lag behind."""
@@ -12,14 +15,45 @@ WINDOW = 0.5
 PATIENCE = 0.3
 """Seconds for which they may be elsewhere."""
 
+FOLLOWING_SHARE, MOST_FOLLOWING = 0.06, 0.2
+"""Of a joint's range (and rad, for joints that turn) that it may be from its commands."""
+
+GOAL_SHARE, MOST_AT_GOAL = 0.01, radians(0.5)
+"""Of a joint's range (and rad) that a measured joint may be from where a goal sent it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tolerances:
+    """How far each joint may be from its commands of late, and from a goal: (n,), rad or m."""
+
+    following: Array
+    goal: Array
+
+    @classmethod
+    def of(cls, machine: Machine, following: float = 0.0, goal: float = 0.0) -> 'Tolerances':
+        """The same for all joints, or with 0 by each joint's unit and range."""
+        low, high = machine.joint_ranges
+        is_rotary = machine.kinematics.joint_unit == 'rad'
+
+        def each(value: float, share: float, most: float) -> Array:
+            if value > 0.0:
+                return frozen(np.full(len(low), value))
+            return frozen(np.minimum(share * (high - low), most if is_rotary else np.inf))
+
+        return cls(
+            each(following, FOLLOWING_SHARE, MOST_FOLLOWING), each(goal, GOAL_SHARE, MOST_AT_GOAL)
+        )
+
 
 class Following:
     """Compares measured joints with all that was commanded within the last half second."""
 
-    def __init__(self, names: tuple[str, ...], tolerance: float, dt: float) -> None:
-        """Tolerance in rad (or m); dt is the time between two commands."""
-        self._names = names
-        self._tolerance = tolerance
+    def __init__(
+        self, names: tuple[str, ...], unit: str, tolerances: Tolerances, dt: float
+    ) -> None:
+        """Unit: 'rad' or 'm'; dt is the time between two commands."""
+        self._names, self._unit = names, unit
+        self._tolerances = tolerances
         self._commanded: deque[Array] = deque(maxlen=max(round(WINDOW / dt), 1))
         self._strays = 0
         self._allowed_ticks = round(PATIENCE / dt)
@@ -38,20 +72,33 @@ class Following:
         if not self._commanded:
             return
         away = np.abs(np.array(self._commanded) - joints)
-        nearest = int(np.argmin(away.max(axis=1)))
-        worst = int(np.argmax(away[nearest]))
-        self._strays = int(away[nearest, worst] > self._tolerance)
+        nearest = away[int(np.argmin(away.max(axis=1)))]
+        worst, excess = self._furthest(nearest, self._tolerances.following, 'its command')
+        self._strays = int(excess > 0.0)
         self._astray_for *= self._strays
-        self._worst = f'{self._names[worst]} is {away[nearest, worst]:.3g} away from its command'
+        self._worst = worst
 
-    @property
-    def has_arrived(self) -> bool:
-        """Whether the joints are where the last command sent them; so they are before any is."""
+    def missing(self, is_measured: bool) -> str:
+        """Which joint is not where the last command sent it, and by how much; '' where all are.
+
+        Measured joints are held to the goal's tolerance; of others only the commands are known.
+        """
         if self._measured is None or not self._commanded:
-            return True
-        return bool(np.abs(self._commanded[-1] - self._measured).max() <= self._tolerance)
+            return ''
+        tolerance = self._tolerances.goal if is_measured else self._tolerances.following
+        away = np.abs(self._commanded[-1] - self._measured)
+        worst, excess = self._furthest(away, tolerance, 'the goal')
+        return worst if excess > 0.0 else ''
 
     @property
     def trouble(self) -> str:
         """Which joint does not follow, and by how much; '' while all do."""
         return self._worst if self._astray_for > self._allowed_ticks else ''
+
+    def _furthest(self, away: Array, tolerance: Array, what: str) -> tuple[str, float]:
+        """The joint that is worst off, in words, and by how much it is beyond its tolerance."""
+        k = int(np.argmax(away - tolerance))
+        factor, unit = (1e3, ' mm') if self._unit == 'm' else (float(np.degrees(1.0)), '°')
+        allowed = f'tolerance {tolerance[k] * factor:.3g}{unit}'
+        words = f'{away[k] * factor:.3g}{unit} away from {what} ({allowed})'
+        return f'{self._names[k]} is {words}', float(away[k] - tolerance[k])

@@ -1,18 +1,35 @@
-"""What somebody asks for: a pose, and perhaps a path from there."""
+"""What somebody asks for: a pose, how to get there, and perhaps what to begin there."""
 
 from dataclasses import dataclass
+from enum import Enum
 
+from manipulator.arrays import Array
 from manipulator.pose import Pose
+from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.path_timing import TimedPath
 
 
-@dataclass(frozen=True)
-class Goal:
-    """A pose to go to, known to its sender by the stamp of his message.
+class Motion(Enum):
+    """How a machine at rest goes to a goal; parameter `goal_motion` of the trajectory node."""
 
-    then: the path to follow from there, whose first pose it is.
+    LINE = 'line'
+    """Straight, with a turn about one axis, on the branch that the machine is on."""
+    JOINT = 'joint'
+    """All joints in proportion: to the nearest branch, wherever the tool passes."""
+    ANY = 'any'
+    """A line where the machine can drive it, else a joint move."""
+
+
+@dataclass(frozen=True, eq=False)
+class Goal:
+    """A pose to go to, known to its sender by the stamp of the message.
+
+    then: the path or cycle to drive from there, whose first pose it is. joints (n,): those to
+    arrive with, None where any of the pose's will do.
     """
 
     pose: Pose
     stamp: float = 0.0
-    then: TimedPath | None = None
+    then: TimedPath | Cycle | None = None
+    motion: Motion = Motion.LINE
+    joints: Array | None = None

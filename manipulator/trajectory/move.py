@@ -15,11 +15,11 @@ from manipulator.errors import Refused
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
 from manipulator.trajectory.chart import coordinates, state_of
-from manipulator.trajectory.plan import MotionState
+from manipulator.trajectory.plan import MotionState, PosePlan
 
 
 @dataclass(frozen=True, eq=False)
-class Move:
+class Move(PosePlan):
     """A ruckig trajectory in the coordinates about the goal's orientation."""
 
     goal: Pose
@@ -37,6 +37,10 @@ class Move:
         samples = np.array([self._trajectory.at_time(t)[:3] for t in flat.tolist()])
         x, v, a = np.moveaxis(samples.reshape(*np.shape(times), 3, 6), -2, 0)
         return state_of(x, v, a, self.goal.rotation)
+
+    def where(self, time: float) -> str:
+        """See `Plan`."""
+        return f'at {100 * min(time / self.duration, 1.0):.0f} % of the time to the goal'
 
 
 def plan_move(start: MotionState, goal: Pose, limits: MotionLimits, slowness: float = 1.0) -> Move:

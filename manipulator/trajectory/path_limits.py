@@ -10,11 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.continuity import joints_along
 from manipulator.errors import NoSolution, Refused
 from manipulator.machine import Machine
 from manipulator.motion_limits import Derivatives, JointDerivatives
-from manipulator.trajectory.check import why_not
+from manipulator.trajectory.check import first_fault
 from manipulator.trajectory.path import Path
 from manipulator.trajectory.phase_plane import Rows
 
@@ -57,12 +56,11 @@ def path_limits(machine: Machine, path: Path, nodes: Array, near: Array) -> Path
     Raises Refused, saying where and why, for a path that leaves the machine's reach.
     """
     state = path.at(nodes)
-    joints = joints_along(machine, state.pose, near)
-    admitted = machine.constraints.admits(state.pose, joints)
-    if not admitted.all():
-        first = int(np.argmin(admitted))
-        reason = why_not(machine, state.pose[first], near if first == 0 else joints[first - 1])
-        raise Refused(f'{path.where(nodes[first])}: {reason}')
+    joints = machine.kinematics.inverse_along(state.pose, near)
+    fault = first_fault(machine, machine.constraints, state.pose, joints)
+    if fault is not None:
+        node, reason = fault
+        raise Refused(f'{path.where(float(nodes[node]))}: {reason}')
     twist, limits = state.twist, machine.motion.for_plans
     rates = _joint_rates(machine, path, nodes, joints, twist)
     names = machine.kinematics.joint_names

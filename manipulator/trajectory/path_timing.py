@@ -18,15 +18,20 @@ from manipulator.trajectory.check import check_plan
 from manipulator.trajectory.path import Path, Tolerance, path_along, path_in_time
 from manipulator.trajectory.path_limits import PathLimits, path_limits
 from manipulator.trajectory.phase_plane import fastest
-from manipulator.trajectory.plan import MotionState
+from manipulator.trajectory.plan import MotionState, PosePlan
+from manipulator.trajectory.worker import Effort
 
 FEWEST_INTERVALS = 500
+NODE_STEP = 0.1
+MOST_PIECES = 200
+"""Between two nodes of the path's own; what moves farther there has left every reach."""
 REFINEMENTS = (1, 2, 4)
-MOST_TICKS = 500_000
+MOST_TICKS = 100_000
+"""Of a path: 1000 s at 100 Hz."""
 
 
 @dataclass(frozen=True, eq=False)
-class TimedPath:
+class TimedPath(PosePlan):
     """Squared speeds along the path at its nodes (m + 1,); between them s̈ is constant.
 
     joints are those at the first pose: another branch of them cannot drive this plan.
@@ -59,6 +64,17 @@ class TimedPath:
 
     def at(self, times: Array | float) -> MotionState:
         """The state at each of the times (...)."""
+        s, rate, pull = (value[..., None] for value in self._progress(times))
+        way = self.path.at(s[..., 0])
+        acceleration = way.acceleration * rate**2 + way.twist * pull
+        return MotionState(way.pose, way.twist * rate, acceleration)
+
+    def where(self, time: float) -> str:
+        """See `Plan`: by the poses' numbers and the length, whatever the timing is."""
+        return self.path.where(float(self._progress(time)[0]))
+
+    def _progress(self, times: Array | float) -> tuple[Array, Array, Array]:
+        """The path's parameter s, ṡ and s̈ at each of the times (...)."""
         t = np.clip(np.asarray(times, dtype=np.float64), 0.0, self.duration)
         last = len(self.nodes) - 2
         i = np.minimum(np.searchsorted(self._times, t, side='right') - 1, last)
@@ -66,10 +82,7 @@ class TimedPath:
         pull = (self.squares[i + 1] - self.squares[i]) / (2 * step)
         begin, into = np.sqrt(self.squares[i]), t - self._times[i]
         s = self.nodes[i] + (begin + pull * into / 2) * into
-        rate = np.maximum(begin + pull * into, 0.0)[..., None]
-        way = self.path.at(s)
-        acceleration = way.acceleration * rate**2 + way.twist * pull[..., None]
-        return MotionState(way.pose, way.twist * rate, acceleration)
+        return s, np.maximum(begin + pull * into, 0.0), pull
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +95,9 @@ class PathRequest:
     stamps: Array | None = None
 
 
-def plan_path(machine: Machine, request: PathRequest, near: Array, dt: float) -> TimedPath | Pose:
+def plan_path(
+    machine: Machine, request: PathRequest, near: Array, dt: float, effort: Effort | None = None
+) -> TimedPath | Pose:
     """The plan, checked at every tick dt; or the one pose to go to, where all are the same.
 
     near: the joints from which the first pose is approached. Raises Refused, saying at which pose
@@ -97,30 +112,42 @@ def plan_path(machine: Machine, request: PathRequest, near: Array, dt: float) ->
         speed = request.speed
     if isinstance(path, Pose):
         return path
+    effort, length = effort or Effort(), machine.kinematics.characteristic_length
     for refinement in REFINEMENTS:
-        limits = path_limits(machine, path, nodes_of(path, refinement), near)
+        limits = path_limits(machine, path, nodes_of(path, refinement, length), near)
         if request.stamps is not None:
             _check_stamped(path, limits)
         timed = timed_path(path, limits, speed)
         _check_length(timed, dt)
-        demand = check_plan(timed, machine, near, dt)
+        demand = check_plan(timed, machine, near, dt, effort)
         if demand.fits:
             return timed
     if request.stamps is None:
         slower = replace(timed, squares=timed.squares / (1.01 * demand.slowness) ** 2)
-        if check_plan(slower, machine, near, dt).fits:
+        if check_plan(slower, machine, near, dt, effort).fits:
             return slower
-    raise Refused(f'{demand.quantity} stays {demand.slowness:.3f} times too fast on the path')
+    raise Refused(
+        f'{demand.quantity} stays {demand.slowness:.3f} times too high {timed.where(demand.time)}'
+    )
 
 
-def nodes_of(path: Path, refinement: int) -> Array:
-    """Values of s: poses, the ends of their blends, and points between, close enough."""
+def nodes_of(path: Path, refinement: int, length: float) -> Array:
+    """Values of s: poses, the ends of their blends, and points between, close enough.
+
+    Between two of them the machine moves at most NODE_STEP of its characteristic length (m), or
+    of a radian: so joints that jump from one to the next have changed their branch.
+    """
     own = np.unique(np.concatenate([path.marks - path.blends, path.marks + path.blends]))
     spans = np.diff(own)
     own = own[np.concatenate([[True], spans > 1e-9 * own[-1]])]
     spans = np.diff(own)
-    pieces = np.ceil(spans / (own[-1] / FEWEST_INTERVALS)).astype(int)
-    pieces = refinement * np.maximum(pieces, 2)
+    middle = np.searchsorted(path.marks, (own[1:] + own[:-1]) / 2) - 1
+    rates = path.rates[middle]
+    moved = np.linalg.norm(rates[:, :3], axis=1) / length + np.linalg.norm(rates[:, 3:], axis=1)
+    pieces = np.maximum(
+        spans / (own[-1] / FEWEST_INTERVALS), np.minimum(spans * moved / NODE_STEP, MOST_PIECES)
+    )
+    pieces = refinement * np.maximum(np.ceil(pieces).astype(int), 2)
     steps = np.repeat(spans / pieces, pieces)
     nodes: Array = np.concatenate([[0.0], np.cumsum(steps)])
     return nodes

@@ -14,9 +14,10 @@ from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.trajectory.following import Following
+from manipulator.trajectory.following import Following, Tolerances
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.player import Player
+from manipulator.trajectory.worker import Worker
 
 HOLDING = 'holding'
 DRIVABLE = ('enabled', HOLDING)
@@ -39,6 +40,9 @@ POSE_PATIENCE, POSE_DEADLINE = 0.2, 0.5
 STATE_DEADLINE = 1.5
 """Seconds without the bridge's word after which its last one counts for nothing."""
 
+ARRIVAL_PATIENCE = 1.0
+"""Seconds that the joints may take to arrive once a plan's time is over."""
+
 PRESENT = 0.1
 """Of the tolerance of following, how far the joints may be from the pose where motion begins."""
 
@@ -52,19 +56,29 @@ CONNECTING = MotionStatus('disabled', 'idle', 0.0, 'the board does not follow se
 class Pilot:
     """One machine's driver; poses that come and go are the platform's, in the base frame."""
 
-    def __init__(self, machine: Machine, dt: float, tolerance: float) -> None:
-        """tolerance: how far a joint may be from its commands (rad or m), see `Following`."""
+    def __init__(
+        self,
+        machine: Machine,
+        dt: float,
+        tolerances: Tolerances | None = None,
+        worker: Worker | None = None,
+    ) -> None:
+        """tolerances: by default by the joints' ranges; worker: where plans are worked out."""
         self.status = DISABLED
         self.machine = in_frames(machine, machine.frames)
         self._bare = machine
         self._dt = dt
-        self._tolerance = tolerance
+        self._tolerances = tolerances or Tolerances.of(machine)
+        self._worker = worker
         self._player: Player | None = None
         self._following: Following | None = None
         self._state = ''
         self._is_followed = False
         self._is_measured = False
         self._joints: Array | None = None
+        self._pose: Pose | None = None
+        self._judged: MotionStatus | None = None
+        self._waited = 0
         self._misfits = 0
         self._misfit = ''
         self._override = 1.0
@@ -115,6 +129,7 @@ class Pilot:
 
     def note_pose(self, T_base_platform: Pose) -> None:
         """Where the platform is: there a machine that may be driven is taken over."""
+        self._pose = T_base_platform
         if self._player is not None:
             if self._is_measured:
                 self._player.note_measured(self.machine.frames.pivot(T_base_platform))
@@ -122,7 +137,7 @@ class Pilot:
         if self._joints is None or self._state not in DRIVABLE:
             return
         gaps = self._gaps(T_base_platform, self._joints)
-        if gaps.max() < PRESENT * self._tolerance:
+        if (gaps < PRESENT * self._tolerances.following).all():
             self._take_over(T_base_platform, self._joints)
         else:
             self._note_misfit(gaps)
@@ -150,6 +165,7 @@ class Pilot:
         """Lets go of the machine: no setpoints until its pose is known again."""
         if self._player is not None:
             stamp = self._player.newest_stamp
+            self._player.close()
             self._player = self._following = None
             self.status = MotionStatus('disabled', 'stopped', stamp, reason)
 
@@ -183,25 +199,51 @@ class Pilot:
             return None
         pose = self._player.step()
         self._following.command(self._player.joints)
-        if self._is_followed and not self._is_early(self._player.status):
-            self.status = self._player.status
+        if self._is_followed:
+            self._judge(self._player.status, self._following)
         return self.machine.frames.platform(pose)
 
-    def _is_early(self, status: MotionStatus) -> bool:
-        """Whether it says that the goal under way is reached, and the joints are not there yet."""
-        is_ours = self.status.result == 'moving' and self.status.goal_stamp == status.goal_stamp
-        is_there = self._following is None or self._following.has_arrived
-        return is_ours and status.result == 'reached' and not is_there
+    def _judge(self, status: MotionStatus, following: Following) -> None:
+        """Takes the player's status over; that a goal is reached only once the joints are there.
+
+        A plan whose time is over says *reached* to us: joints that do not come in time end it as
+        *stopped*, with how far they are away.
+        """
+        if status is self._judged:
+            return
+        missing = following.missing(self._is_measured) if status.result == 'reached' else ''
+        self._waited = self._waited + 1 if missing else 0
+        if missing and self._waited * self._dt < ARRIVAL_PATIENCE:
+            return
+        self._judged, self._waited = status, 0
+        if missing:
+            reason = f'{missing}{self._distance_words()}'
+            status = MotionStatus(status.mode, 'stopped', status.goal_stamp, reason)
+        self.status = status
+
+    def _distance_words(self) -> str:
+        """How far the measured platform or tool is from the commanded pose."""
+        if not self._is_measured or self._pose is None or self._player is None:
+            return ''
+        commanded = self.machine.frames.platform(self._player.state.pose)
+        way = commanded.twist_to(self._pose)
+        shift, turn = (float(np.linalg.norm(part)) for part in (way[:3], way[3:]))
+        return f': the goal is missed by {1e3 * shift:.3g} mm and {np.degrees(turn):.2g}°'
 
     def _take_over(self, T_base_platform: Pose, near: Array) -> None:
         self._forget_misfit()
         pose = self.machine.frames.pivot(T_base_platform)
         joints = self.machine.kinematics.inverse(pose, near)
-        player = self._player = Player(self.machine, pose, joints, self._dt)
+        if self._player is not None:
+            self._player.close()
+        player = self._player = Player(self.machine, pose, joints, self._dt, self._worker)
         player.override(self._override)
         player.pause(self._is_paused)
-        names = self.machine.kinematics.joint_names
-        self._following = Following(names, self._tolerance, self._dt)
+        kinematics = self.machine.kinematics
+        self._following = Following(
+            kinematics.joint_names, kinematics.joint_unit, self._tolerances, self._dt
+        )
+        self._judged = None
         self.status = player.status if self._is_followed else CONNECTING
 
     def _gaps(self, T_base_platform: Pose, joints: Array) -> Array:

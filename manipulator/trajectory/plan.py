@@ -45,9 +45,27 @@ class Plan(Protocol):
         """The state at each of the times (...), the end state after the end."""
         ...
 
+    def joints_at(self, times: Array | float) -> Array | None:
+        """The joints (..., n) at each of the times where the plan says them, else None.
+
+        Where it does not, they follow from the poses, on the branch that the machine is on.
+        """
+        ...
+
+    def where(self, time: float) -> str:
+        """The place at a time, in words that follow what happens there: 'at 62 % of the line'."""
+        ...
+
+
+class PosePlan:
+    """What plans share that say poses alone."""
+
+    def joints_at(self, times: Array | float) -> None:
+        """See `Plan`: they follow from the poses."""
+
 
 @dataclass(frozen=True, eq=False)
-class Hold:
+class Hold(PosePlan):
     """Standing still."""
 
     pose: Pose
@@ -62,3 +80,7 @@ class Hold:
             np.broadcast_to(self.pose.rotation, (*shape, 3, 3)),
         )
         return MotionState(pose, np.zeros((*shape, 6)), np.zeros((*shape, 6)))
+
+    def where(self, time: float) -> str:
+        """See `Plan`."""
+        return 'where the machine stands'

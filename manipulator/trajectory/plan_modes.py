@@ -1,6 +1,7 @@
 """What people call each kind of plan, in motion_status."""
 
 from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.joint_move import JointMove
 from manipulator.trajectory.move import Move
 from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import Hold
@@ -10,6 +11,7 @@ MODES: dict[type, str] = {
     Hold: 'hold',
     StraightMove: 'move',
     Move: 'move',
+    JointMove: 'move',
     Cycle: 'cycle',
     TimedPath: 'path',
 }

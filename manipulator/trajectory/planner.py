@@ -1,24 +1,107 @@
 """From a goal to a move that the machine can drive: retimed where it is too fast, or refused."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
 from manipulator.arrays import Array
-from manipulator.errors import Refused
+from manipulator.errors import NoSolution, Refused, Unreachable
 from manipulator.machine import Machine
+from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
 from manipulator.trajectory.check import check_plan
 from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.goal import Goal, Motion
+from manipulator.trajectory.joint_move import plan_joint_move
 from manipulator.trajectory.move import plan_move
+from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.straight import plan_straight
+from manipulator.trajectory.worker import Effort
 from manipulator.unit_hints import hint_at_metres
 
 ATTEMPTS = 8
 MARGIN = 1.01
+MOST_STRETCH = 30.0
+"""Times that a move may take of what platform or tool alone would need: what joints that must turn
+faster near a singular posture may cost."""
+
+ROUNDING = 1e-9
+"""rad or m by which an inverse may pass the end of a range that it means to meet."""
+
+SAME_JOINTS = 1e-3
+"""rad or m within which joints count as those that were asked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Where a plan begins: a state of motion, the joints (n,) there; dt is a tick (s)."""
+
+    state: MotionState
+    joints: Array
+    dt: float
+
+
+def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Plan:
+    """The plan to a goal in the way that it asks for; what it begins there is checked as well.
+
+    Raises Unreachable when the goal itself is out of reach, and Refused when the path there is,
+    cannot be slowed down enough, or costs more `effort` than a plan may.
+    """
+    if goal.motion is Motion.JOINT:
+        return _plan_joints(machine, start, goal, effort)
+    try:
+        return _plan_line(machine, start, goal, effort)
+    except Refused as refusal:
+        if goal.motion is Motion.LINE or not start.state.is_at_rest:
+            raise Refused(f'{refusal}{_way_out(machine, start, goal, effort)}') from refusal
+    return _plan_joints(machine, start, goal, effort)
+
+
+def plan_to(machine: Machine, start: Start, pose: Pose, effort: Effort | None = None) -> Plan:
+    """A move from any state of motion to rest at `pose` that keeps all limits at every tick.
+
+    From rest it is straight, and stays on the branch that the machine is on. Raises as
+    `plan_goal`.
+    """
+
+    def line(limits: MotionLimits, slowness: float) -> Plan:
+        if start.state.is_at_rest:
+            return plan_straight(start.state.pose, pose, limits, slowness)
+        return plan_move(start.state, pose, limits, slowness)
+
+    try:
+        return _slowed_down(machine, start, line, effort or Effort())
+    except Refused:
+        check_goal(machine, pose, start.joints)
+        raise
+
+
+def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Plan:
+    """A joint move from rest to a goal's joints, by default the nearest of its pose."""
+    if not start.state.is_at_rest:
+        raise Refused('a joint move begins at rest')
+    joints = goal.joints
+    if joints is None:
+        check_goal(machine, goal.pose, start.joints)
+        joints = _off_the_stops(machine, machine.kinematics.inverse(goal.pose, start.joints))
+
+    def move(limits: MotionLimits, slowness: float) -> Plan:
+        return plan_joint_move(machine, start.state.pose, start.joints, joints, slowness)
+
+    try:
+        plan = _slowed_down(machine, start, move, effort)
+    except NoSolution as error:
+        raise Refused(f'on the joint move: {error}') from error
+    _check_arrival(machine, goal, joints, start.dt, effort)
+    return plan
 
 
 def check_goal(machine: Machine, goal: Pose, near: Array) -> None:
     """Raises Unreachable, naming leg, value and limit, when the machine cannot stand there.
 
-    On the branch nearest to `near` or on home's: which it is, the way there decides.
+    On the branch nearest to `near` or on home's: which it is, the path there decides.
     """
     inverse, constraints = machine.kinematics.inverse, machine.constraints
     with hint_at_metres(machine.kinematics, goal):
@@ -27,9 +110,11 @@ def check_goal(machine: Machine, goal: Pose, near: Array) -> None:
             constraints.check(goal, joints)
 
 
-def check_cycle(machine: Machine, cycle: Cycle, near: Array, dt: float) -> None:
+def check_cycle(
+    machine: Machine, cycle: Cycle, near: Array, dt: float, effort: Effort | None = None
+) -> None:
     """Raises Refused when the machine cannot drive a cycle as it is: its speed is not ours."""
-    needed = check_plan(cycle, machine, near, dt)
+    needed = check_plan(cycle, machine, near, dt, effort)
     if not needed.fits:
         raise Refused(
             f'cycle: {needed.quantity} is {needed.slowness:.2f} times too fast: '
@@ -37,22 +122,64 @@ def check_cycle(machine: Machine, cycle: Cycle, near: Array, dt: float) -> None:
         )
 
 
-def plan_to(machine: Machine, start: MotionState, goal: Pose, near: Array, dt: float) -> Plan:
-    """A move from any state of motion to rest at `goal` that keeps all limits at every tick dt.
+def _plan_line(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Plan:
+    """As `plan_to`, to a goal's joints where it names any."""
+    plan = plan_to(machine, start, goal.pose, effort)
+    if goal.joints is not None or goal.then is not None:
+        times = np.append(np.arange(0.0, plan.duration, start.dt), plan.duration)
+        joints = machine.kinematics.inverse_along(plan.at(times).pose, start.joints)[-1]
+        _check_arrival(machine, goal, joints, start.dt, effort)
+    return plan
 
-    From rest it is straight. near: the joints at the start. Raises Unreachable when the goal
-    itself is out of reach, and Refused when the way there is, or cannot be slowed down enough.
-    """
-    check_goal(machine, goal, near)
-    limits, slowness, quantity = machine.motion.for_plans, 1.0, ''
+
+def _off_the_stops(machine: Machine, joints: Array) -> Array:
+    """`joints` (n,) without what rounding makes them pass the end of their ranges by."""
+    inside = np.clip(joints, *machine.joint_ranges)
+    return inside if np.abs(inside - joints).max() < ROUNDING else joints
+
+
+def _check_arrival(machine: Machine, goal: Goal, joints: Array, dt: float, effort: Effort) -> None:
+    """Refused unless the goal can be met, and what it begins be driven, with `joints` (n,)."""
+    if isinstance(goal.then, Cycle):
+        check_cycle(machine, goal.then, joints, dt, effort)
+    wanted = goal.then.joints if isinstance(goal.then, TimedPath) else goal.joints
+    if wanted is None:
+        return
+    away = np.abs(joints - wanted)
+    worst = int(np.argmax(away))
+    if away[worst] > SAME_JOINTS:
+        name, unit = machine.kinematics.joint_names[worst], machine.kinematics.joint_unit
+        raise Refused(
+            f'{name} would arrive {away[worst]:.3g} {unit} away from where it has to be, '
+            'on another branch of the inverse kinematics'
+        )
+
+
+def _slowed_down(
+    machine: Machine, start: Start, plan: Callable[[MotionLimits, float], Plan], effort: Effort
+) -> Plan:
+    """The first of ever slower plans that the machine can drive; Refused where none is."""
+    slowness = 1.0
     for _ in range(ATTEMPTS):
-        move: Plan
-        if start.is_at_rest:
-            move = plan_straight(start.pose, goal, limits, slowness)
-        else:
-            move = plan_move(start, goal, limits, slowness)
-        demand = check_plan(move, machine, near, dt)
+        move = plan(machine.motion.for_plans, slowness)
+        demand = check_plan(move, machine, start.joints, start.dt, effort)
         if demand.fits:
             return move
-        slowness, quantity = slowness * demand.slowness * MARGIN, demand.quantity
-    raise Refused(f'{quantity} stays above its limit at 1/{slowness:.3g} of full speed')
+        slowness *= demand.slowness * MARGIN
+        if slowness > MOST_STRETCH:
+            break
+    raise Refused(
+        f'{move.where(demand.time)}: {demand.quantity} would still be above its limit at '
+        f'1/{slowness:.3g} of full speed, as near singular postures'
+    )
+
+
+def _way_out(machine: Machine, start: Start, goal: Goal, effort: Effort) -> str:
+    """What would reach a goal to which no line leads, in words; '' where nothing is known."""
+    if not start.state.is_at_rest:
+        return ''
+    try:
+        move = _plan_joints(machine, start, goal, effort)
+    except (Refused, Unreachable):
+        return ''
+    return f'; a joint move gets there in {move.duration:.1f} s (parameter goal_motion: joint)'

@@ -10,33 +10,36 @@ from dataclasses import replace
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.continuity import BRANCH_JUMP
 from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.jogging import Jogging, Wish
+from manipulator.trajectory.joint_move import JointMove
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.pace import Pace
 from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import Hold, MotionState, Plan
-from manipulator.trajectory.planner import check_cycle, plan_to
+from manipulator.trajectory.planning import Planned, Planning
 from manipulator.trajectory.playing import Playing
+from manipulator.trajectory.worker import InPlace, Worker
 
 
 class Player:
     """Owns the commanded state of one machine from the moment that it is enabled."""
 
-    def __init__(self, machine: Machine, pose: Pose, joints: Array, dt: float) -> None:
-        """Begins by holding `pose`, where the joints are."""
+    def __init__(
+        self, machine: Machine, pose: Pose, joints: Array, dt: float, worker: Worker | None = None
+    ) -> None:
+        """Begins by holding `pose`, where the joints are; worker: where plans are worked out."""
         self.status = MotionStatus()
         self.joints = joints
         self._machine = machine
         self._dt = dt
         self._pace = Pace(machine.motion.braking_rate, dt)
         self._playing = Playing(Hold(pose))
-        self._newest: Goal | None = None
+        self._planning = Planning(machine, dt, worker or InPlace())
         self._next: Goal | Cycle | TimedPath | None = None
         self.expected: float | None = None
         self._wish: Wish | None = None
@@ -54,14 +57,15 @@ class Player:
     @property
     def newest_stamp(self) -> float:
         """The stamp of the newest goal, whether it is being driven or still waits."""
-        return self._newest.stamp if self._newest is not None else self.status.goal_stamp
+        waiting = self._planning.goal or self._next
+        return waiting.stamp if isinstance(waiting, Goal) else self.status.goal_stamp
 
     @property
     def pursued(self) -> Pose | None:
         """The newest goal that is driven to or waits; None for other motion and at rest."""
-        for waiting in (self._newest, self._next):
-            if isinstance(waiting, Goal):
-                return waiting.pose
+        waiting = self._planning.goal or self._next
+        if isinstance(waiting, Goal):
+            return waiting.pose
         return self._playing.end.pose if self._playing.mode == 'move' else None
 
     @property
@@ -76,9 +80,13 @@ class Player:
         return not self._is_holding
 
     def pursue(self, goal: Goal) -> None:
-        """Takes a goal up at the next tick; of several the newest wins. Refused during a jog."""
+        """Has a goal planned from the next tick on; of several the newest wins.
+
+        Refused during a jog. What is driven goes on until the plan is there.
+        """
         self._refuse_while_jogged()
-        self._newest, self.expected = goal, None
+        self._planning.ask(goal)
+        self.expected = None
 
     def expect(self, stamp: float) -> None:
         """A path is being worked out; `expected` is its stamp until a newer command comes."""
@@ -97,7 +105,7 @@ class Player:
         What was being driven brakes along its way and is dropped.
         """
         if wish is not None and self._wish is None and self.is_busy:
-            self._newest = self._next = None
+            self._drop()
             self._pace.is_stopping = not self._playing.is_hold
         self.expected = self.expected if wish is None else None
         self._wish = wish
@@ -106,25 +114,27 @@ class Player:
         """Where the joints are measured to be: what a jog mode closes its loop on."""
         self._measured = pose
 
-    def start_cycle(self, cycle: Cycle) -> None:
-        """Goes to the cycle's first pose and begins it there.
+    def start_cycle(self, cycle: Cycle, stamp: float = 0.0) -> None:
+        """Goes to the cycle's first pose and begins it there; it is checked before anything moves.
 
-        Raises Refused or Unreachable, with the moment and the limit, if it cannot be driven.
+        Refused during a jog.
         """
-        self._refuse_while_jogged()
-        check_cycle(self._machine, cycle, self.joints, self._dt)
-        start = cycle.at(0.0).pose
-        self._begin(plan_to(self._machine, self.state, start, self.joints, self._dt), stamp=0.0)
-        self._newest = self.expected = None
-        self._next, self._pace.is_stopping = cycle, False
+        self.pursue(Goal(cycle.at(0.0).pose, stamp, then=cycle))
 
     def stop(self) -> None:
         """Brakes along the way, then holds; what was to come is dropped."""
-        self._newest = self._next = self._wish = self.expected = None
+        waiting = self._planning.goal
+        stamp = self._playing.stamp if waiting is None else waiting.stamp
+        self._drop()
+        self._wish = self.expected = None
         if self._jogging is None and self._playing.is_hold:
-            self._report('stopped', self._playing.stamp)
+            self._report('stopped', stamp)
         else:
             self._pace.is_stopping = True
+
+    def close(self) -> None:
+        """The machine is let go of: nothing is planned any more."""
+        self._drop()
 
     def pause(self, is_paused: bool) -> None:
         """Brakes along the way and stays, or goes on."""
@@ -144,15 +154,14 @@ class Player:
             return self._step_jog()
         if self._playing.is_hold:
             self._pace.jump()
-        if self._newest is not None:
-            goal, self._newest = self._newest, None
-            self._take(goal)
+        self._plan()
         before = self.state.pose
         self._advance()
         pose = self.state.pose
         try:
-            self.joints = self._machine.kinematics.inverse(pose, self.joints)
+            self.joints = self._machine.kinematics.inverse(pose, self._near)
         except Unreachable as error:
+            self._drop()
             self._begin(Hold(before), self._playing.stamp)
             self._report('stopped', self._playing.stamp, str(error))
             return before
@@ -160,7 +169,18 @@ class Player:
 
     @property
     def _is_holding(self) -> bool:
-        return self._playing.is_hold and self._newest is None
+        return self._playing.is_hold and self._planning.goal is None
+
+    @property
+    def _near(self) -> Array:
+        """The joints to stay near: those of the plan, where it says them."""
+        plan = self._playing.plan
+        return plan.joints_at(self._playing.time) if isinstance(plan, JointMove) else self.joints
+
+    def _drop(self) -> None:
+        """What was to come does not come."""
+        self._next = None
+        self._planning.cancel()
 
     def _refuse_while_jogged(self) -> None:
         if self._wish is not None:
@@ -182,27 +202,29 @@ class Player:
             self.status = MotionStatus('jog', 'moving', 0.0, jogging.reason)
         return jogging.motion.pose
 
-    def _take(self, goal: Goal) -> None:
-        """Goes there at once if it can be joined in motion, else stops first and then goes."""
+    def _plan(self) -> None:
+        """Has the newest goal planned; one without a plan is refused, or planned from rest."""
         if self._pace.is_stopping and self._pace.rate > 0.0:
-            self._next = goal
+            self._next = self._planning.goal or self._next
+            self._planning.cancel()
             return
-        state = self.state
-        try:
-            move = plan_to(self._machine, state, goal.pose, self.joints, self._dt)
-        except Unreachable as error:
-            self._report('refused', goal.stamp, str(error))
-        except Refused as error:
-            if state.is_at_rest:
-                self._report('refused', goal.stamp, str(error))
-            else:
-                self._next, self._pace.is_stopping = goal, True
-        else:
-            self._next = goal.then
-            self._begin(move, goal.stamp)
+        failed = self._planning.step(self._playing, self.joints)
+        if failed is not None and failed.is_final:
+            self._report('refused', failed.goal.stamp, str(failed.error))
+        elif failed is not None:
+            self._next, self._pace.is_stopping = failed.goal, True
+        elif self._planning.is_notable:
+            self._report('planning', self.newest_stamp)
+
+    def _join(self, planned: Planned) -> None:
+        """Goes over to a plan that begins at this tick, or has begun within it."""
+        since = 0.0 if self._playing.is_hold else self._playing.time - planned.begin
+        self._next = planned.goal.then
+        self._begin(planned.job.result(), planned.goal.stamp)
+        self._playing.time = since
 
     def _begin(self, plan: Plan, stamp: float) -> None:
-        self._playing = Playing(plan, stamp)
+        self._playing, self._planning.ready = Playing(plan, stamp), None
         if not self._playing.is_hold:
             self._report('moving', stamp)
 
@@ -210,8 +232,14 @@ class Player:
         self.status = MotionStatus(self._playing.mode, result, stamp, reason)
 
     def _advance(self) -> None:
+        ready = self._planning.ready
+        if ready is not None and self._playing.is_hold:
+            self._join(ready)
+            ready = None
         self._pace.advance()
         self._playing.time += self._pace.rate * self._dt
+        if ready is not None and self._playing.time >= ready.begin:
+            self._join(ready)
         if self._pace.is_stopping and self._pace.rate <= 0.0:
             self._settle('stopped')
         elif self._playing.is_over:
@@ -230,15 +258,10 @@ class Player:
             self._pace.rate = 0.0
             self._begin(following, stamp)
         elif isinstance(following, TimedPath):
-            self._follow(following, stamp)
+            self._begin(following, stamp)
         elif isinstance(following, Goal):
-            self._take(following)
+            if self._planning.goal is None:
+                self._planning.ask(following)
         else:
             wish = self._wish if result == 'stopped' else None
             self._report(result, stamp, f'{wish.source} took the machine over' if wish else '')
-
-    def _follow(self, path: TimedPath, stamp: float) -> None:
-        if np.abs(self.joints - path.joints).max() > BRANCH_JUMP:
-            self._report('refused', stamp, 'the joints came to the first pose on another branch')
-        else:
-            self._begin(path, stamp)

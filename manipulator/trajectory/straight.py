@@ -1,29 +1,29 @@
 """Jerk-limited moves from rest to rest: a straight line and a turn about one fixed axis."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import ruckig
 
 from manipulator import rotation as so3
 from manipulator.arrays import Array
-from manipulator.errors import Refused
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
-from manipulator.trajectory.plan import MotionState
-
-FASTEST = 1e9
+from manipulator.trajectory.plan import MotionState, PosePlan
+from manipulator.trajectory.profile import FASTEST, Profile, profile_within
 
 
 @dataclass(frozen=True, eq=False)
-class StraightMove:
-    """start.moved(s·way): s goes from 0 to 1 by a ruckig profile, way is start.twist_to(goal)."""
+class StraightMove(PosePlan):
+    """start.moved(s·way): s goes from 0 to 1 along the profile, way is start.twist_to(goal)."""
 
     start: Pose
     way: Array
-    duration: float
-    _profile: Any
+    profile: Profile
+
+    @property
+    def duration(self) -> float:
+        """Seconds from rest to rest."""
+        return self.profile.duration
 
     @property
     def checked_duration(self) -> float:
@@ -32,12 +32,15 @@ class StraightMove:
 
     def at(self, times: Array | float) -> MotionState:
         """The state at each of the times (...)."""
-        flat = np.clip(np.ravel(times), 0.0, self.duration)
-        samples = np.array([self._profile.at_time(t)[:3] for t in flat.tolist()])
-        s, rate, change = np.moveaxis(samples.reshape(*np.shape(times), 3, 1), -2, 0)
+        s, rate, pull = (value[..., None] for value in self.profile.at(times))
         position = self.start.position + s * self.way[:3]
         turn = so3.exp(s * self.way[3:]) @ self.start.rotation
-        return MotionState(Pose(position, turn), rate * self.way, change * self.way)
+        return MotionState(Pose(position, turn), rate * self.way, pull * self.way)
+
+    def where(self, time: float) -> str:
+        """See `Plan`."""
+        share, _, _ = self.profile.at(time)
+        return f'at {100 * float(share):.0f} % of the line'
 
 
 def plan_straight(
@@ -45,19 +48,12 @@ def plan_straight(
 ) -> StraightMove:
     """The quickest such move; slowness k ≥ 1 makes it take k times as long."""
     way = start.twist_to(goal)
-    lengths = np.linalg.norm(way[:3]), np.linalg.norm(way[3:])
-    request = ruckig.InputParameter(1)
-    request.target_position = [1.0]
-    for name, power in (('speed', 1), ('acceleration', 2), ('jerk', 3)):
-        bounds = [
-            getattr(limit, name) / length
+    lengths = float(np.linalg.norm(way[:3])), float(np.linalg.norm(way[3:]))
+    bounds = [
+        min(
+            getattr(limit, name) / max(length, getattr(limit, name) / FASTEST)
             for limit, length in zip((limits.linear, limits.angular), lengths, strict=True)
-            if length > getattr(limit, name) / FASTEST
-        ]
-        ruckig_name = 'velocity' if name == 'speed' else name
-        setattr(request, f'max_{ruckig_name}', [min(bounds, default=FASTEST) / slowness**power])
-    profile = ruckig.Trajectory(1)
-    result = ruckig.Ruckig(1).calculate(request, profile)
-    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise Refused(f'no jerk-limited move was found ({result.name})')
-    return StraightMove(start, way, float(profile.duration), profile)
+        )
+        for name in ('speed', 'acceleration', 'jerk')
+    ]
+    return StraightMove(start, way, profile_within(bounds, slowness))

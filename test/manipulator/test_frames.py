@@ -8,7 +8,7 @@ from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames, FramesConfig
 from manipulator.pose import Pose
 from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.planner import plan_to
+from manipulator.trajectory.planner import Start, plan_to
 
 MACHINE = load('robocake')
 FRAMES = Frames.from_config(
@@ -68,7 +68,7 @@ def test_turn_about_the_pivot_keeps_the_pivot_in_place():
     start = FRAMED.kinematics.home
     goal = Pose(start.position, so3.exp([0.0, 0.08, 0.05]) @ start.rotation)
     joints = FRAMED.kinematics.inverse(start)
-    move = plan_to(FRAMED, MotionState.at_rest(start), goal, joints, 0.01)
+    move = plan_to(FRAMED, Start(MotionState.at_rest(start), joints, 0.01), goal)
     poses = FRAMES.platform(move.at(np.linspace(0, move.duration, 30)).pose)
     pivots = FRAMES.T_base_work.inverse().transform(
         np.array([p.transform([[0.0, 0.01, 0.04]])[0] for p in (poses[i] for i in range(30))])

@@ -58,7 +58,7 @@ class Loop:
         self.monitor = LinkMonitor(self.session, self.calibration)
         self.gate = CommandGate(self.calibration, 1e-3 * config.link.setpoint_deadline_ms)
         self.check = CommandCheck(self.machine)
-        self.pilot = Pilot(self.machine, DT, tolerance=0.2)
+        self.pilot = Pilot(self.machine, DT)
         self.teleop = Teleop(self.pilot, delay=0.06)
         self.park = self.calibration.counts(self.calibration.park)
         names = self.machine.kinematics.joint_names

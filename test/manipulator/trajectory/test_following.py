@@ -1,43 +1,48 @@
 import numpy as np
 
-from manipulator.trajectory.following import Following
+from manipulator.trajectory.following import Following, Tolerances
 
 DT = 0.01
 NAMES = ('a', 'b')
+TOLERANCES = Tolerances(np.full(2, 0.1), np.full(2, 0.01))
 
 
-def drive(following, commands, measured):
+def following():
+    return Following(NAMES, 'rad', TOLERANCES, DT)
+
+
+def drive(judge, commands, measured):
     """The first tick at which there is trouble, and the trouble."""
     for k, (command, joints) in enumerate(zip(commands, measured, strict=True)):
-        following.command(np.array(command))
-        following.measure(np.array(joints))
-        if following.trouble:
-            return k, following.trouble
+        judge.command(np.array(command))
+        judge.measure(np.array(joints))
+        if judge.trouble:
+            return k, judge.trouble
     return None, ''
 
 
 def test_joints_that_lag_by_less_than_half_a_second_follow():
     commands = [(0.01 * k, 0.0) for k in range(200)]
     measured = [(0.01 * max(k - 40, 0), 0.0) for k in range(200)]
-    assert drive(Following(NAMES, 0.1, DT), commands, measured) == (None, '')
+    assert drive(following(), commands, measured) == (None, '')
 
 
 def test_stuck_joint_is_named_within_a_second():
     commands = [(0.0, 0.01 * k) for k in range(200)]
-    tick, trouble = drive(Following(NAMES, 0.1, DT), commands, [(0.0, 0.0)] * 200)
+    tick, trouble = drive(following(), commands, [(0.0, 0.0)] * 200)
     assert tick < 100
     assert trouble.startswith('b is')
 
 
 def test_short_excursion_is_no_trouble():
     measured = [(0.3 * (50 < k < 70), 0.0) for k in range(200)]
-    assert drive(Following(NAMES, 0.1, DT), [(0.0, 0.0)] * 200, measured) == (None, '')
+    assert drive(following(), [(0.0, 0.0)] * 200, measured) == (None, '')
 
 
 def test_measurements_that_stop_coming_keep_the_last_word():
-    following = Following(NAMES, 0.1, DT)
-    following.command(np.zeros(2))
-    following.measure(np.array([0.3, 0.0]))
+    judge = following()
+    judge.command(np.zeros(2))
+    judge.measure(np.array([0.3, 0.0]))
     for _ in range(100):
-        following.command(np.zeros(2))
-    assert following.trouble
+        judge.command(np.zeros(2))
+    assert judge.trouble

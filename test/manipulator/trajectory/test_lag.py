@@ -14,7 +14,7 @@ DT = 0.01
 @pytest.fixture
 def pilot():
     """One that drives, at home."""
-    made = Pilot(MACHINE, DT, 0.2)
+    made = Pilot(MACHINE, DT)
     made.note_machine_state('enabled', is_followed=True)
     made.note_joints(MACHINE.kinematics.inverse(HOME))
     made.note_pose(HOME)
@@ -56,4 +56,4 @@ def test_stream_beyond_the_limits_is_pursued_within_them_and_its_lag_grows_and_e
 
 
 def test_machine_that_nobody_drives_has_no_lag():
-    assert lag_of(Pilot(MACHINE, DT, 0.2)) == {'lag_mm': 0.0, 'lag_deg': 0.0}
+    assert lag_of(Pilot(MACHINE, DT)) == {'lag_mm': 0.0, 'lag_deg': 0.0}

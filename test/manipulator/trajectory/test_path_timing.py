@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from hexapod_control import workspace
 from hexarm.machines import load
 from manipulator import rotation as so3
-from manipulator.continuity import joints_along
 from manipulator.errors import Refused
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
@@ -42,7 +41,7 @@ def circle_at_home(machine, radius, count=120):
 def largest_shares(machine, plan, h=1e-3):
     """Speeds and accelerations as parts of their limits, by differences over h seconds."""
     pose = plan.at(np.arange(0.0, plan.duration + h, h)).pose
-    joints = joints_along(machine, pose, plan.joints)
+    joints = machine.kinematics.inverse_along(pose, plan.joints)
     twist = pose[:-1].twist_to(pose[1:]) / h
     motion = machine.motion.for_plans
     found = []

@@ -39,7 +39,7 @@ class Rehearsal(Pilot):
 @pytest.fixture
 def pilot():
     """A pilot that has heard nothing yet."""
-    return Rehearsal(MACHINE, 0.01, 0.2)
+    return Rehearsal(MACHINE, 0.01)
 
 
 @pytest.fixture

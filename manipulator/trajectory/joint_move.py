@@ -1,0 +1,128 @@
+"""Rest-to-rest moves in joint space: all joints in proportion, as quickly as limits allow.
+
+The way from one branch of the inverse kinematics to another, from a turned-up joint back, and
+through singular postures, where no line leads. The tool's path is what the joints make of it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from manipulator.arrays import Array, frozen
+from manipulator.errors import NoSolution, Refused
+from manipulator.kinematics import Kinematics
+from manipulator.machine import Machine
+from manipulator.motion_limits import MotionLimits
+from manipulator.pose import Pose
+from manipulator.trajectory.plan import MotionState
+from manipulator.trajectory.profile import Profile, profile_within
+
+KNOTS = 64
+"""Poses along the move that are known beforehand: forward kinematics begin at the nearest."""
+
+TINY = 1e-9
+"""rad or m that count as no motion."""
+
+DIFFERENCE_STEP = 1e-4
+"""Of the move, for the change of its twist."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointMove:
+    """q(s) = (1 − s)·begin + s·end for s from 0 to 1 along a jerk-limited profile.
+
+    begin and end (n,) in rad or m; knots are the poses (KNOTS + 1,) at equal steps of s.
+    """
+
+    kinematics: Kinematics
+    begin: Array
+    end: Array
+    knots: Pose
+    profile: Profile
+
+    @property
+    def duration(self) -> float:
+        """Seconds from rest to rest."""
+        return self.profile.duration
+
+    @property
+    def checked_duration(self) -> float:
+        """All of it."""
+        return self.duration
+
+    def joints_at(self, times: Array | float) -> Array:
+        """See `Plan`."""
+        s, _, _ = self.profile.at(times)
+        return between(self.begin, self.end, s)
+
+    def at(self, times: Array | float) -> MotionState:
+        """The state at each of the times (...): poses by forward kinematics, twists by Jacobian.
+
+        Raises NoSolution where the joints fix no pose.
+        """
+        s, rate, pull = self.profile.at(times)
+        h, flat = DIFFERENCE_STEP, s.ravel()
+        pose, slope = self._slopes(flat)
+        bend = (self._slopes(flat + h)[1] - self._slopes(flat - h)[1]) / (2 * h)
+        shape = s.shape
+        pose = Pose(pose.position.reshape(*shape, 3), pose.rotation.reshape(*shape, 3, 3))
+        slope, bend = slope.reshape(*shape, 6), bend.reshape(*shape, 6)
+        rate, pull = rate[..., None], pull[..., None]
+        return MotionState(pose, rate * slope, rate**2 * bend + pull * slope)
+
+    def where(self, time: float) -> str:
+        """See `Plan`."""
+        share, _, _ = self.profile.at(time)
+        return f'at {100 * float(share):.0f} % of the joint move'
+
+    def _slopes(self, s: Array) -> tuple[Pose, Array]:
+        """Poses (N,) and d(pose)/ds (N, 6) at each s (N,), in ascending order."""
+        joints = between(self.begin, self.end, s)
+        knot = min(max(round(float(s[0]) * KNOTS), 0), KNOTS)
+        poses = self.kinematics.forward_along(joints, self.knots[knot])
+        slopes: Array = self.kinematics.jacobian(poses, joints) @ (self.end - self.begin)
+        return poses, slopes
+
+
+def between(begin: Array, end: Array, s: Array) -> Array:
+    """Joints (..., n) at each s (...): exactly the ends at 0 and 1."""
+    share = s[..., None]
+    joints: Array = (1.0 - share) * begin + share * end
+    return joints
+
+
+def plan_joint_move(
+    machine: Machine, start: Pose, begin: Array, goal: Array, slowness: float = 1.0
+) -> JointMove:
+    """The quickest move from joints `begin`, at pose `start`, to joints `goal` (n,).
+
+    slowness k ≥ 1 makes it take k times as long. Raises Refused where the joints between fix no
+    pose, as beyond a platform's forward singularities.
+    """
+    rows = between(begin, goal, np.linspace(0.0, 1.0, KNOTS + 1))
+    try:
+        knots = machine.kinematics.forward_along(rows, start)
+    except NoSolution as error:
+        raise Refused(f'on the joint move: {error}') from error
+    steps = knots[:-1].twist_to(knots[1:]) * KNOTS
+    profile = profile_within(_bounds(machine.motion.for_plans, goal - begin, steps), slowness)
+    return JointMove(machine.kinematics, frozen(begin), frozen(goal), knots, profile)
+
+
+def _bounds(limits: MotionLimits, change: Array, steps: Array) -> tuple[float, float, float]:
+    """The most that ṡ, s̈ and s⃛ may be: by each joint, and by the tool's or platform's speed."""
+    longest = max(float(np.linalg.norm(steps[:, :3], axis=1).max()), TINY)
+    widest = max(float(np.linalg.norm(steps[:, 3:], axis=1).max()), TINY)
+    moved = np.maximum(np.abs(change), TINY)
+    speed = min(
+        float((limits.joint.speed / moved).min()),
+        limits.linear.speed / longest,
+        limits.angular.speed / widest,
+    )
+    acceleration = min(
+        float((limits.joint.acceleration / moved).min()),
+        limits.linear.acceleration / longest,
+        limits.angular.acceleration / widest,
+    )
+    jerk = min(limits.linear.jerk / longest, limits.angular.jerk / widest)
+    return speed, acceleration, jerk

@@ -1,0 +1,140 @@
+"""The plan that is being worked out for a goal, while the machine goes on with what it does.
+
+Such a plan begins where the present one will be in a moment: LEADS says how soon. Where it comes
+too late it is planned again with more time, and at last from rest.
+"""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from manipulator.arrays import Array
+from manipulator.errors import ManipulatorError, Refused, Unreachable
+from manipulator.machine import Machine
+from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.plan import Plan
+from manipulator.trajectory.planner import Start, plan_goal
+from manipulator.trajectory.playing import Playing
+from manipulator.trajectory.worker import Job, Worker
+
+LEADS = (3, 12, 50)
+"""Ticks after which a plan is to be joined in motion, at the first, second and third attempt."""
+
+NOTABLE = 5
+"""Ticks of planning after which that is reported: most plans take less, and streams of goals."""
+
+SAME_POSE = 1e-9
+"""m and rad between where a plan begins and where the machine stands."""
+
+
+@dataclass(frozen=True, eq=False)
+class Planned:
+    """A plan for a goal, that begins at time `begin` of the plan `source`."""
+
+    goal: Goal
+    start: Start
+    source: Playing
+    begin: float
+    job: Job[Plan]
+
+    @property
+    def is_from_rest(self) -> bool:
+        """Whether it begins at rest."""
+        return self.start.state.is_at_rest
+
+    def fits(self, playing: Playing) -> bool:
+        """Whether it can still be begun from what is played now."""
+        if playing.is_hold:
+            away = playing.state.pose.twist_to(self.start.state.pose)
+            return self.is_from_rest and float(np.abs(away).max()) < SAME_POSE
+        return playing is self.source and playing.time <= self.begin
+
+
+@dataclass(frozen=True)
+class Failed:
+    """A goal without a plan, and why; is_final where a plan from rest would not help either."""
+
+    goal: Goal
+    error: ManipulatorError
+    is_final: bool
+
+
+class Planning:
+    """The newest goal: waiting, planned for, or planned and not yet begun. Changes every tick.
+
+    While one goal is planned for, the newest other one waits; what came between is dropped.
+    """
+
+    def __init__(self, machine: Machine, dt: float, worker: Worker) -> None:
+        self._machine, self._dt, self._worker = machine, dt, worker
+        self._newest: Goal | None = None
+        self._request: Planned | None = None
+        self.ready: Planned | None = None
+        self._attempts = self._ticks = 0
+
+    @property
+    def goal(self) -> Goal | None:
+        """The newest goal, until its plan begins."""
+        of_plan = self._request or self.ready
+        return self._newest or (None if of_plan is None else of_plan.goal)
+
+    @property
+    def is_notable(self) -> bool:
+        """Whether a plan has just become worth a report, by how long it takes."""
+        return self._request is not None and self._ticks == NOTABLE
+
+    def ask(self, goal: Goal) -> None:
+        """Has a goal planned for at the next `step`."""
+        self._newest = goal
+
+    def cancel(self) -> None:
+        """Nobody waits for a plan any more."""
+        if self._request is not None:
+            self._request.job.cancel()
+        self._newest = self._request = self.ready = None
+
+    def step(self, playing: Playing, joints: Array) -> Failed | None:
+        """One tick beside what is `playing`, at joints (n,): begins a plan, or takes it up.
+
+        A plan is `ready` then, or has failed, or was too late and is made anew.
+        """
+        if self._newest is not None and self._request is None:
+            goal, self._newest, self.ready = self._newest, None, None
+            self._attempts = self._ticks = 0
+            self._submit(goal, playing, joints)
+        self._ticks += 1
+        request = self._request
+        if request is None or not request.job.is_done:
+            return None
+        self._request = None
+        if request.fits(playing):
+            return self._taken(request)
+        self._attempts += 1
+        if self._attempts == len(LEADS):
+            late = Refused('its plan came too late to be joined in motion')
+            return Failed(request.goal, late, is_final=False)
+        self._submit(request.goal, playing, joints)
+        return None
+
+    def _taken(self, request: Planned) -> Failed | None:
+        try:
+            request.job.result()
+        except ManipulatorError as error:
+            is_final = request.is_from_rest or isinstance(error, Unreachable)
+            return Failed(request.goal, error, is_final)
+        self.ready = request
+        return None
+
+    def _submit(self, goal: Goal, playing: Playing, joints: Array) -> None:
+        """Has a plan worked out that begins in a moment; joints (n,) are those of now."""
+        lead = LEADS[self._attempts] if self._worker.is_beside and not playing.is_hold else 0
+        begin = min(playing.time + lead * self._dt, playing.plan.duration)
+        if lead:
+            times = np.linspace(playing.time, begin, lead + 1)
+            joints = self._machine.kinematics.inverse_along(playing.plan.at(times).pose, joints)[
+                -1
+            ]
+        start = Start(playing.plan.at(begin), joints, self._dt)
+        job = self._worker.submit(partial(plan_goal, self._machine, start, goal))
+        self._request = Planned(goal, start, playing, begin, job)

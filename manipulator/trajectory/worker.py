@@ -1,0 +1,125 @@
+"""Working plans out beside the control loop: one job at a time, bounded, and given up on request.
+
+A plan costs milliseconds where the inverse kinematics has a closed form, tenths of a second where
+it has none; a tick has ten milliseconds. So the executor submits a task, looks at each tick
+whether it is done, and goes on with what it was doing meanwhile.
+"""
+
+import sys
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Generic, Protocol, TypeVar
+
+from manipulator.errors import ManipulatorError, Refused
+
+T = TypeVar('T')
+
+MOST_POSES = 300_000
+"""Poses that may be solved for one plan, whatever it is: the bound on its time and memory."""
+
+MOST_WAITING = 8
+"""Jobs that may wait for the one that is being worked on."""
+
+SWITCH_INTERVAL = 0.001
+"""Seconds after which the worker lets the control loop go on (CPython's default: 5 ms)."""
+
+
+class Cancelled(ManipulatorError):
+    """A newer command came: nobody waits for this plan any more."""
+
+
+class Effort:
+    """What one plan has cost so far, in poses solved. It changes in the worker's thread alone."""
+
+    def __init__(self, most: int = MOST_POSES, is_cancelled: Callable[[], bool] = bool) -> None:
+        self.poses = 0
+        self._most = most
+        self._is_cancelled = is_cancelled
+
+    def spend(self, poses: int) -> None:
+        """Call before solving `poses`: Refused above the limit, Cancelled after `cancel`."""
+        self.poses += poses
+        if self._is_cancelled():
+            raise Cancelled('a newer command came while it was planned')
+        if self.poses > self._most:
+            raise Refused(
+                f'planning takes more than {self._most} poses: ask for a shorter or quicker motion'
+            )
+
+
+Task = Callable[[Effort], T]
+
+
+class Job(Generic[T]):
+    """A task that is being worked out."""
+
+    def __init__(self, future: 'Future[T]', cancelled: threading.Event) -> None:
+        self._future, self._cancelled = future, cancelled
+
+    @property
+    def is_done(self) -> bool:
+        """Whether `result` returns at once."""
+        return self._future.done()
+
+    def result(self) -> T:
+        """What the task returned, or raises what it raised; only once it is done."""
+        return self._future.result(timeout=0)
+
+    def cancel(self) -> None:
+        """Nobody wants the result any more: the task ends at its next `spend`."""
+        self._cancelled.set()
+        self._future.cancel()
+
+
+class Worker(Protocol):
+    """Where tasks are worked out."""
+
+    @property
+    def is_beside(self) -> bool:
+        """Whether a task is worked out beside its submitter, and done later."""
+        ...
+
+    def submit(self, task: Task[T]) -> Job[T]:
+        """Begins a task, or has it wait; Refused where too many wait already."""
+        ...
+
+
+class InPlace:
+    """Works each task out at once, in the caller's thread: where there is no control loop."""
+
+    is_beside = False
+
+    def submit(self, task: Task[T]) -> Job[T]:
+        """See `Worker`: the job is done when it comes back."""
+        future: Future[T] = Future()
+        try:
+            future.set_result(task(Effort()))
+        except ManipulatorError as error:
+            future.set_exception(error)
+        return Job(future, threading.Event())
+
+
+class InThread:
+    """Works tasks out one after the other in a thread of its own, beside a control loop."""
+
+    is_beside = True
+
+    def __init__(self) -> None:
+        sys.setswitchinterval(SWITCH_INTERVAL)
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix='planning')
+        self._unfinished: list[Future[object]] = []
+
+    def submit(self, task: Task[T]) -> Job[T]:
+        """See `Worker`."""
+        self._unfinished = [future for future in self._unfinished if not future.done()]
+        if len(self._unfinished) > MOST_WAITING:
+            raise Refused(f'{MOST_WAITING} plans wait already: try again')
+        cancelled = threading.Event()
+        future = self._pool.submit(task, Effort(is_cancelled=cancelled.is_set))
+        self._unfinished.append(future)  # type: ignore[arg-type]
+        return Job(future, cancelled)
+
+    def close(self) -> None:
+        """Gives up what waits; does not wait for what is being worked on."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
