@@ -31,6 +31,11 @@ class AlmostClosed:
     ideal: SphericalWrist | ParallelAxes
     numerical: Numerical
 
+    @property
+    def is_explicit(self) -> bool:
+        """See `InverseMethod`."""
+        return False
+
     def branches(self, pose: Pose, near: Array) -> Array:
         """All eight and NaN (..., 9, 6); for one pose that has none, what `Numerical` finds."""
         starts = self._starts(pose, near)

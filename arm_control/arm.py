@@ -64,6 +64,11 @@ class SerialArm:
         """A jog drives from branch to branch where they meet; a platform's crank may never."""
         return True
 
+    @property
+    def is_explicit(self) -> bool:
+        """Whether the axes allow a closed form."""
+        return self.method.is_explicit
+
     def inverse_all(self, pose: Pose, near: Array | None = None) -> Array:
         """Every branch (..., k, 6), by whole turns nearest to `near` within the joint ranges.
 

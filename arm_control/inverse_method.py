@@ -20,6 +20,11 @@ EXACT = 1e-9
 class InverseMethod(Protocol):
     """All joint angles of a pose, on every branch that the method knows."""
 
+    @property
+    def is_explicit(self) -> bool:
+        """Whether it is a closed form."""
+        ...
+
     def branches(self, pose: Pose, near: Array) -> Array:
         """Joints (..., k, 6), not yet unwrapped; NaN rows for branches that do not close.
 

@@ -27,6 +27,11 @@ class Numerical:
     low: Array
     high: Array
 
+    @property
+    def is_explicit(self) -> bool:
+        """See `InverseMethod`."""
+        return False
+
     def branches(self, pose: Pose, near: Array) -> Array:
         """What was found from `near` (entry 0) and from the cold starts: (..., 33, 6).
 

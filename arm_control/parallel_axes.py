@@ -22,6 +22,11 @@ class ParallelAxes:
     chain: Chain
     centre: Array
 
+    @property
+    def is_explicit(self) -> bool:
+        """See `InverseMethod`."""
+        return True
+
     def branches(self, pose: Pose, near: Array) -> Array:
         """All eight (..., 8, 6): two of joint 1, times two wrists, times two elbows."""
         displacement = pose @ self.chain.home.inverse()

@@ -19,6 +19,11 @@ class SphericalWrist:
     chain: Chain
     centre: Array
 
+    @property
+    def is_explicit(self) -> bool:
+        """See `InverseMethod`."""
+        return True
+
     def branches(self, pose: Pose, near: Array) -> Array:
         """All eight (..., 8, 6): two of joint 1, times two elbows, times two wrists."""
         w1, w2, w3 = self.chain.axes[:3]

@@ -87,6 +87,11 @@ class ParallelPlatform(ABC):
     def joint_unit(self) -> str:
         """'rad' or 'm'."""
 
+    @property
+    def is_explicit(self) -> bool:
+        """Each leg has its own closed form."""
+        return True
+
     @abstractmethod
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """Joints (..., 6); see `Kinematics`."""

@@ -57,6 +57,11 @@ class FramedKinematics:
         """The pivot's pose when the machine is at home."""
         return self.frames.pivot(self.inner.home)
 
+    @property
+    def is_explicit(self) -> bool:
+        """That of the machine."""
+        return self.inner.is_explicit
+
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """See `Kinematics`."""
         return self.inner.inverse(self.frames.platform(pose), near)

@@ -51,6 +51,11 @@ class Kinematics(Protocol):
         """Metres; makes rotations lengths in σmin and in distances between poses."""
         ...
 
+    @property
+    def is_explicit(self) -> bool:
+        """Whether the inverse is a closed form, so that a pose costs the same everywhere."""
+        ...
+
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """Joints (..., n) for the pose, on the branch nearest to `near` (default: home's branch).
 

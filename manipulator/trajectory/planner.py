@@ -13,7 +13,7 @@ from manipulator.pose import Pose
 from manipulator.trajectory.check import check_plan
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.joint_move import plan_joint_move
+from manipulator.trajectory.joint_move import KNOTS, plan_joint_move
 from manipulator.trajectory.move import plan_move
 from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import MotionState, Plan
@@ -26,6 +26,9 @@ MARGIN = 1.01
 MOST_STRETCH = 30.0
 """Times that a move may take of what platform or tool alone would need: what joints that must turn
 faster near a singular posture may cost."""
+
+FORWARD_COST = 10
+"""Poses of an inverse that a forward solution costs: no joint move is planned within a tick."""
 
 ROUNDING = 1e-9
 """rad or m by which an inverse may pass the end of a range that it means to meet."""
@@ -82,6 +85,7 @@ def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> 
     """A joint move from rest to a goal's joints, by default the nearest of its pose."""
     if not start.state.is_at_rest:
         raise Refused('a joint move begins at rest')
+    effort.spend(FORWARD_COST * KNOTS)
     joints = goal.joints
     if joints is None:
         check_goal(machine, goal.pose, start.joints)

@@ -1,7 +1,9 @@
 """The plan that is being worked out for a goal, while the machine goes on with what it does.
 
-Such a plan begins where the present one will be in a moment: LEADS says how soon. Where it comes
-too late it is planned again with more time, and at last from rest.
+Short moves of machines with an explicit inverse are planned within the tick: a stream of goals is
+followed closest so. Other plans are worked out beside it, and begin where the present one will be
+in a moment: LEADS says how soon. Where such a plan comes too late it is planned again with more
+time, and at last from rest.
 """
 
 from dataclasses import dataclass
@@ -16,10 +18,13 @@ from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.plan import Plan
 from manipulator.trajectory.planner import Start, plan_goal
 from manipulator.trajectory.playing import Playing
-from manipulator.trajectory.worker import Job, Worker
+from manipulator.trajectory.worker import InPlace, Job, TooLong, Worker
 
 LEADS = (3, 12, 50)
 """Ticks after which a plan is to be joined in motion, at the first, second and third attempt."""
+
+TICK_POSES = 200
+"""Poses that may be solved for a plan within a tick: 2 ms of an arm, 0.2 ms of a platform."""
 
 NOTABLE = 5
 """Ticks of planning after which that is reported: most plans take less, and streams of goals."""
@@ -42,6 +47,11 @@ class Planned:
     def is_from_rest(self) -> bool:
         """Whether it begins at rest."""
         return self.start.state.is_at_rest
+
+    @property
+    def is_too_long(self) -> bool:
+        """Whether it is done, and would have cost too many poses."""
+        return self.job.is_done and isinstance(self.job.error, TooLong)
 
     def fits(self, playing: Playing) -> bool:
         """Whether it can still be begun from what is played now."""
@@ -68,6 +78,7 @@ class Planning:
 
     def __init__(self, machine: Machine, dt: float, worker: Worker) -> None:
         self._machine, self._dt, self._worker = machine, dt, worker
+        self._quick = InPlace(TICK_POSES) if machine.kinematics.is_explicit else None
         self._newest: Goal | None = None
         self._request: Planned | None = None
         self.ready: Planned | None = None
@@ -99,36 +110,42 @@ class Planning:
 
         A plan is `ready` then, or has failed, or was too late and is made anew.
         """
-        if self._newest is not None and self._request is None:
-            goal, self._newest, self.ready = self._newest, None, None
+        if self._newest is not None and self._request is None and self.ready is None:
+            goal, self._newest = self._newest, None
             self._attempts = self._ticks = 0
-            self._submit(goal, playing, joints)
+            self._begin(goal, playing, joints)
         self._ticks += 1
         request = self._request
         if request is None or not request.job.is_done:
             return None
         self._request = None
-        if request.fits(playing):
-            return self._taken(request)
-        self._attempts += 1
-        if self._attempts == len(LEADS):
-            late = Refused('its plan came too late to be joined in motion')
-            return Failed(request.goal, late, is_final=False)
-        self._submit(request.goal, playing, joints)
-        return None
-
-    def _taken(self, request: Planned) -> Failed | None:
         try:
             request.job.result()
         except ManipulatorError as error:
             is_final = request.is_from_rest or isinstance(error, Unreachable)
             return Failed(request.goal, error, is_final)
-        self.ready = request
+        if request.fits(playing):
+            self.ready = request
+            return None
+        self._attempts += 1
+        if self._attempts == len(LEADS):
+            late = Refused('its plan came too late to be joined in motion')
+            return Failed(request.goal, late, is_final=False)
+        self._request = self._submitted(self._worker, request.goal, playing, joints)
         return None
 
-    def _submit(self, goal: Goal, playing: Playing, joints: Array) -> None:
-        """Has a plan worked out that begins in a moment; joints (n,) are those of now."""
-        lead = LEADS[self._attempts] if self._worker.is_beside and not playing.is_hold else 0
+    def _begin(self, goal: Goal, playing: Playing, joints: Array) -> None:
+        """Plans within this tick where that is cheap enough, else beside it."""
+        if self._quick is not None and self._worker.is_beside:
+            quick = self._submitted(self._quick, goal, playing, joints)
+            if not quick.is_too_long:
+                self._request = quick
+                return
+        self._request = self._submitted(self._worker, goal, playing, joints)
+
+    def _submitted(self, worker: Worker, goal: Goal, playing: Playing, joints: Array) -> Planned:
+        """A plan under way that begins in a moment; joints (n,) are those of now."""
+        lead = LEADS[self._attempts] if worker.is_beside and not playing.is_hold else 0
         begin = min(playing.time + lead * self._dt, playing.plan.duration)
         if lead:
             times = np.linspace(playing.time, begin, lead + 1)
@@ -136,5 +153,5 @@ class Planning:
                 -1
             ]
         start = Start(playing.plan.at(begin), joints, self._dt)
-        job = self._worker.submit(partial(plan_goal, self._machine, start, goal))
-        self._request = Planned(goal, start, playing, begin, job)
+        job = worker.submit(partial(plan_goal, self._machine, start, goal))
+        return Planned(goal, start, playing, begin, job)

@@ -29,6 +29,10 @@ class Cancelled(ManipulatorError):
     """A newer command came: nobody waits for this plan any more."""
 
 
+class TooLong(ManipulatorError, ValueError):
+    """A plan that costs more poses than it may."""
+
+
 class Effort:
     """What one plan has cost so far, in poses solved. It changes in the worker's thread alone."""
 
@@ -38,12 +42,12 @@ class Effort:
         self._is_cancelled = is_cancelled
 
     def spend(self, poses: int) -> None:
-        """Call before solving `poses`: Refused above the limit, Cancelled after `cancel`."""
+        """Call before solving `poses`: TooLong above the limit, Cancelled after `cancel`."""
         self.poses += poses
         if self._is_cancelled():
             raise Cancelled('a newer command came while it was planned')
         if self.poses > self._most:
-            raise Refused(
+            raise TooLong(
                 f'planning takes more than {self._most} poses: ask for a shorter or quicker motion'
             )
 
@@ -65,6 +69,11 @@ class Job(Generic[T]):
     def result(self) -> T:
         """What the task returned, or raises what it raised; only once it is done."""
         return self._future.result(timeout=0)
+
+    @property
+    def error(self) -> BaseException | None:
+        """What the task raised, None where it returned; only once it is done."""
+        return self._future.exception(timeout=0)
 
     def cancel(self) -> None:
         """Nobody wants the result any more: the task ends at its next `spend`."""
@@ -90,11 +99,15 @@ class InPlace:
 
     is_beside = False
 
+    def __init__(self, most: int = MOST_POSES) -> None:
+        """most: poses that a task may solve."""
+        self._most = most
+
     def submit(self, task: Task[T]) -> Job[T]:
         """See `Worker`: the job is done when it comes back."""
         future: Future[T] = Future()
         try:
-            future.set_result(task(Effort()))
+            future.set_result(task(Effort(self._most)))
         except ManipulatorError as error:
             future.set_exception(error)
         return Job(future, threading.Event())
