@@ -10,6 +10,7 @@ from rclpy.node import Node
 from std_msgs.msg import Header
 
 from manipulator.errors import InvalidInput, ManipulatorError, Refused
+from manipulator.nodes.graph_check import Received
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, check_frame, pose_message, seconds
 from manipulator.nodes.parameters import declare
@@ -17,6 +18,7 @@ from manipulator.nodes.path_ear import PathEar
 from manipulator.nodes.path_listener import MOST_POSES, HeardPath
 from manipulator.nodes.path_process import PathTask
 from manipulator.nodes.path_work import PathWork
+from manipulator.nodes.qos import COMMAND
 from manipulator.pose import Pose
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
@@ -25,6 +27,10 @@ from manipulator.trajectory.pilot import Pilot
 from manipulator.words import counted
 
 OVERTAKEN = 'a newer command came while the path was worked out'
+
+
+GOAL_PATH = Received('goal_path', Path, COMMAND)
+"""What the process of path_listener receives."""
 
 
 @dataclass(frozen=True)
