@@ -34,6 +34,7 @@ from hexarm import machines
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.nodes.bounded import decoded
 from manipulator.nodes.diagnostics import Diagnostics, Report
+from manipulator.nodes.graph_check import received_by
 from manipulator.nodes.messages import seconds
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
@@ -96,7 +97,8 @@ class SerialBridge(Node):
         self.create_subscription(Float64, 'gripper', self._on_gripper, COMMAND)
         self.create_service(SetBool, '~/enable', self._on_enable)
         self.create_service(Trigger, '~/clear_fault', self._on_clear_fault)
-        self._diagnostics = Diagnostics(self, self._report, ('joint_command',))
+        beside = [topic for node in self._aside for topic in received_by(node)]
+        self._diagnostics = Diagnostics(self, self._report, ('joint_command',), beside)
 
     # From the graph (the executor's thread)
 

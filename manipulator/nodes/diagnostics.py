@@ -1,11 +1,12 @@
 """What a node says of itself on /diagnostics, once a second (REP-107)."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
+from manipulator.nodes.graph_check import Received, crowds, received_by, unheard
 from manipulator.nodes.steady_timer import SteadyTimer
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
@@ -23,14 +24,23 @@ def status(
 
 
 class Diagnostics:
-    """Publishes what `report` returns, and warns where an internal topic has two publishers."""
+    """Publishes what `report` returns, and what is wrong with the publishers that feed the node.
+
+    single_publisher: topics that must not have two. received_beside: topics that are received for
+    the node, but not by its own subscriptions.
+    """
 
     def __init__(
-        self, node: Node, report: Callable[[], Report], single_publisher: tuple[str, ...] = ()
+        self,
+        node: Node,
+        report: Callable[[], Report],
+        single_publisher: Sequence[str] = (),
+        received_beside: Sequence[Received] = (),
     ) -> None:
         self._node = node
         self._report = report
         self._single_publisher = single_publisher
+        self._received_beside = received_beside
         self._publisher = node.create_publisher(
             DiagnosticArray, '/diagnostics', QoSProfile(depth=10)
         )
@@ -38,17 +48,20 @@ class Diagnostics:
 
     def _publish(self) -> None:
         level, message, values = self._report()
-        for topic in self._single_publisher:
-            count = self._node.count_publishers(self._node.resolve_topic_name(topic))
-            if count > 1:
-                crowd = f'{count} publishers on {topic}, which must have one'
-                self._node.get_logger().warning(crowd, throttle_duration_sec=5.0)
-                level, message = max(level, WARN), f'{message}; {crowd}' if message else crowd
+        trouble = self._trouble()
+        if trouble:
+            self._node.get_logger().warning(trouble, throttle_duration_sec=5.0)
+            level, message = max(level, WARN), f'{message}; {trouble}' if message else trouble
         name = self._node.get_fully_qualified_name().lstrip('/')
         stamp = self._node.get_clock().now().to_msg()
         array = DiagnosticArray(status=[status(level, name, message, values)])
         array.header.stamp = stamp
         self._publisher.publish(array)
+
+    def _trouble(self) -> str:
+        received = [*received_by(self._node), *self._received_beside]
+        found = crowds(self._node, self._single_publisher) + unheard(self._node, received)
+        return '; '.join(found)
 
 
 def _text(value: object) -> str:

@@ -1,6 +1,7 @@
 """Gamepads of a Linux machine: found among its input devices, and read through evdev."""
 
 import contextlib
+import fcntl
 import glob
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Protocol
@@ -15,6 +16,7 @@ SYN, SYN_REPORT, SYN_DROPPED = 0, 0, 3
 class Device(Protocol):
     """What is used of evdev.InputDevice."""
 
+    fd: int
     path: str
     name: str
     uniq: str
@@ -89,8 +91,10 @@ def input_devices() -> list[str]:
 def find_pad(
     paths: Sequence[str], open_device: Callable[[str], Device], wanted: str = ''
 ) -> EvdevPad:
-    """The first gamepad among paths, or the one at the path `wanted`.
+    """The first gamepad among paths that is free, or the one at the path `wanted`.
 
+    A pad is free where no other process has claimed it here: so two machines, each with a gamepad
+    node on the same computer, do not share one by accident. It is claimed until it is closed.
     LinkError says in one sentence why there is none.
     """
     devices: list[Device] = []
@@ -100,14 +104,30 @@ def find_pad(
             devices.append(open_device(path))
         except OSError:
             denied += 1
-    fitting = (d for d in devices if wanted in ('', d.path))
-    chosen = next((d for d in fitting if is_gamepad(*_state(d))), None)
+    pads = [d for d in devices if wanted in ('', d.path) and is_gamepad(*_state(d))]
+    chosen = next((d for d in pads if _is_claimed(d)), None)
     if chosen is None:
         _close(devices)
-        raise LinkError(_why(len(paths), denied, wanted))
+        raise LinkError(_used(pads[0]) if pads else _why(len(paths), denied, wanted))
     sensors = next((d for d in devices if _is_sensor_of(chosen, d)), None)
     _close(d for d in devices if d not in (chosen, sensors))
     return EvdevPad(chosen, sensors)
+
+
+def _is_claimed(device: Device) -> bool:
+    """Claims the device, unless it is claimed already."""
+    try:
+        fcntl.flock(device.fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def _used(pad: Device) -> str:
+    return (
+        f'{pad.name} at {pad.path} is in use by another gamepad node; to drive two machines with '
+        'one pad, give that node and each joy_teleop the same topic (-p topic:=/joy)'
+    )
 
 
 def _why(count: int, denied: int, wanted: str) -> str:

@@ -26,7 +26,7 @@ class Gamepad(Node):
         super().__init__('gamepad')
         wanted = declare(self, 'device', '', DEVICE)
         self._wanted = os.path.realpath(wanted) if wanted else ''
-        topic = declare(self, 'topic', '/joy', 'where the Joy messages go')
+        topic = declare(self, 'topic', 'joy', 'where the Joy messages go')
         rate = declare(self, 'rate', 100.0, 'messages per second (Hz)', (20.0, 500.0))
         self._pad: EvdevPad | None = None
         self._problem = ''

@@ -8,10 +8,11 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Joy
 
 from manipulator.errors import InvalidInput
-from manipulator.nodes.diagnostics import OK, WARN, Diagnostics, Report
+from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.jog_topics import JogTopics
 from manipulator.nodes.parameters import declare
+from manipulator.nodes.sole_subscription import SoleSubscription
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.teleop.gamepad import Gamepad
 from manipulator.teleop.joy_reader import JoyReader
@@ -27,7 +28,7 @@ class JoyTeleop(Node):
     def __init__(self, load: Callable[[str], Gamepad]) -> None:
         super().__init__('joy_teleop')
         gamepad = load(declare(self, 'gamepad', 'xbox', GAMEPAD))
-        topic = declare(self, 'topic', '/joy', 'where the Joy messages come from')
+        topic = declare(self, 'topic', 'joy', 'where the Joy messages come from')
         rate = declare(self, 'rate', 50.0, 'twists per second (Hz)', (20.0, 500.0))
         self._scale = declare(self, 'scale', 1.0, SCALE, (0.01, 10.0))
         self._gripper_step = declare(self, 'gripper_speed', 0.5, GRIPPER, (0.05, 5.0)) / rate
@@ -35,18 +36,19 @@ class JoyTeleop(Node):
         self._stops = 0
         self._joy = Intake(self, 'joy', self._on_joy)
         self._topics = JogTopics(self, 'joy')
-        self.create_subscription(Joy, topic, self._joy, qos_profile_sensor_data)
+        self._pad = SoleSubscription(
+            self, Joy, topic, self._joy, qos_profile_sensor_data, is_continuous=True
+        )
         self._timer = SteadyTimer(self, 1.0 / rate, self._tick)
-        self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/joy',))
+        self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/joy', topic))
 
     def close(self) -> None:
         """Lets go of the machine."""
         self._topics.close()
 
     def _on_joy(self, message: Joy) -> None:
-        self._reader = self._reader.hear(
-            message.axes.tolist(), message.buttons.tolist(), time.monotonic()
-        )
+        axes, buttons = message.axes.tolist(), message.buttons.tolist()
+        self._reader = self._reader.hear(axes, buttons, time.monotonic(), self._pad.trouble)
         if self._reader.fault:
             raise InvalidInput(self._reader.fault)
 
@@ -71,6 +73,8 @@ class JoyTeleop(Node):
             'last_refusal': self._joy.last_refusal,
             'not_seen_at_rest_yet': ', '.join(self._reader.untrusted),
         }
+        if self._pad.trouble:
+            return ERROR, f'{self._pad.trouble}: end all but one, then let go', values
         if wanted.reason:
-            return WARN, wanted.reason, values
+            return WARN, f'{self._pad.topic}: {wanted.reason}', values
         return OK, 'deadman held' if wanted.is_held else 'deadman released', values

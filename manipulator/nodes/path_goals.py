@@ -12,12 +12,14 @@ from std_msgs.msg import Header
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError, Refused
 from manipulator.machine import Machine
+from manipulator.nodes.graph_check import Received
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, check_frame, pose_message, seconds
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.path_cdr import read_poses
 from manipulator.nodes.path_ear import PathEar
 from manipulator.nodes.path_listener import MOST_POSES, HeardPath
+from manipulator.nodes.qos import COMMAND
 from manipulator.pose import Pose
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
@@ -29,6 +31,10 @@ from manipulator.trajectory.worker import Effort, Job, Worker
 from manipulator.words import counted
 
 OVERTAKEN = 'a newer command came while the path was worked out'
+
+
+GOAL_PATH = Received('goal_path', Path, COMMAND)
+"""What the process of path_listener receives."""
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from manipulator.errors import ManipulatorError
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, point_of, twist_of
 from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.sole_subscription import SoleSubscription
 from manipulator.teleop.arbiter import SOURCES
 from manipulator.trajectory.teleop import Teleop
 
@@ -21,9 +22,15 @@ class TeleopTopics:
     def __init__(self, node: Node, teleop: Teleop) -> None:
         self._node = node
         self._teleop = teleop
-        self._intakes = [self._subscribe(source) for source in SOURCES]
+        self._intakes: list[Intake] = []
+        self._sources = [self._subscribe(source) for source in SOURCES]
         node.create_subscription(String, 'jog_mode', self._on_mode, COMMAND)
         node.create_subscription(PointStamped, 'look_at', self._on_look_at, COMMAND)
+
+    @property
+    def trouble(self) -> str:
+        """Which sources are refused because two publishers send on them, '' where none is."""
+        return '; '.join(source.trouble for source in self._sources if source.trouble)
 
     def report(self) -> dict[str, object]:
         """What /diagnostics tells of jogging."""
@@ -35,14 +42,17 @@ class TeleopTopics:
             'last_twist_refusal': worst.last_refusal,
         }
 
-    def _subscribe(self, source: str) -> Intake:
+    def _subscribe(self, source: str) -> SoleSubscription:
         def accept(message: TwistStamped) -> None:
-            frame = message.header.frame_id
-            self._teleop.hear(source, twist_of(message), frame, time.monotonic())
+            now = time.monotonic()
+            if sole.trouble:
+                self._teleop.turn_away(source, now, sole.trouble)
+            self._teleop.hear(source, twist_of(message), message.header.frame_id, now)
 
         intake = Intake(self._node, source, accept)
-        self._node.create_subscription(TwistStamped, source, intake, COMMAND)
-        return intake
+        self._intakes.append(intake)
+        sole = SoleSubscription(self._node, TwistStamped, source, intake, COMMAND)
+        return sole
 
     def _on_mode(self, message: String) -> None:
         try:

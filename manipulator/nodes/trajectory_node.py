@@ -11,7 +11,7 @@ from std_msgs.msg import Float64
 
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.machine import Machine
-from manipulator.nodes.diagnostics import OK, WARN, Diagnostics, Report, status
+from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.jitter import Jitter
 from manipulator.nodes.messages import (
@@ -24,11 +24,12 @@ from manipulator.nodes.messages import (
     seconds,
 )
 from manipulator.nodes.parameters import declare
-from manipulator.nodes.path_goals import PathGoals
+from manipulator.nodes.path_goals import GOAL_PATH, PathGoals
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
+from manipulator.teleop.arbiter import PEOPLE
 from manipulator.trajectory.following import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.lag import lag_of
@@ -76,7 +77,9 @@ class TrajectoryNode(Node):
         self._teleop_topics = TeleopTopics(self, self._teleop)
         self._answers = TrajectoryServices(self, self._pilot, self._teleop, self._dt, self._worker)
         self._timer = SteadyTimer(self, self._dt, self._tick)
-        self._diagnostics = Diagnostics(self, self._report, ('setpoint', 'pose'))
+        self._diagnostics = Diagnostics(
+            self, self._report, ('setpoint', 'pose', *PEOPLE), (GOAL_PATH,)
+        )
 
     def close(self) -> None:
         """Ends what runs beside this node."""
@@ -202,4 +205,7 @@ class TrajectoryNode(Node):
             'tick_jitter_p50_ms': self._jitter.quantile(0.5) * 1e3,
             'tick_jitter_p99_ms': self._jitter.quantile(0.99) * 1e3,
         }
+        trouble = self._teleop_topics.trouble
+        if trouble:
+            return ERROR, f'{trouble}: end all but one, then let go', values
         return OK, now.reason or now.result, values

@@ -58,9 +58,11 @@ class Arbiter:
             self._owner = ''
 
     def turn_away(self, source: str, now: float, reason: str) -> NoReturn:
-        """Raises Refused with the reason; the source is not heard until it has let go."""
+        """Raises Refused with the reason; the source has nothing, and must let go first."""
         self._heard_at[source] = now
         self._blocked[source] = reason
+        if self._owner == source:
+            self._owner = ''
         raise Refused(f'{reason}: let go first')
 
     @staticmethod

@@ -1,7 +1,7 @@
 """From a gamepad's messages to what its user wants, failing closed.
 
 A value without a clock: `hear` takes a message with its receipt time and returns the successor,
-`wanted` says what holds at a later time. Three rules keep it safe:
+`wanted` says what holds at a later time. Four rules keep it safe:
 
 - *Trust.* A control counts only after it was seen at rest. So a trigger that reports 0 before
   its first touch moves nothing, nor does a deadman that is stuck, or held while the pad comes
@@ -10,6 +10,7 @@ A value without a clock: `hear` takes a message with its receipt time and return
 - *Stillness.* A thumb trembles, a frozen pad does not. While driving, a stream in which no number
   changes for `still_after` counts as frozen; the first change goes on, unless it comes later
   than `repress_after`.
+- *One pad.* While two publishers send at once, everything is released and all trust is gone.
 """
 
 from collections.abc import Sequence
@@ -25,6 +26,7 @@ from manipulator.teleop.stick import COMPONENTS
 
 NEVER = float('-inf')
 AT_REST = frozen(np.zeros(6))
+ONLY_STOP = frozenset({'stop'})
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,23 +64,22 @@ class JoyReader:
     stops: int = 0
     fault: str = ''
 
-    def hear(self, axes: Sequence[float], buttons: Sequence[int], now: float) -> 'JoyReader':
-        """After a message; a bad one counts as all released, and `fault` says what is bad."""
-        trusted = self._trust_left(now)
+    def hear(
+        self, axes: Sequence[float], buttons: Sequence[int], now: float, crowd: str = ''
+    ) -> 'JoyReader':
+        """After a message; a bad one counts as all released, and `fault` says what is bad.
+
+        crowd: why messages at present are not those of one pad. Of such only the stop button
+        counts, and everything else must be seen at rest again afterwards.
+        """
+        credible = ONLY_STOP if crowd else frozenset(self._controls)
+        trusted = self._trust_left(now) & credible
         try:
             check_numbers(self.gamepad, axes, buttons)
         except InvalidInput as error:
-            held_through = self.pressed - {'deadman'}
-            return replace(
-                self,
-                heard=now,
-                trusted=trusted - held_through,
-                pressed=frozenset(),
-                twist=AT_REST,
-                fault=str(error),
-            )
+            return self._after_bad(str(error), trusted, now)
         numbers = (*axes, *buttons)
-        trusted |= self._at_rest(axes, buttons)
+        trusted |= self._at_rest(axes, buttons) & credible
         pressed = self._presses(axes, buttons, trusted)
         if pressed & {'stop', 'home'}:
             trusted, pressed = trusted - {'deadman'}, pressed - {'deadman'}
@@ -90,8 +91,19 @@ class JoyReader:
             trusted=trusted,
             pressed=pressed,
             twist=self._twist(axes, trusted, pressed),
-            fault='',
+            fault=crowd,
         )._after_presses(pressed - self.pressed)
+
+    def _after_bad(self, fault: str, trusted: frozenset[str], now: float) -> 'JoyReader':
+        held_through = self.pressed - {'deadman'}
+        return replace(
+            self,
+            heard=now,
+            trusted=trusted - held_through,
+            pressed=frozenset(),
+            twist=AT_REST,
+            fault=fault,
+        )
 
     def wanted(self, now: float) -> Wanted:
         """What holds at `now`, which is not before the last message."""
@@ -113,8 +125,11 @@ class JoyReader:
     @property
     def untrusted(self) -> tuple[str, ...]:
         """The controls that were not seen at rest yet."""
-        names = [*self.gamepad.presses, *(stick.name for stick in self.gamepad.sticks)]
-        return tuple(name for name in names if name not in self.trusted)
+        return tuple(name for name in self._controls if name not in self.trusted)
+
+    @property
+    def _controls(self) -> tuple[str, ...]:
+        return (*self.gamepad.presses, *(stick.name for stick in self.gamepad.sticks))
 
     def _why_not(self, now: float) -> str:
         silence, stillness = now - self.heard, now - self.changed

@@ -1,5 +1,7 @@
 """From the sources of twists to the player: who has the machine, in which mode, what he wants."""
 
+from typing import NoReturn
+
 import numpy as np
 
 from manipulator.arrays import Array, frozen
@@ -50,6 +52,10 @@ class Teleop:
             self._arbiter.turn_away(source, now, str(refusal))
         self._arbiter.hear(source, now, is_busy)
         self._wish = frozen(twist), frame
+
+    def turn_away(self, source: str, now: float, reason: str) -> NoReturn:
+        """Raises Refused with the reason; the source must let go before it is heard again."""
+        self._arbiter.turn_away(source, now, reason)
 
     def set_mode(self, name: str) -> None:
         """Another jog mode; Refused for unknown names, the last one stays.

@@ -21,7 +21,7 @@ def test_machine_without_the_pad_says_so_and_goes_on_looking(
     (tmp_path / 'evdev.py').write_text(opener)
     monkeypatch.setenv('PYTHONPATH', str(tmp_path))
     with (
-        running('gamepad', 'padless', topic='joy', device='/dev/input/event99') as process,
+        running('gamepad', 'padless', device='/dev/input/event99') as process,
         listening('padless', 'joy') as listener,
     ):
         name = 'padless/gamepad'

@@ -80,7 +80,7 @@ class Pad:
 
 @pytest.fixture(scope='module')
 def connected(running, listening):
-    with running('joy_teleop', NAMESPACE, topic='joy'), listening(NAMESPACE, 'joy') as listener:
+    with running('joy_teleop', NAMESPACE), listening(NAMESPACE, 'joy') as listener:
         publisher = listener.joy_publisher(Joy, 'joy')
         pad = Pad(listener, publisher)
 
@@ -227,7 +227,7 @@ def test_diagnostics_tell_why_the_deadman_does_not_count(pad):
 def test_zero_is_the_last_word_of_a_node_that_is_ended(running, listening):
     namespace = f'{NAMESPACE}_ended'
     with (
-        running('joy_teleop', namespace, topic='joy') as process,
+        running('joy_teleop', namespace) as process,
         listening(namespace, 'joy') as listener,
     ):
         pad = Pad(listener, listener.joy_publisher(Joy, 'joy'))

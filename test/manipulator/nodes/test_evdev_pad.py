@@ -1,6 +1,6 @@
 import errno
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 import pytest
@@ -32,6 +32,7 @@ class FakeDevice:
     events: list = field(default_factory=list)
     is_gone: bool = False
     is_closed: bool = False
+    fd: int = field(default_factory=lambda: os.memfd_create('pad'))
 
     def capabilities(self):
         return {ABS: list(self.axes.items()), KEY: self.keys}
@@ -47,7 +48,12 @@ class FakeDevice:
         events, self.events = self.events, []
         return iter(events)
 
+    def opened_again(self):
+        return replace(self, fd=os.open(f'/proc/self/fd/{self.fd}', os.O_RDONLY))
+
     def close(self):
+        if not self.is_closed:
+            os.close(self.fd)
         self.is_closed = True
 
 
@@ -157,3 +163,21 @@ def test_missing_permission_names_the_group(machine):
 
     with pytest.raises(LinkError, match=r'1 of 3 input devices may not be read.*group input'):
         find_pad(list(machine), refuse)
+
+
+def test_pad_that_another_node_reads_is_not_taken_until_it_is_given_back(machine):
+    again = {path: device.opened_again() for path, device in machine.items()}
+    once_more = {path: device.opened_again() for path, device in machine.items()}
+    first = found(machine)
+    with pytest.raises(LinkError, match='Wireless Controller at event1 is in use by another'):
+        found(again)
+    assert all(device.is_closed for device in again.values())
+    first.close()
+    assert found(once_more).path == 'event1'
+
+
+def test_second_node_takes_the_second_pad(machine):
+    first = found(machine)
+    other = replace(machine['event1'], path='event9', uniq='c2:d3', fd=os.memfd_create('other'))
+    both = {'event1': machine['event1'].opened_again(), 'event9': other}
+    assert (first.path, found(both).path) == ('event1', 'event9')

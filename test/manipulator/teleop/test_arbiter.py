@@ -65,3 +65,15 @@ def test_after_a_stop_the_owner_must_let_go():
         arbiter.hear(JOY, 0.02)
     arbiter.hear(JOY, 0.02 + LATER)
     assert arbiter.owner(0.02 + LATER) == JOY
+
+
+def test_owner_who_is_turned_away_has_nothing_until_he_has_let_go():
+    arbiter = Arbiter()
+    arbiter.hear(JOY, 0.0)
+    with pytest.raises(Refused, match='two of them: let go first'):
+        arbiter.turn_away(JOY, 0.02, 'two of them')
+    assert arbiter.owner(0.02) == ''
+    with pytest.raises(Refused, match='two of them'):
+        arbiter.hear(JOY, 0.04)
+    arbiter.hear(JOY, 0.04 + LATER)
+    assert arbiter.owner(0.04 + LATER) == JOY

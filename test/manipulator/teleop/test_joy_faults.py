@@ -131,3 +131,47 @@ def test_deadman_held_with_sticks_at_rest_is_never_taken_for_frozen(user):
     user.press(LB)
     assert user.hold(10.0).is_held
     assert user.push(X=1.0).twist.any()
+
+
+CROWD = 'more than one publisher sends on /arm/joy'
+HELD = [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
+PUSHED = [0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]
+
+
+def interleaved(reader, begin, buttons=HELD):
+    """A frozen pad's messages between those of one that rests; all that was wanted."""
+    wanted = []
+    for k in range(100):
+        now = begin + 0.01 * k
+        crowd = (AXES, BUTTONS) if k % 2 else (PUSHED, buttons)
+        reader = reader.hear(*crowd, now, CROWD)
+        wanted.append(reader.wanted(now))
+    return reader, wanted
+
+
+def test_frozen_pad_beside_one_that_rests_moves_nothing_and_says_why(gamepad):
+    _, wanted = interleaved(JoyReader(gamepad).hear(AXES, BUTTONS, 1.0), 1.01)
+    assert not any(w.is_held or w.twist.any() or w.is_homing or w.grip for w in wanted)
+    assert {w.reason for w in wanted} == {CROWD}
+
+
+def test_buttons_of_a_frozen_pad_change_neither_mode_nor_frame(gamepad):
+    start = JoyReader(gamepad).hear(AXES, BUTTONS, 1.0)
+    all_but_stop = [int(k != 1) for k in range(11)]
+    reader, _ = interleaved(start, 1.01, all_but_stop)
+    assert (reader.mode, reader.frame, reader.stops) == (start.mode, start.frame, 0)
+
+
+def test_stop_button_works_while_two_pads_send(gamepad):
+    pressed = [int(k == 1) for k in range(11)]
+    reader, _ = interleaved(JoyReader(gamepad).hear(AXES, BUTTONS, 1.0), 1.01, pressed)
+    assert reader.stops > 0
+
+
+def test_pad_that_is_left_alone_must_be_let_go_before_it_drives(gamepad):
+    reader, _ = interleaved(JoyReader(gamepad).hear(AXES, BUTTONS, 1.0), 1.01)
+    for k in range(50):
+        reader = reader.hear(PUSHED, HELD, 2.01 + 0.02 * k)
+        assert not reader.wanted(2.01 + 0.02 * k).is_held
+    reader = reader.hear(AXES, BUTTONS, 3.01).hear(PUSHED, HELD, 3.03)
+    assert reader.wanted(3.03).twist[0] == pytest.approx(0.05)

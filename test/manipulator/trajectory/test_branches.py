@@ -1,4 +1,4 @@
-"""Lines stay on the branch that an arm is on; where they cannot, the joint and its stop are named."""
+"""Lines stay on the branch that an arm is on, or are refused with the joint and its stop."""
 
 import os
 import re

@@ -1,0 +1,109 @@
+"""Messages of two publishers at once are noticed in the graph, under each executor of rclpy."""
+
+from types import SimpleNamespace
+
+import pytest
+from geometry_msgs.msg import TwistStamped
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.experimental import EventsExecutor
+from sensor_msgs.msg import Joy
+
+from manipulator.nodes import sole_subscription, teleop_topics
+from manipulator.nodes.qos import MEASUREMENT
+from manipulator.nodes.sole_subscription import SoleSubscription
+from manipulator.nodes.teleop_topics import TeleopTopics
+from manipulator.teleop.arbiter import SOURCES
+from manipulator.trajectory.teleop import Teleop
+
+
+class Clock:
+    """A simulated monotonic clock: however slow this computer is, messages come every 10 ms."""
+
+    def __init__(self):
+        self.now = 100.0
+
+    def monotonic(self):
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    made = Clock()
+    monkeypatch.setattr(sole_subscription, 'time', made)
+    monkeypatch.setattr(teleop_topics, 'time', made)
+    return made
+
+
+class Sender:
+    """A user's publishers, whose messages are awaited one by one."""
+
+    def __init__(self, graph, clock, message_type, topic, is_received):
+        self._graph, self._clock, self._topic = graph, clock, topic
+        self._message_type, self._is_received = message_type, is_received
+        self._node = graph.node('user')
+
+    def publisher(self):
+        made = self._node.create_publisher(self._message_type, self._topic, MEASUREMENT)
+        self._graph.wait('a listener', lambda: made.get_subscription_count() > 0)
+        return made
+
+    def send(self, *publishers):
+        for publisher in publishers:
+            self._clock.now += 0.01
+            before = self._is_received()
+            publisher.publish(self._message_type())
+            self._graph.wait('the message', lambda n=before: self._is_received() > n)
+
+
+@pytest.mark.parametrize('executor', [EventsExecutor, SingleThreadedExecutor])
+def test_second_publisher_is_trouble_until_a_second_after_its_end(graph_of, clock, executor):
+    with graph_of(executor) as graph:
+        seen = []
+        pads = SoleSubscription(
+            graph.node('machine'), Joy, 'joy', lambda m: seen.append(pads.trouble), MEASUREMENT
+        )
+        user = Sender(graph, clock, Joy, 'joy', lambda: len(seen))
+        first = user.publisher()
+        user.send(*[first] * 10)
+        assert set(seen) == {''}
+        second = user.publisher()
+        seen.clear()
+        user.send(*[first, second] * 10)
+        assert set(seen[1:]) == {'more than one publisher sends on /here/joy'}
+        user.send(*[first] * 110)
+        assert seen[-1] == ''
+
+
+class IdlePilot:
+    """A machine that nothing drives."""
+
+    is_measured = False
+    player = SimpleNamespace(is_busy=False, jog=lambda wish: None)
+
+
+@pytest.mark.parametrize('source', SOURCES)
+def test_twists_of_two_publishers_move_nothing_until_there_was_silence(graph, clock, source):
+    teleop, heard = Teleop(IdlePilot(), 0.06), []
+    topics = TeleopTopics(graph.node('machine'), teleop)
+
+    def received():
+        return topics.report()['twists_refused'] + len(heard)
+
+    original = teleop.hear
+    teleop.hear = lambda *args: (original(*args), heard.append(args))
+    user = Sender(graph, clock, TwistStamped, source, received)
+    first, second = user.publisher(), user.publisher()
+    user.send(first, first)
+    assert topics.report()['jogged_by'] == source
+    user.send(second)
+    for _ in range(50):
+        assert topics.report()['jogged_by'] == ''
+        assert topics.trouble == f'more than one publisher sends on /here/{source}'
+        user.send(first, second)
+    for _ in range(200):
+        user.send(first)
+        assert topics.report()['jogged_by'] == ''
+    assert 'let go first' in topics.report()['last_twist_refusal']
+    clock.now += 0.3
+    user.send(first)
+    assert topics.report()['jogged_by'] == source
