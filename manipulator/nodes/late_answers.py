@@ -10,7 +10,7 @@ from typing import Any
 
 from rclpy.node import Node
 
-MOST_WAITING = 16
+MOST_WAITING = 8
 """Requests of one service that may wait for their answer."""
 
 

@@ -1,0 +1,120 @@
+"""A goal is reached when the joints are there, by unit and range; else it says what is off."""
+
+import numpy as np
+import pytest
+
+from hexarm.machines import load
+from manipulator.pose import Pose
+from manipulator.trajectory.following import Tolerances
+from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.pilot import ARRIVAL_PATIENCE, Pilot
+
+DT = 0.01
+
+
+class Machine:
+    """A pilot and joints that are measured, each off its command by `play` (n,)."""
+
+    def __init__(self, name, play, tolerances=None):
+        self.machine = load(name)
+        self.kinematics = self.machine.kinematics
+        self.pilot = Pilot(self.machine, DT, tolerances)
+        self.play = np.asarray(play)
+        self.pilot.note_machine_state('enabled', is_followed=False, is_measured=True)
+        joints = self.kinematics.inverse(self.kinematics.home)
+        self.see(joints)
+        self.pilot.step()
+        self.pilot.note_machine_state('enabled', is_followed=True, is_measured=True)
+
+    def see(self, joints):
+        pose = self.kinematics.forward(joints, self.kinematics.home).pose
+        self.pilot.note_joints(joints)
+        self.pilot.note_pose(pose)
+
+    def go(self, goal, ticks=600):
+        """The results that were reported, in turn, and the last status."""
+        self.pilot.player.pursue(Goal(goal, 1.0))
+        results = []
+        for _ in range(ticks):
+            pose = self.pilot.step()
+            if pose is None:
+                break
+            self.see(self.pilot.player.joints + self.play)
+            if self.pilot.status.result not in results[-1:]:
+                results.append(self.pilot.status.result)
+        return results, self.pilot.status
+
+
+def test_an_arm_with_two_degrees_of_play_is_stopped_with_joint_and_distance():
+    arm = Machine('arm_6r_stepper', np.radians([0, 2.0, 0, 0, 0, 0]))
+    results, status = arm.go(arm.kinematics.home.moved([0.1, 0, 0.05, 0, 0, 0]))
+    assert results == ['moving', 'stopped']
+    assert status.goal_stamp == 1.0
+    assert 'joint_2 is 2° away from the goal (tolerance 0.5°)' in status.reason
+    assert 'missed by' in status.reason
+    assert 'mm' in status.reason
+    assert arm.pilot.is_driving  # it holds, and takes the next goal
+    arm.play[:] = 0.0
+    results, status = arm.go(arm.kinematics.home)
+    assert status.result == 'reached'
+
+
+def test_an_arm_within_the_tolerance_reaches_its_goal():
+    arm = Machine('arm_6r_stepper', np.radians([0, 0.3, 0, 0, 0, 0]))
+    results, _ = arm.go(arm.kinematics.home.moved([0.1, 0, 0.05, 0, 0, 0]))
+    assert results == ['moving', 'reached']
+
+
+def test_the_tolerance_can_be_asked_for():
+    machine = load('arm_6r_stepper')
+    wide = Tolerances.of(machine, goal=np.radians(3.0))
+    arm = Machine('arm_6r_stepper', np.radians([0, 2.0, 0, 0, 0, 0]), wide)
+    assert arm.go(arm.kinematics.home.moved([0.1, 0, 0, 0, 0, 0]))[1].result == 'reached'
+
+
+def test_a_stuck_leg_of_a_linear_platform_ends_the_motion_and_is_named():
+    platform = Machine('stewart_6_6', np.zeros(6))
+    stuck = platform.kinematics.inverse(platform.kinematics.home)[2]
+
+    def see_stuck(joints):
+        joints = joints.copy()
+        joints[2] = stuck
+        platform.pilot.note_joints(joints)
+        platform.pilot.note_pose(platform.kinematics.home)
+
+    platform.see = see_stuck
+    goal = Pose.from_xyz_rpy((0.0, 0.0, platform.kinematics.home.position[2] + 0.02))
+    results, status = platform.go(goal)
+    assert status.result == 'stopped'
+    assert 'reached' not in results
+    assert status.reason.startswith('leg_3 is ')
+    assert 'mm away from' in status.reason
+
+
+def test_joints_that_come_within_the_patience_reach_the_goal():
+    arm = Machine('arm_6r_stepper', np.radians([0, 2.0, 0, 0, 0, 0]))
+    arm.pilot.player.pursue(Goal(arm.kinematics.home.moved([0.05, 0, 0, 0, 0, 0]), 1.0))
+    while arm.pilot.player.status.result != 'reached':
+        arm.pilot.step()
+        arm.see(arm.pilot.player.joints + arm.play)
+    for _ in range(round(0.5 * ARRIVAL_PATIENCE / DT)):
+        arm.pilot.step()
+        arm.see(arm.pilot.player.joints + arm.play)
+    assert arm.pilot.status.result == 'moving'
+    arm.see(arm.pilot.player.joints)
+    arm.pilot.step()
+    assert arm.pilot.status.result == 'reached'
+
+
+@pytest.mark.parametrize('name', ['robocake', 'stewart_6_6', 'arm_6r', 'ur5'])
+def test_default_tolerances_follow_from_unit_and_range(name):
+    machine = load(name)
+    low, high = machine.joint_ranges
+    tolerances = Tolerances.of(machine)
+    assert (tolerances.following <= 0.0601 * (high - low)).all()
+    assert (tolerances.goal < tolerances.following).all()
+    if machine.kinematics.joint_unit == 'rad':
+        assert (tolerances.goal <= np.radians(0.5) + 1e-12).all()
+        assert (tolerances.following <= 0.2).all()
+    else:
+        assert tolerances.following.max() < 0.01  # a stroke of 96 mm, not 0.2 m
