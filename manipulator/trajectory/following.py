@@ -73,10 +73,10 @@ class Following:
             return
         away = np.abs(np.array(self._commanded) - joints)
         nearest = away[int(np.argmin(away.max(axis=1)))]
-        worst, excess = self._furthest(nearest, self._tolerances.following, 'its command')
-        self._strays = int(excess > 0.0)
+        self._strays = int((nearest > self._tolerances.following).any())
         self._astray_for *= self._strays
-        self._worst = worst
+        # All joints are between two commands then; the last one tells which of them stands still.
+        self._worst, _ = self._furthest(away[-1], self._tolerances.following, 'its command')
 
     def missing(self, is_measured: bool) -> str:
         """Which joint is not where the last command sent it, and by how much; '' where all are.
