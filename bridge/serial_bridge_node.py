@@ -152,8 +152,13 @@ class SerialBridge(Node):
     def _on_clear_fault(
         self, request: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
-        done = 'cleared: nothing moves until a new command'
-        response.success, response.message = self._ask(Clear(), done)
+        if self._monitor.is_clear:
+            # A CLEAR would hold up the setpoints of a machine that is moving.
+            word = self._monitor.status.word
+            response.success, response.message = True, f'nothing to clear: the machine is {word}'
+        else:
+            done = 'cleared: nothing moves until a new command'
+            response.success, response.message = self._ask(Clear(), done)
         return response
 
     def _ask(self, command: Command, done: str) -> tuple[bool, str]:

@@ -1,5 +1,6 @@
 """`goal_path`: heard and worked out in processes of their own, then driven like a goal."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import radians
@@ -18,6 +19,7 @@ from manipulator.nodes.path_listener import MOST_POSES, HeardPath
 from manipulator.nodes.path_process import PathTask
 from manipulator.nodes.path_work import PathWork
 from manipulator.pose import Pose
+from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.path import Tolerance
@@ -40,9 +42,15 @@ class PathGoals:
     """The path that is being worked out, if any; `poll` is called at every tick."""
 
     def __init__(
-        self, node: Node, pilot: Pilot, dt: float, say: Callable[[MotionStatus], None]
+        self,
+        node: Node,
+        pilot: Pilot,
+        early: EarlyCommand,
+        dt: float,
+        say: Callable[[MotionStatus], None],
     ) -> None:
         self._node, self._pilot, self._dt, self._say = node, pilot, dt, say
+        self._early = early
         self._work: PathWork | None = None
         self._stamp = 0.0
         fastest = pilot.machine.motion.linear.speed
@@ -104,6 +112,13 @@ class PathGoals:
                 f'a path of {counted(message.count, "pose")}, and yet of too many bytes'
             )
         check_frame(message.header.frame_id, (BASE_FRAME, WORK_FRAME))
+        self._early.take(
+            lambda: self._work_out(message),
+            lambda error: self._intake.refuse(message, error),
+            time.monotonic(),
+        )
+
+    def _work_out(self, message: RawPath) -> None:
         frame = message.header.frame_id or BASE_FRAME
         player, stamp = self._pilot.player, seconds(message.header.stamp)
         task = PathTask(

@@ -1,5 +1,6 @@
 """The services of the trajectory node: stop, home, pause, start_cycle, plan."""
 
+import time
 from collections.abc import Callable
 from threading import Thread
 
@@ -15,56 +16,66 @@ from manipulator.nodes.cycle_parameters import CycleParameters
 from manipulator.nodes.messages import goal_of, pose_message, seconds
 from manipulator.pose import Pose
 from manipulator.reach.words import explained
+from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.plan import MotionState
 from manipulator.trajectory.planner import plan_to
-from manipulator.trajectory.player import Player
 from manipulator.trajectory.teleop import Teleop
 
 
 class TrajectoryServices:
     """Answers with what will happen, or with why it will not."""
 
-    def __init__(self, node: Node, pilot: Pilot, teleop: Teleop, dt: float) -> None:
+    def __init__(
+        self,
+        node: Node,
+        pilot: Pilot,
+        teleop: Teleop,
+        early: EarlyCommand,
+        dt: float,
+        say: Callable[[MotionStatus], None],
+    ) -> None:
         self._node = node
         self._pilot = pilot
         self._teleop = teleop
+        self._early = early
         self._dt = dt
+        self._say = say
         self._cycle = CycleParameters(node)
         for name, act in (
             ('stop', self._stop),
             ('home', self._home),
             ('start_cycle', self._start_cycle),
         ):
-            node.create_service(Trigger, f'~/{name}', self._trigger(act))
+            node.create_service(Trigger, f'~/{name}', _trigger(act))
         node.create_service(SetBool, '~/pause', self._on_pause)
         node.create_service(GetPlan, '~/plan', self._on_plan)
 
-    def _stop(self, player: Player) -> str:
-        player.stop()
+    def _stop(self) -> str:
+        self._early.drop('stopped before it began')
+        self._pilot.player.stop()
         self._teleop.stop()
         return 'braking along the way, then holding'
 
-    def _home(self, player: Player) -> str:
-        now = seconds(self._node.get_clock().now().to_msg())
-        player.pursue(Goal(self._pilot.machine.kinematics.home, now))
+    def _home(self) -> str:
+        stamp = seconds(self._node.get_clock().now().to_msg())
+
+        def refuse(error: ManipulatorError) -> None:
+            self._say(MotionStatus(self._pilot.status.mode, 'refused', stamp, str(error)))
+
+        def go() -> None:
+            player = self._pilot.player
+            player.pursue(Goal(self._pilot.machine.kinematics.home, stamp))
+
+        self._early.take(go, refuse, time.monotonic())
         return 'going home'
 
-    def _start_cycle(self, player: Player) -> str:
+    def _start_cycle(self) -> str:
+        player = self._pilot.player
         player.start_cycle(self._cycle.read(player.state.pose))
         return 'cycling until stopped'
-
-    def _trigger(self, act: Callable[[Player], str]) -> Callable[..., Trigger.Response]:
-        def answer(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-            try:
-                response.message = act(self._pilot.player)
-                response.success = True
-            except ManipulatorError as error:
-                response.message = str(error)
-            return response
-
-        return answer
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:
@@ -104,3 +115,15 @@ class TrajectoryServices:
         if request.start == PoseStamped():
             return self._pilot.player.state.pose
         return goal_of(request.start, self._pilot.machine.frames)
+
+
+def _trigger(act: Callable[[], str]) -> Callable[..., Trigger.Response]:
+    def answer(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        try:
+            response.message = act()
+            response.success = True
+        except ManipulatorError as error:
+            response.message = str(error)
+        return response
+
+    return answer
