@@ -1,5 +1,6 @@
 """Who is told that the machine was cleared may ask for motion at once."""
 
+import numpy as np
 import pytest
 
 from manipulator.errors import Refused
@@ -18,7 +19,8 @@ def test_a_goal_sent_at_once_after_the_clear_is_reached(enabled):
 
 
 def test_a_path_and_the_way_home_asked_for_at_once_are_driven_too(enabled):
-    for ask in (lambda: enabled.follow(Pose(POSES[0].position[None], POSES[0].rotation[None])), enabled.home):
+    path = Pose(np.array([p.position for p in POSES]), np.array([p.rotation for p in POSES]))
+    for ask in (lambda: enabled.follow(path), enabled.home):
         enabled.trigger('serial_bridge/stop')
         enabled.trigger('serial_bridge/clear_fault')
         ask()
