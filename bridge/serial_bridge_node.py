@@ -30,6 +30,7 @@ from bridge.servo_config import BoardConfig
 from bridge.session import Session
 from bridge.stop_memory import StopMemory, stop_file
 from bridge.stop_node import StopNode
+from bridge.stop_socket import StopSocket, stop_address
 from hexarm import machines
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.nodes.bounded import decoded
@@ -79,7 +80,9 @@ class SerialBridge(Node):
         )
         self._answers = BoardAnswers(self._link.request, lambda: self._monitor.trouble)
         programs = BoardPrograms(self, self._calibration, self._link.request)
-        self._aside = programs, StopNode(self, self._link, self._answers, self._remember)
+        stops = StopNode(self, self._link, self._answers, self._remember)
+        address = stop_address(self.get_fully_qualified_name(), self.context.get_domain_id())
+        self._aside = programs, stops, StopSocket(address, stops.stop, self.get_logger().warning)
         self._make_interfaces()
         for part in (self._memory, self._link, *self._aside):
             part.start()
