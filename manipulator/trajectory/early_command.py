@@ -39,14 +39,16 @@ class EarlyCommand:
         """Acts, at once or at a later `poll`; takes the place of a command that waits.
 
         Where `act` raises NotYet it is tried again until PATIENCE has passed since the first that
-        waited; what it raises then, or else, goes to the caller here and to `refuse` later.
+        waited; what it raises then goes to `refuse`. What else it raises goes to the caller, and
+        changes nothing: a bad command does not displace a good one.
         """
         until = now + PATIENCE if self._waiting is None else self._waiting.until
-        self._waiting = None
         try:
             act()
         except NotYet as missing:
             self._waiting = _Early(act, refuse, until, missing)
+        else:
+            self._waiting = None
 
     def poll(self, now: float) -> None:
         """Call at every tick, and when the machine's state is heard: a stop ends what waits."""

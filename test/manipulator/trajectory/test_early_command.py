@@ -78,6 +78,18 @@ def test_of_two_that_come_too_early_the_newer_one_is_done(machine):
     assert (machine.done, machine.refused) == (['new'], [])
 
 
+def test_a_command_that_is_refused_for_itself_does_not_displace_the_one_that_waits(machine):
+    machine.ask('good')
+    soon, machine.missing = machine.missing, Refused('quaternion has length 0')
+    with pytest.raises(Refused, match='quaternion'):
+        machine.ask('bad')
+    machine.missing = soon
+    machine.early.poll(0.01)
+    machine.missing = None
+    machine.early.poll(0.02)
+    assert (machine.done, machine.refused) == (['good'], [])
+
+
 def test_a_stop_refuses_what_waits_and_it_does_not_begin_later(machine):
     machine.ask('goal')
     machine.missing = Refused('the machine is stopped: clear the stop first')
