@@ -14,7 +14,7 @@ setup(
     license='Apache-2.0',
     python_requires='>=3.10',
     packages=find_packages(include=[pattern for r in ROOMS for pattern in (r, f'{r}.*')]),
-    package_data={'panel': ['joystick.html']},
+    package_data={'panel': ['joystick.html'], 'hexarm': ['fastdds.xml']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),

@@ -17,6 +17,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64
 
+import hexarm  # noqa: F401 (it says how often processes announce themselves)
 from bench.row import Row
 from manipulator.nodes.discovery import fresh_address
 from manipulator.nodes.qos import MEASUREMENT

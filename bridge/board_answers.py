@@ -11,7 +11,10 @@ ANSWER_WITHIN = 1.0
 
 
 class BoardAnswers:
-    """Asks the board by `request` and waits; `trouble` is what else is wrong with it, or ''."""
+    """Asks the board by `request` and waits; `trouble` is what else is wrong with it, or ''.
+
+    A request is done only when machine_state shows it: who is answered may look at once.
+    """
 
     def __init__(
         self, request: Callable[[Command], 'Future[None]'], trouble: Callable[[], str]

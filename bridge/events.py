@@ -52,7 +52,7 @@ class StateReceived:
 
 @dataclass(frozen=True)
 class Acknowledged:
-    """A command was obeyed."""
+    """A command was obeyed, and the session's state shows what came of it."""
 
     command: Command
 

@@ -58,6 +58,12 @@ class LinkMonitor:
         return machine_status(self.session, self.is_enabled_here, self.trouble)
 
     @property
+    def is_clear(self) -> bool:
+        """There is a board, and no stop or fault to end, nor one that is still to be said."""
+        latched_or_unknown = ('disconnected', 'booting', 'stopped', 'fault')
+        return not self.session.is_stop_wanted and self.status.word not in latched_or_unknown
+
+    @property
     def board(self) -> str:
         """What the board said of itself."""
         hello = self.session.hello

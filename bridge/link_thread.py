@@ -89,7 +89,7 @@ class LinkThread(threading.Thread):
         self._wake()
 
     def request(self, command: Command) -> 'Future[None]':
-        """Done when the board has obeyed; Refused says why it did not."""
+        """Done when the board has obeyed and on_event has heard it; Refused says why not."""
         future: Future[None] = Future()
         if isinstance(command, Stop):
             self.session.is_stop_wanted = True  # no setpoint goes out from here on
@@ -205,9 +205,9 @@ class LinkThread(threading.Thread):
 
     def _tell(self, events: list[Event]) -> None:
         for event in events:
+            self._on_event(event)  # first: who is answered may look at once
             if isinstance(event, Acknowledged | CommandFailed):
                 self._settle(event)
-            self._on_event(event)
 
     def _settle(self, event: Acknowledged | CommandFailed) -> None:
         settled = [future for command, future in self._waiting if command == event.command]

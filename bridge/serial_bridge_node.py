@@ -30,6 +30,7 @@ from bridge.servo_config import BoardConfig
 from bridge.session import Session
 from bridge.stop_memory import StopMemory, stop_file
 from bridge.stop_node import StopNode
+from bridge.stop_socket import StopSocket, stop_address
 from hexarm import machines
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.nodes.bounded import decoded
@@ -80,7 +81,9 @@ class SerialBridge(Node):
         )
         self._answers = BoardAnswers(self._link.request, lambda: self._monitor.trouble)
         programs = BoardPrograms(self, self._calibration, self._link.request)
-        self._aside = programs, StopNode(self, self._link, self._answers, self._remember)
+        stops = StopNode(self, self._link, self._answers, self._remember)
+        address = stop_address(self.get_fully_qualified_name(), self.context.get_domain_id())
+        self._aside = programs, stops, StopSocket(address, stops.stop, self.get_logger().warning)
         self._make_interfaces()
         for part in (self._memory, self._link, *self._aside):
             part.start()
@@ -154,8 +157,13 @@ class SerialBridge(Node):
     def _on_clear_fault(
         self, request: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
-        done = 'cleared: nothing moves until a new command'
-        response.success, response.message = self._ask(Clear(), done)
+        if self._monitor.is_clear:
+            # A CLEAR would hold up the setpoints of a machine that is moving.
+            word = self._monitor.status.word
+            response.success, response.message = True, f'nothing to clear: the machine is {word}'
+        else:
+            done = 'cleared: nothing moves until a new command'
+            response.success, response.message = self._ask(Clear(), done)
         return response
 
     def _ask(self, command: Command, done: str) -> tuple[bool, str]:

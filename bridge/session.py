@@ -24,6 +24,7 @@ from bridge.framing import FrameReader
 from bridge.messages import (
     REASONS,
     Ack,
+    Arm,
     Clear,
     Command,
     Disarm,
@@ -36,6 +37,7 @@ from bridge.messages import (
     Stop,
     is_newer,
 )
+from bridge.program_messages import Play
 from bridge.round_trips import RoundTrips
 from manipulator.errors import Refused
 
@@ -46,6 +48,8 @@ MAX_BOOT = 5.0
 UPTIME_SLACK_MS = 250
 MODE_AFTER: dict[type, Mode] = {Disarm: Mode.DISARMED, Stop: Mode.STOPPED}
 SHORTEST_ADVANCE_MS = 125
+SHOWN_BY_STATE = (Arm, Clear, Play)
+"""Commands whose mode afterwards only the next STATE tells: they are acknowledged with it."""
 
 
 @dataclass
@@ -57,6 +61,7 @@ class _Pending:
     wire: bytes
     sent_at: float
     tries: int
+    is_obeyed: bool = False
 
 
 class Session:
@@ -129,7 +134,7 @@ class Session:
             self._opened_at = now
             return [Disconnected(f'the port is open, but no board said HELLO for {MAX_BOOT:g} s')]
         pending = self._pending
-        if pending is None or now - pending.sent_at < RETRY_AFTER:
+        if pending is None or pending.is_obeyed or now - pending.sent_at < RETRY_AFTER:
             return []
         is_too_often = pending.tries % MAX_TRIES == 0
         reason = f'no answer from the board after {MAX_TRIES} tries'
@@ -163,9 +168,10 @@ class Session:
             if isinstance(command, Stop):
                 return []
             raise Refused('a STOP is under way')
-        failed = self._fail_pending(f'{type(command).__name__.upper()} came after it')
+        reason = f'{type(command).__name__.upper()} came after it'
+        displaced = self._show_obeyed() or self._fail_pending(reason)
         self._begin(command, now)
-        return failed
+        return displaced
 
     def take_output(self) -> bytes:
         """The bytes for the board since the last call."""
@@ -222,24 +228,36 @@ class Session:
         self.round_trips.note_state(state, now)
         self.state = state
         self.phase = Phase.READY
+        connected: list[Event] = [Connected(self.hello)] if is_first else []
+        obeyed = self._show_obeyed()
         if self.is_stop_wanted and self._pending is None and state.mode is not Mode.STOPPED:
             self._begin(Stop(), now)
-        connected: list[Event] = [Connected(self.hello)] if is_first else []
-        return [*connected, StateReceived(state)]
+        return [*connected, *obeyed, StateReceived(state)]
 
     def _settle(self, ack: Ack) -> list[Event]:
         pending = self._pending
-        if pending is None or ack.sequence != pending.sequence:
+        if pending is None or pending.is_obeyed or ack.sequence != pending.sequence:
             return []
         if ack.result is not Result.OK:
             return self._fail_pending(REASONS[ack.result])
-        self._pending = None
         if isinstance(pending.command, Clear):
             self.is_stop_wanted = False
+        if isinstance(pending.command, SHOWN_BY_STATE):
+            pending.is_obeyed = True
+            return []
+        self._pending = None
         mode = MODE_AFTER.get(type(pending.command))
         if mode is not None and self.state is not None:
             # Known before the next STATE tells it: no setpoint may follow.
             self.state = replace(self.state, mode=mode)
+        return [Acknowledged(pending.command)]
+
+    def _show_obeyed(self) -> list[Event]:
+        """To be told with a state of after the command: who is told so can see it."""
+        pending = self._pending
+        if pending is None or not pending.is_obeyed:
+            return []
+        self._pending = None
         return [Acknowledged(pending.command)]
 
     def _fail_pending(self, reason: str) -> list[Event]:

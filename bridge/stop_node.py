@@ -30,11 +30,15 @@ class StopNode(SideNode):
         self.create_subscription(Bool, 'emergency_stop', self._on_message, EVERY_WORD)
         self.create_service(Trigger, f'{owner.get_name()}/stop', self._on_service)
 
+    def stop(self) -> None:
+        """STOP to the board, now or as soon as there is one; from any thread."""
+        asked = self._link.request(Stop())
+        self._remember()
+        asked.add_done_callback(self._say_failed)
+
     def _on_message(self, message: Bool) -> None:
         if message.data:
-            asked = self._link.request(Stop())
-            self._remember()
-            asked.add_done_callback(self._say_failed)
+            self.stop()
 
     def _say_failed(self, done: 'Future[None]') -> None:
         error = done.exception()

@@ -27,6 +27,8 @@ UNHEARD = 'not heard of'
 """The state of a machine that has said none."""
 
 ASKED_AT_MOST, ANSWERED_WITHIN = 4, 4.0
+DRIVEN_WITHIN = 15.0
+"""Seconds until a machine whose servos are on takes goals: its nodes may still be starting."""
 
 
 class NotReady(ManipulatorError, TimeoutError):
@@ -51,6 +53,7 @@ class Client:
         self.machine_state = DiagnosticStatus(message=UNHEARD)
         self.motion_status = DiagnosticStatus()
         self.diagnostics: dict[str, DiagnosticStatus] = {}
+        self._states_heard = 0
         self._setpoints: Any = None
         self._commanded: Any = None
         self._interrupt = interrupt
@@ -127,12 +130,27 @@ class Client:
         return str({v.key: v.value for v in self.motion_status.values}.get(key, ''))
 
     def enable(self) -> None:
-        """Energises the servos and waits until the machine can take goals; Refused says why."""
+        """Energises the servos and waits until the machine can take goals; Refused says why not.
+
+        However long the servos take: the patience begins anew with each *arming* of the bridge.
+        """
         self.wait(
             'the board', lambda: self.machine_state.message not in WITHOUT_BOARD, seconds=15.0
         )
         self._call(SetBool, 'serial_bridge/enable', SetBool.Request(data=True))
-        self.wait('enabling', lambda: self.motion('mode') not in ('', 'disabled'), seconds=15.0)
+        before = self._states_heard
+        self.wait(
+            'enabling',
+            lambda: self.motion('mode') not in ('', 'disabled') or self._is_lost(before),
+            DRIVEN_WITHIN,
+            lambda: self.machine_state.message == 'arming' and self._states_heard,
+        )
+        if self._is_lost(before):
+            raise Refused(f'not enabled: {self.summary}')
+
+    def _is_lost(self, before: int) -> bool:
+        """Whether a state later than the `before`-th says that the servos do not go on."""
+        return self._states_heard > before and self.machine_state.message not in ENABLING
 
     def disable(self) -> None:
         """Switches the servos off."""
@@ -234,6 +252,7 @@ class Client:
 
     def _on_machine_state(self, message: DiagnosticStatus) -> None:
         self.machine_state = message
+        self._states_heard += 1
 
     def _on_motion_status(self, message: DiagnosticStatus) -> None:
         self.motion_status = message
@@ -247,3 +266,5 @@ class Client:
 
 
 WITHOUT_BOARD = (UNHEARD, 'disconnected', 'booting')
+ENABLING = ('arming', 'enabled', 'holding')
+"""States of a machine whose servos were asked for, until it can take goals."""

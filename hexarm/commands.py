@@ -18,6 +18,7 @@ from hexarm import (
     record,
     reproduce,
     simulate,
+    stop,
     up,
     urdf,
     workspace,
@@ -26,6 +27,7 @@ from hexarm import (
 COMMANDS = (
     up,
     machine_calls,
+    stop,
     demo,
     monitor,
     record,

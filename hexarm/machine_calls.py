@@ -1,4 +1,4 @@
-"""`hexarm enable|disable|clear|stop [NAMESPACE]`: a machine's services, without `ros2`."""
+"""`hexarm enable|disable|clear [NAMESPACE]`: a machine's services, without `ros2`."""
 
 import argparse
 import sys
@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from hexarm.namespaces import namespace_of, nobody_in
+from hexarm.namespaces import NobodyThere, namespace_of, nobody_in
 from hexarm.statuses import INTERRUPTED, REFUSED
 from hexarm.up import Interrupted, StopSignal
-from manipulator.errors import ManipulatorError, Refused
+from manipulator.errors import Refused
 
 if TYPE_CHECKING:
     from hexarm.client import Client
@@ -22,13 +22,9 @@ SETTLES = 0.5
 """Seconds in which the new state is heard, too."""
 
 
-class NobodyThere(ManipulatorError):
-    """No machine answers in a namespace."""
-
-
 @dataclass(frozen=True)
 class Call:
-    """One subcommand: what it asks of the machine."""
+    """One subcommand: what it asks of the machine, and gets for an answer, if any."""
 
     name: str
     help: str
@@ -51,11 +47,6 @@ CALLS = (
         'end a stop or a fault; nothing moves',
         lambda client: client.trigger('serial_bridge/clear_fault'),
     ),
-    Call(
-        'stop',
-        'emergency stop: the board holds at once, until `hexarm clear`',
-        lambda client: client.trigger('serial_bridge/stop'),
-    ),
 )
 
 
@@ -77,11 +68,11 @@ def run(call: Call, arguments: argparse.Namespace) -> int:
     try:
         with Client(arguments.namespace, stop.check) as client:
             await_machine(client)
-            call.act(client)
+            said = call.act(client)
             client.spin(SETTLES)
-            print(
-                f'/{arguments.namespace}: {client.summary}{way_out(client, arguments.namespace)}'
-            )
+            words = f' ({said})' if said else ''
+            space = arguments.namespace
+            print(f'/{space}: {client.summary}{words}{way_out(client, space)}')
     except Refused as error:
         print(f'hexarm: {error}{way_out(client, arguments.namespace)}', file=sys.stderr)
         return REFUSED

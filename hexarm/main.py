@@ -5,6 +5,7 @@ import difflib
 import re
 import sys
 from pathlib import Path
+from types import ModuleType
 from typing import NoReturn
 
 from hexarm.statuses import INTERRUPTED, REFUSED
@@ -54,7 +55,7 @@ def main(words: list[str] | None = None) -> int:
 
 
 def _run(words: list[str] | None) -> int:
-    parser = _parser()
+    parser = _parser(sys.argv[1:] if words is None else words)
     arguments = parser.parse_args(words)
     if arguments.run is None:
         parser.print_help(sys.stderr)
@@ -62,10 +63,7 @@ def _run(words: list[str] | None) -> int:
     return int(arguments.run(arguments))
 
 
-def _parser() -> Parser:
-    # Imported here, where Ctrl-C is caught: it takes a third of a second.
-    from hexarm.commands import COMMANDS  # noqa: PLC0415
-
+def _parser(words: list[str]) -> Parser:
     parser = Parser(
         prog='hexarm',
         description='Six-axis manipulators, from a pose target to servo pulses.',
@@ -75,9 +73,21 @@ def _parser() -> Parser:
     parser.add_argument('--version', action='version', version=f'hexarm {_version()}')
     parser.set_defaults(run=None)
     commands = parser.add_subparsers(metavar='COMMAND', title='commands')
-    for command in COMMANDS:
+    for command in _commands(words):
         command.add_parser(commands)
     return parser
+
+
+def _commands(words: list[str]) -> 'tuple[ModuleType, ...]':
+    """The modules of the subcommands; of `stop` its own alone, it waits for no other's import."""
+    if words[:1] == ['stop']:
+        from hexarm import stop  # noqa: PLC0415
+
+        return (stop,)
+    # Imported here, where Ctrl-C is caught: it takes a third of a second.
+    from hexarm.commands import COMMANDS  # noqa: PLC0415
+
+    return COMMANDS
 
 
 def _version() -> str:

@@ -4,11 +4,17 @@ import argparse
 import re
 from collections.abc import Collection
 
+from manipulator.errors import ManipulatorError
+
 NAMESPACE = re.compile(r'/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*/?', re.ASCII)
 
 
 MARK = '/machine_state'
 """The topic by which a machine's namespace is known."""
+
+
+class NobodyThere(ManipulatorError):
+    """No machine answers in a namespace."""
 
 
 def nobody_in(namespace: str, there: Collection[str], domain: int) -> str:

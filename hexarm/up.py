@@ -131,6 +131,7 @@ def enable(client: 'Client', namespace: str) -> None:
     """Energises the servos; a machine that is stopped waits until somebody has cleared it."""
     space = namespace.strip('/')
     while True:
+        print('energising the servos, one by one', flush=True)
         try:
             client.enable()
             return

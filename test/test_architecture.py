@@ -11,7 +11,14 @@ MAY_IMPORT = {'physics': {'hexapod_control', 'arm_control'}}
 TOP = ('nodes/', '_node.py', 'executables.py', '__main__.py')
 ROS = {'rclpy', 'geometry_msgs', 'sensor_msgs', 'std_msgs', 'std_srvs', 'diagnostic_msgs'}
 OUTSIDE_CORE = ROS | {'time', 'logging', 'socket', 'subprocess', 'threading'}
-CLOCKED = {'link_thread.py', 'board_thread.py', 'fake_line.py', 'serial_port.py', 'stop_memory.py'}
+CLOCKED = {
+    'link_thread.py',
+    'board_thread.py',
+    'fake_line.py',
+    'serial_port.py',
+    'stop_memory.py',
+    'stop_socket.py',
+}
 
 
 def imports(path):

@@ -98,6 +98,8 @@ class ServoLine:
         self._ask(Arm(counts))
         until = time.monotonic() + ARM_WITHIN
         while self.mode not in (Mode.ARMED, Mode.HOLDING):
+            if self.mode is Mode.ARMING:  # takes as long as the machine file says, and ends
+                until = time.monotonic() + ARM_WITHIN
             if self.trouble or time.monotonic() > until:
                 raise Refused(f'the servos were not energised: {self.trouble or "no answer"}')
             time.sleep(LOOK_EVERY)

@@ -48,14 +48,18 @@ class Intake:
             self._check_stamp(message)
             self._accept(message)
         except ManipulatorError as error:
-            self.refused += 1
-            self.last_refusal = str(error)[:LONGEST_REASON]
-            text = f'{self.topic}: {self.last_refusal}'
-            self._node.get_logger().warning(text, throttle_duration_sec=1.0)
-            if self._refuse is not None:
-                self._refuse(message, error)
+            self.refuse(message, error)
         else:
             self.last_good = time.monotonic()
+
+    def refuse(self, message: Any, error: ManipulatorError) -> None:
+        """What becomes of a message that was not accepted, or not in the end."""
+        self.refused += 1
+        self.last_refusal = str(error)[:LONGEST_REASON]
+        text = f'{self.topic}: {self.last_refusal}'
+        self._node.get_logger().warning(text, throttle_duration_sec=1.0)
+        if self._refuse is not None:
+            self._refuse(message, error)
 
     @property
     def age(self) -> float:

@@ -1,5 +1,6 @@
 """`goal_path`: received in a process of its own, timed by the worker, then driven like a goal."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import radians
@@ -21,6 +22,7 @@ from manipulator.nodes.path_ear import PathEar
 from manipulator.nodes.path_listener import MOST_POSES, HeardPath
 from manipulator.nodes.qos import COMMAND
 from manipulator.pose import Pose
+from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.path import Tolerance
@@ -74,12 +76,13 @@ class PathGoals:
         self,
         node: Node,
         pilot: Pilot,
+        early: EarlyCommand,
         dt: float,
         worker: Worker,
         say: Callable[[MotionStatus], None],
     ) -> None:
         self._node, self._pilot, self._dt, self._say = node, pilot, dt, say
-        self._worker = worker
+        self._early, self._worker = early, worker
         self._work: Job[TimedPath | Pose] | None = None
         self._stamp = 0.0
         fastest = pilot.machine.motion.linear.speed
@@ -145,6 +148,13 @@ class PathGoals:
                 f'a path of {counted(message.count, "pose")}, and yet of too many bytes'
             )
         check_frame(message.header.frame_id, (BASE_FRAME, WORK_FRAME))
+        self._early.take(
+            lambda: self._work_out(message),
+            lambda error: self._intake.refuse(message, error),
+            time.monotonic(),
+        )
+
+    def _work_out(self, message: RawPath) -> None:
         frame = message.header.frame_id or BASE_FRAME
         player, stamp = self._pilot.player, seconds(message.header.stamp)
         task = PathTask(
@@ -158,7 +168,10 @@ class PathGoals:
         )
         player.expect(stamp)
         self._cancel()
-        self._stamp, self._work = stamp, self._worker.submit(task.planned)
+        try:
+            self._stamp, self._work = stamp, self._worker.submit(task.planned)
+        except Refused as error:
+            player.refuse(stamp, str(error))
 
     def _parameter(self, name: str) -> float:
         return float(self._node.get_parameter(name).value)

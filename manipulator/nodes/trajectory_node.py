@@ -30,6 +30,7 @@ from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
 from manipulator.teleop.arbiter import PEOPLE
+from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.following import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.lag import lag_of
@@ -66,6 +67,7 @@ class TrajectoryNode(Node):
         tolerances = Tolerances.of(machine, tolerance, goal_tolerance)
         self._pilot = Pilot(machine, self._dt, tolerances, self._worker)
         self._teleop = Teleop(self._pilot, delay)
+        self._early = EarlyCommand()
         self._seen: MotionStatus | None = None
         self._published: MotionStatus | None = None
         self._state_heard = float('-inf')
@@ -73,9 +75,11 @@ class TrajectoryNode(Node):
         self._last_refusal = ''
         self._jitter = Jitter(self._dt)
         self._connect()
-        self._paths = PathGoals(self, self._pilot, self._dt, self._worker, self._say)
+        self._paths = PathGoals(self, self._pilot, self._early, self._dt, self._worker, self._say)
         self._teleop_topics = TeleopTopics(self, self._teleop)
-        self._answers = TrajectoryServices(self, self._pilot, self._teleop, self._dt, self._worker)
+        self._answers = TrajectoryServices(
+            self, self._pilot, self._teleop, self._early, self._dt, self._worker, self._say
+        )
         self._timer = SteadyTimer(self, self._dt, self._tick)
         self._diagnostics = Diagnostics(
             self, self._report, ('setpoint', 'pose', *PEOPLE), (GOAL_PATH,)
@@ -108,6 +112,7 @@ class TrajectoryNode(Node):
             values.get('joints') == 'measured',
         )
         self._pilot.note_machine_state(message.message[:80], is_followed, is_measured)
+        self._early.poll(self._state_heard)
         self._say_news()
 
     def _on_joint_states(self, message: JointState) -> None:
@@ -119,6 +124,13 @@ class TrajectoryNode(Node):
         self._pilot.note_pose(pose_of(message))
 
     def _on_goal(self, message: PoseStamped) -> None:
+        self._early.take(
+            lambda: self._pursue(message),
+            lambda error: self._goals.refuse(message, error),
+            time.monotonic(),
+        )
+
+    def _pursue(self, message: PoseStamped) -> None:
         pose = goal_of(message, self._pilot.machine.frames)
         stamp, motion = seconds(message.header.stamp), self._goal_motion()
         self._pilot.player.pursue(Goal(pose, stamp, motion=motion))
@@ -156,6 +168,7 @@ class TrajectoryNode(Node):
         self._teleop.drive(now)
         self._paths.poll()
         self._answers.poll()
+        self._early.poll(now)
         pose, stamp = self._pilot.step(), self.get_clock().now().to_msg()
         # Frozen until here, this tick is late; frozen from here on, its stamp tells the others.
         self._pilot.note_stall(time.monotonic() - now)

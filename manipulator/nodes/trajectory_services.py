@@ -1,5 +1,6 @@
 """The services of the trajectory node: stop, home, park, pause, start_cycle, plan."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Thread
@@ -10,6 +11,7 @@ from nav_msgs.srv import GetPlan
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
+from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, NoSolution, Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.nodes.cycle_parameters import CycleParameters
@@ -17,11 +19,12 @@ from manipulator.nodes.late_answers import Call, create_late_service
 from manipulator.nodes.messages import goal_of, pose_message, seconds
 from manipulator.pose import Pose
 from manipulator.reach.words import explained
+from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.goal import Goal, Motion
+from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.planner import Start, plan_goal
-from manipulator.trajectory.player import Player
 from manipulator.trajectory.teleop import Teleop
 from manipulator.trajectory.worker import Job, Worker
 
@@ -40,18 +43,27 @@ class TrajectoryServices:
     """Answers with what will happen, or with why it will not; `poll` is called at every tick."""
 
     def __init__(
-        self, node: Node, pilot: Pilot, teleop: Teleop, dt: float, worker: Worker
+        self,
+        node: Node,
+        pilot: Pilot,
+        teleop: Teleop,
+        early: EarlyCommand,
+        dt: float,
+        worker: Worker,
+        say: Callable[[MotionStatus], None],
     ) -> None:
         self._node = node
         self._pilot = pilot
         self._teleop = teleop
+        self._early = early
         self._dt = dt
         self._worker = worker
+        self._say = say
         self._cycle = CycleParameters(node)
         self._cycles: list[tuple[Call, float]] = []
         self._plans: list[_PlanCall] = []
         for name, act in (('stop', self._stop), ('home', self._home), ('park', self._park)):
-            node.create_service(Trigger, f'~/{name}', self._trigger(act))
+            node.create_service(Trigger, f'~/{name}', _trigger(act))
         node.create_service(SetBool, '~/pause', self._on_pause)
         create_late_service(node, Trigger, '~/start_cycle', self._on_start_cycle)
         create_late_service(node, GetPlan, '~/plan', self._on_plan)
@@ -65,19 +77,19 @@ class TrajectoryServices:
             self._plans.remove(plan)
             self._answer_plan(plan)
 
-    def _stop(self, player: Player) -> str:
-        player.stop()
+    def _stop(self) -> str:
+        self._early.drop('stopped before it began')
+        self._pilot.player.stop()
         self._teleop.stop()
         return 'braking along the way, then holding'
 
-    def _home(self, player: Player) -> str:
+    def _home(self) -> str:
         machine = self._pilot.machine
         home = machine.kinematics.home
-        joints = machine.kinematics.inverse(home)
-        player.pursue(Goal(home, self._now(), motion=Motion.ANY, joints=joints))
+        self._go(home, machine.kinematics.inverse(home))
         return 'going home'
 
-    def _park(self, player: Player) -> str:
+    def _park(self) -> str:
         machine = self._pilot.machine
         if machine.park is None:
             raise Refused('the machine file has no usable park position (section servos)')
@@ -85,19 +97,17 @@ class TrajectoryServices:
             pose = machine.kinematics.forward(machine.park).pose
         except NoSolution as error:
             raise Refused(f'the park position is no pose that can be trusted: {error}') from error
-        player.pursue(Goal(pose, self._now(), motion=Motion.ANY, joints=machine.park))
+        self._go(pose, machine.park)
         return 'going to park'
 
-    def _trigger(self, act: Callable[[Player], str]) -> Callable[..., Trigger.Response]:
-        def answer(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-            try:
-                response.message = act(self._pilot.player)
-                response.success = True
-            except ManipulatorError as error:
-                response.message = str(error)
-            return response
+    def _go(self, pose: Pose, joints: Array) -> None:
+        """To joints (n,) at a pose, along a line or else by a joint move."""
+        goal = Goal(pose, self._now(), motion=Motion.ANY, joints=joints)
 
-        return answer
+        def refuse(error: ManipulatorError) -> None:
+            self._say(MotionStatus(self._pilot.status.mode, 'refused', goal.stamp, str(error)))
+
+        self._early.take(lambda: self._pilot.player.pursue(goal), refuse, time.monotonic())
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:
@@ -185,3 +195,15 @@ class TrajectoryServices:
 
     def _now(self) -> float:
         return seconds(self._node.get_clock().now().to_msg())
+
+
+def _trigger(act: Callable[[], str]) -> Callable[..., Trigger.Response]:
+    def answer(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        try:
+            response.message = act()
+            response.success = True
+        except ManipulatorError as error:
+            response.message = str(error)
+        return response
+
+    return answer

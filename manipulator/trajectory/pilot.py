@@ -53,6 +53,10 @@ DISABLED = MotionStatus('disabled', 'idle', 0.0, 'the servos are not enabled')
 CONNECTING = MotionStatus('disabled', 'idle', 0.0, 'the board does not follow setpoints yet')
 
 
+class NotYet(Refused):
+    """Nobody may drive yet, but the machine is about to be taken over."""
+
+
 class Pilot:
     """One machine's driver; poses that come and go are the platform's, in the base frame."""
 
@@ -87,11 +91,13 @@ class Pilot:
 
     @property
     def player(self) -> Player:
-        """What takes commands; Refused while nobody may drive."""
+        """What takes commands; Refused while nobody may drive, NotYet where that soon ends."""
         if self._player is None:
-            raise Refused(f'the machine is {self._state or "not heard of"}: {self._missing}')
+            is_soon = self._state in DRIVABLE and not self._misfit
+            kind = NotYet if is_soon else Refused
+            raise kind(f'the machine is {self._state or "not heard of"}: {self._missing}')
         if not self._is_followed:
-            raise Refused(CONNECTING.reason)
+            raise NotYet(CONNECTING.reason)
         return self._player
 
     @property

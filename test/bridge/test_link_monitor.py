@@ -81,6 +81,21 @@ def test_one_word_for_each_mode(monitor, mode, word):
     assert monitor.status.word == word
 
 
+@pytest.mark.parametrize('mode', [Mode.DISARMED, Mode.ARMING, Mode.ARMED, Mode.PLAYING])
+def test_there_is_nothing_to_clear_unless_a_stop_is_still_to_be_said(monitor, mode):
+    receive(monitor, state(mode))
+    assert monitor.is_clear
+    monitor.session.is_stop_wanted = True
+    assert not monitor.is_clear
+
+
+@pytest.mark.parametrize('mode', [Mode.STOPPED, Mode.FAULT])
+def test_a_stop_and_a_fault_are_to_be_cleared_and_an_absent_board_is_to_be_asked(monitor, mode):
+    assert not monitor.is_clear
+    receive(monitor, state(mode))
+    assert not monitor.is_clear
+
+
 def test_a_board_that_somebody_else_armed_is_not_enabled(monitor):
     monitor.note(Connected(HELLO), 0.0)
     receive(monitor, state(Mode.ARMED))

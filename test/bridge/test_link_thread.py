@@ -8,10 +8,10 @@ import time
 import pytest
 
 from bridge.board_thread import BoardThread, FakeMachine
-from bridge.events import Connected, Disconnected, StateReceived
+from bridge.events import Acknowledged, Connected, Disconnected, StateReceived
 from bridge.fake_line import FakeLine
 from bridge.link_thread import LinkThread, Ticket
-from bridge.messages import Arm, Clear, Mode, ResetCause, Setpoint, Stop
+from bridge.messages import Arm, Clear, Disarm, Mode, ResetCause, Setpoint, Stop
 from bridge.serial_port import SerialPort
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
@@ -148,6 +148,18 @@ def test_stop_is_answered_and_further_stops_too(rig):
     with pytest.raises(Refused, match='clear the stop first'):
         rig.link.request(Arm(PARK)).result(2.0)
     rig.link.request(Clear()).result(2.0)
+
+
+@pytest.mark.parametrize('command', [Stop(), Arm(PARK), Clear(), Disarm()])
+def test_who_is_answered_finds_that_it_was_told(rig, command):
+    rig.arm()
+    rig.link.request(Stop()).result(2.0)
+    rig.link.request(Clear()).result(2.0)
+    rig.events.clear()
+    told = []
+    rig.link.request(command).add_done_callback(lambda done: told.append(list(rig.events)))
+    rig.wait_for(lambda: told)
+    assert told == [[Acknowledged(command)]]
 
 
 def test_an_unplugged_board_is_lost_and_found_again_disarmed(rig):

@@ -1,6 +1,11 @@
 """`hexarm enable`, `disable`, `clear`, `stop` as processes beside a running graph."""
 
 import pytest
+from std_msgs.msg import Bool
+
+from bridge.stop_socket import domain_here, send_stop, stop_address
+from hexarm.client import Client
+from manipulator.nodes.qos import EVERY_WORD
 
 pytestmark = pytest.mark.graph
 
@@ -30,6 +35,9 @@ def test_a_machine_is_enabled_stopped_cleared_and_disabled_without_ros2(user, sa
     assert 'hexarm clear hexapod' in said
     status, said = says('clear')
     assert (status, said[:25]) == (0, '/hexapod: machine enabled')
+    status, said = says('clear')
+    assert status == 0
+    assert said.endswith(' (nothing to clear: the machine is enabled)\n')
     status, said = says('disable')
     assert (status, said[:26]) == (0, '/hexapod: machine disarmed')
     user.wait('the end', lambda: user.machine_state.message == 'disarmed', 10.0)
@@ -40,3 +48,21 @@ def test_where_nobody_answers_namespace_and_domain_are_named_and_where_somebody_
     assert (status, said.count('\n')) == (1, 1)
     assert 'hexarm: nobody answers in /hexapd on ROS domain ' in said
     assert said.endswith('there are machines in /hexapod\n')
+
+
+def test_a_stop_from_the_same_computer_needs_no_ros(enabled):
+    assert send_stop(stop_address('/hexapod/serial_bridge', domain_here()))
+    enabled.wait('the stop', lambda: enabled.machine_state.message == 'stopped', 10.0)
+    enabled.trigger('serial_bridge/clear_fault')
+
+
+def test_a_stop_goes_out_over_ros_before_the_machine_has_said_anything(hexarm):
+    with Client('silent') as listener:
+        heard = []
+        listener.node.create_subscription(Bool, 'emergency_stop', heard.append, EVERY_WORD)
+        process = hexarm('stop', 'silent')
+        listener.wait('the stop', lambda: heard, 30.0)
+        assert heard[0].data
+        listener.wait('the end', lambda: process.poll() is not None, 30.0)
+    assert process.returncode == 1
+    assert 'nobody answers in /silent' in process.stdout.read()

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import sysconfig
 import venv
+from pathlib import Path
 
 import pytest
 
@@ -47,6 +48,15 @@ def test_machine_files_are_found_in_the_environment(scratch, machines, run, nowh
     assert {entry['path'] for entry in answer['machines']} == {
         str(config / f'{name}.yaml') for name in machines
     }
+
+
+def test_profile_of_discovery_is_installed(scratch, run, nowhere):
+    variable = 'FASTRTPS_DEFAULT_PROFILES_FILE'
+    nowhere['env'].pop(variable, None)
+    code = f'import hexarm, os; print(os.environ["{variable}"])'
+    profile = Path(run(scratch / 'bin' / 'python', '-c', code, **nowhere).strip())
+    assert profile.is_file()
+    assert profile.is_relative_to(scratch)
 
 
 def test_installed_kinematics_answers(scratch, run, nowhere):

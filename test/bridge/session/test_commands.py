@@ -6,7 +6,7 @@ import pytest
 
 from bridge.events import Acknowledged, CommandFailed, Disconnected
 from bridge.frames import encode
-from bridge.messages import Arm, Clear, Disarm, Hello, ResetCause, Stop
+from bridge.messages import Arm, Clear, Disarm, Hello, Mode, ResetCause, Stop
 from bridge.program_messages import Finish, Play
 from manipulator.errors import Refused
 
@@ -20,6 +20,39 @@ def test_commands_are_acknowledged(line):
     assert not line.session.accepts_setpoints
     assert line.command(Clear()) == [Acknowledged(Clear())]
     assert line.command(Disarm()) == [Acknowledged(Disarm())]
+
+
+@pytest.mark.parametrize(
+    ('before', 'command', 'mode'),
+    [
+        ((), Arm(PARK), Mode.ARMING),
+        ((Stop(),), Clear(), Mode.DISARMED),
+        ((Arm(PARK), Stop()), Clear(), Mode.DISARMED),
+        ((Arm(PARK),), Stop(), Mode.STOPPED),
+        ((Arm(PARK),), Disarm(), Mode.DISARMED),
+    ],
+)
+def test_what_is_acknowledged_can_be_seen_in_the_state(line, before, command, mode):
+    line.run(0.4)
+    for earlier in before:
+        line.command(earlier)
+    events = line.session.send_command(command, line.now)
+    while not events:
+        events = line.run(0.005)
+    assert events == [Acknowledged(command)]
+    assert line.session.state.mode is mode
+    assert line.sent.count(command) == 1
+
+
+def test_what_was_obeyed_is_not_said_to_have_failed_where_another_command_comes_before_the_state(
+    line,
+):
+    line.run(0.4)
+    line.session.send_command(Arm(PARK), line.now)
+    line.board.feed(line.session.take_output())
+    assert line.session.receive(line.board.take_output(), line.now) == []
+    assert line.board.mode is Mode.ARMING
+    assert line.command(Stop()) == [Acknowledged(Arm(PARK)), Acknowledged(Stop())]
 
 
 def test_refusal_of_a_command_comes_with_its_reason(armed):
