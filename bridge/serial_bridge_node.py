@@ -100,7 +100,8 @@ class SerialBridge(Node):
         self.create_subscription(Float64, 'gripper', self._on_gripper, COMMAND)
         self.create_service(SetBool, '~/enable', self._on_enable)
         self.create_service(Trigger, '~/clear_fault', self._on_clear_fault)
-        beside = [topic for node in self._aside for topic in received_by(node)]
+        nodes = [part for part in self._aside if isinstance(part, Node)]
+        beside = [topic for node in nodes for topic in received_by(node)]
         self._diagnostics = Diagnostics(self, self._report, ('joint_command',), beside)
 
     # From the graph (the executor's thread)
