@@ -1,0 +1,104 @@
+"""Joint moves by definition: straight in the joints, within every limit, at the pose they say."""
+
+import numpy as np
+import pytest
+
+from hexarm.machines import load
+from manipulator.errors import Refused, Unreachable
+from manipulator.pose import Pose
+from manipulator.trajectory.goal import Goal, Motion
+from manipulator.trajectory.plan import MotionState
+from manipulator.trajectory.planner import Start, plan_goal
+from manipulator.trajectory.player import Player
+from manipulator.trajectory.worker import Effort
+
+DT = 0.01
+TARGETS = {
+    'robocake': (0.006, -0.004, 0.004, 0.05, -0.05, 0.1),
+    'stewart_6_6': (0.01, -0.02, 0.015, 0.05, -0.1, 0.2),
+    'arm_6r': (-0.1, 0.05, 0.1, 0.2, -0.2, 0.5),
+    'ur5': (-0.1, 0.05, 0.1, 0.2, -0.2, 0.5),
+}
+
+
+def planned(name):
+    machine = load(name)
+    k = machine.kinematics
+    begin = k.inverse(k.home)
+    goal = Goal(k.home.moved(TARGETS[name]), motion=Motion.JOINT)
+    plan = plan_goal(machine, Start(MotionState.at_rest(k.home), begin, DT), goal, Effort())
+    return machine, begin, goal, plan
+
+
+@pytest.mark.parametrize('name', TARGETS)
+def test_all_joints_go_in_proportion_and_arrive_at_the_goal(name):
+    machine, begin, goal, plan = planned(name)
+    end = machine.kinematics.inverse(goal.pose, begin)
+    joints = plan.joints_at(np.linspace(0.0, plan.duration, 50))
+    np.testing.assert_array_equal(joints[0], begin)
+    np.testing.assert_allclose(joints[-1], end, atol=1e-12)
+    share = (joints - begin) @ (end - begin) / ((end - begin) @ (end - begin))
+    np.testing.assert_allclose(joints, begin + share[:, None] * (end - begin), atol=1e-12)
+    assert (np.diff(share) >= 0.0).all()
+    assert np.abs(plan.at(plan.duration).pose.twist_to(goal.pose)).max() < 1e-7
+
+
+@pytest.mark.parametrize('name', TARGETS)
+def test_the_state_is_that_of_the_joints_by_differences(name):
+    _, _, _, plan = planned(name)
+    h = 1e-4
+    times = np.linspace(0.1, 0.9, 7) * plan.duration
+    state, ahead, behind = (plan.at(times + step) for step in (0.0, h, -h))
+    twist = behind.pose.twist_to(ahead.pose) / (2 * h)
+    np.testing.assert_allclose(state.twist, twist, atol=1e-4 * np.abs(twist).max() + 1e-8)
+    change = (ahead.twist - behind.twist) / (2 * h)
+    np.testing.assert_allclose(state.acceleration, change, atol=2e-3 * np.abs(change).max())
+
+
+@pytest.mark.parametrize('name', TARGETS)
+def test_joint_moves_keep_the_limits_of_joints_and_platform(name):
+    machine, _, _, plan = planned(name)
+    times = np.arange(0.0, plan.duration + DT, DT)
+    joints, state, limits = plan.joints_at(times), plan.at(times), machine.motion
+    speeds = np.abs(np.diff(joints, axis=0)) / DT
+    assert (speeds <= 1.01 * limits.joint.speed).all()
+    accelerations = np.abs(np.diff(joints, n=2, axis=0)) / DT**2
+    assert (accelerations <= 1.01 * limits.joint.acceleration).all()
+    assert np.linalg.norm(state.twist[:, :3], axis=1).max() <= 1.01 * limits.linear.speed
+    assert np.linalg.norm(state.twist[:, 3:], axis=1).max() <= 1.01 * limits.angular.speed
+    assert machine.constraints.admits(state.pose, joints).all()
+
+
+@pytest.mark.parametrize('name', TARGETS)
+def test_a_player_drives_a_joint_move_on_its_joints(name):
+    machine, begin, goal, plan = planned(name)
+    player = Player(machine, machine.kinematics.home, begin, DT)
+    player.pursue(goal)
+    joints = []
+    while player.status.result != 'reached':
+        pose = player.step()
+        joints.append(player.joints)
+        assert (
+            np.abs(machine.kinematics.forward(player.joints, pose).pose.twist_to(pose)).max()
+            < 1e-7
+        )
+        assert len(joints) < 2000
+    np.testing.assert_allclose(joints[-1], plan.joints_at(plan.duration), atol=1e-7)
+
+
+def test_a_goal_out_of_reach_is_refused_for_itself():
+    machine = load('arm_6r')
+    k = machine.kinematics
+    start = Start(MotionState.at_rest(k.home), k.inverse(k.home), DT)
+    goal = Goal(Pose.from_xyz_rpy((2.0, 0.0, 0.0)), motion=Motion.JOINT)
+    with pytest.raises(Unreachable, match='reach is'):
+        plan_goal(machine, start, goal, Effort())
+
+
+def test_a_joint_move_begins_at_rest():
+    machine = load('robocake')
+    k = machine.kinematics
+    moving = MotionState(k.home, np.array([0.01, 0, 0, 0, 0, 0]), np.zeros(6))
+    goal = Goal(k.home.moved([0.001, 0, 0, 0, 0, 0]), motion=Motion.JOINT)
+    with pytest.raises(Refused, match='begins at rest'):
+        plan_goal(machine, Start(moving, k.inverse(k.home), DT), goal, Effort())
