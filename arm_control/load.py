@@ -13,6 +13,7 @@ from manipulator.config import build, build_both
 from manipulator.errors import ConfigError
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
+from manipulator.words import shown
 
 KIND = 'serial_arm'
 
@@ -31,7 +32,7 @@ def arm(machine_file: MachineFile) -> Machine:
 def serial_arm(machine_file: MachineFile) -> SerialArm:
     """The kinematics and joint limits of one file."""
     if machine_file.kind != KIND:
-        raise ConfigError([f'kind: {machine_file.kind!r} is not {KIND!r}'])
+        raise ConfigError([f'kind: {shown(machine_file.kind)} is not {KIND!r}'])
     told = [form for key, form in FORMS.items() if key in machine_file.geometry]
     if len(told) != 1:
         raise ConfigError([f'geometry: needs one of the keys {list(FORMS)}, has {len(told)}'])
