@@ -6,7 +6,7 @@ import numpy as np
 
 from arm_control.arm import SerialArm
 from arm_control.arm_jogger import ArmJogger
-from arm_control.geometry import FORMS
+from arm_control.geometry import FORMS, placed
 from arm_control.joint_limits import ArmLimits
 from arm_control.resolved_rate import ResolvedRate
 from manipulator.config import build, build_both
@@ -41,7 +41,7 @@ def serial_arm(machine_file: MachineFile) -> SerialArm:
     )
     length = limits.characteristic_length_mm * 1e-3
     rest = np.radians(geometry.home_deg)
-    return SerialArm(geometry.chain(), limits.joint_limits(), length, rest)
+    return SerialArm(placed(geometry.chain()), limits.joint_limits(), length, rest)
 
 
 def jogging(machine_file: MachineFile) -> ResolvedRate:
