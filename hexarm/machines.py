@@ -75,6 +75,14 @@ def read(name_or_path: str) -> MachineFile:
     return build(MachineFile, parse_yaml(text_of(path), str(path)), source=str(path))
 
 
+def described(name_or_path: str) -> str:
+    """Which file a name or a path means, and what it is of, in one line."""
+    path, machine_file = find(name_or_path).resolve(), read(name_or_path)
+    kind = machine_file.kind.replace('_', ' ')
+    words = f'{kind}; {shortened(machine_file.description)}' if machine_file.description else kind
+    return f'machine {path.stem}: {path} ({words})'
+
+
 def text_of(path: Path) -> str:
     """What a file holds; ConfigError where it cannot be read as text, or is huge."""
     try:
