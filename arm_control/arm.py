@@ -9,6 +9,8 @@ from arm_control.chain import Chain
 from arm_control.inverse_method import InverseMethod, fitting_method
 from arm_control.joint_limits import JOINT_NAMES, JointLimits
 from arm_control.nearby import nearby_joints
+from arm_control.parallel_axes import ParallelAxes
+from arm_control.spherical_wrist import SphericalWrist
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
@@ -63,6 +65,11 @@ class SerialArm:
     def joins_branches(self) -> bool:
         """A jog drives from branch to branch where they meet; a platform's crank may never."""
         return True
+
+    @property
+    def has_closed_form(self) -> bool:
+        """Whether the inverse takes microseconds, and finds every branch."""
+        return isinstance(self.method, SphericalWrist | ParallelAxes)
 
     def inverse_all(self, pose: Pose, near: Array | None = None) -> Array:
         """Every branch (..., k, 6), by whole turns nearest to `near` within the joint ranges.
