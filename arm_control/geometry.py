@@ -9,10 +9,17 @@ from manipulator.arrays import Array
 from manipulator.config import quantity
 from manipulator.errors import ConfigError
 from manipulator.pose import Pose
+from manipulator.words import length
 
 JOINTS = 6
 SixAngles = tuple[float, float, float, float, float, float]
 Three = tuple[float, float, float]
+
+LONGEST_LINK, SHORTEST_ARM = 5.0, 0.02
+"""Metres: between two joints, and from the base through all of them to the tool."""
+
+FAR_MM = 1e8
+"""Along an axis a point may lie as far off as a double keeps to 0.01 µm, for `placed` moves it."""
 
 
 @dataclass(frozen=True)
@@ -44,11 +51,15 @@ class LengthsConfig:
 
 @dataclass(frozen=True)
 class DhRow:
-    """One line of a standard Denavit–Hartenberg table; offset_deg is θ at joint angle zero."""
+    """One line of a standard Denavit–Hartenberg table; offset_deg is θ at joint angle zero.
+
+    Between axes that are almost parallel, as in a calibrated UR, d is huge and says nothing of the
+    arm's size: the next ones take it back. `placed` judges the size.
+    """
 
     a_mm: float = quantity(-5000, 5000)
     alpha_deg: float = quantity(-360, 360)
-    d_mm: float = quantity(-5000, 5000)
+    d_mm: float = quantity(-FAR_MM, FAR_MM)
     offset_deg: float = quantity(-360, 360, default=0.0)
 
 
@@ -77,7 +88,7 @@ class Screw:
     """A joint axis at zero angles, right-handed, of any length but zero, and a point on it."""
 
     axis: Three = quantity(-1000, 1000)
-    point_mm: Three = quantity(-10_000, 10_000)
+    point_mm: Three = quantity(-FAR_MM, FAR_MM)
 
     def __post_init__(self) -> None:
         """Raises ConfigError for an axis without direction."""
@@ -113,6 +124,37 @@ FORMS: dict[str, type[ArmGeometry]] = {
     'screws': ScrewsConfig,
 }
 """The key by which each form is told."""
+
+
+def placed(chain: Chain) -> Chain:
+    """The same chain with each point that is far along its axis moved next to the one before.
+
+    Raises ConfigError for an arm that is out of proportion even so.
+    """
+    points, before = np.array(chain.points), np.zeros(3)
+    for i, axis in enumerate(chain.axes):
+        away = points[i] - before
+        if np.linalg.norm(away) > LONGEST_LINK:
+            points[i] -= np.dot(away, axis) * axis
+        before = points[i]
+    _check_size(np.vstack([np.zeros(3), points, chain.home.position]))
+    return Chain(chain.axes, points, chain.home)
+
+
+def _check_size(places: Array) -> None:
+    """Of base, joints and tool, (n, 3) in metres."""
+    links = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    names = ['the base', *(f'joint {i}' for i in range(1, len(links))), 'the tool']
+    longest = int(np.argmax(links))
+    if links[longest] > LONGEST_LINK:
+        gap = f'{names[longest + 1]} is {length(links[longest])} from {names[longest]}'
+        most = length(LONGEST_LINK)
+        raise ConfigError([f'geometry: {gap}, at most {most} fit: is it in another unit?'])
+    if links.sum() < SHORTEST_ARM:
+        whole = f'all links together are {length(links.sum())}'
+        raise ConfigError(
+            [f'geometry: {whole}, at least {length(SHORTEST_ARM)} fit: are these metres?']
+        )
 
 
 def _link(row: DhRow) -> Array:

@@ -6,13 +6,14 @@ import numpy as np
 
 from arm_control.arm import SerialArm
 from arm_control.arm_jogger import ArmJogger
-from arm_control.geometry import FORMS
+from arm_control.geometry import FORMS, placed
 from arm_control.joint_limits import ArmLimits
 from arm_control.resolved_rate import ResolvedRate
 from manipulator.config import build, build_both
 from manipulator.errors import ConfigError
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
+from manipulator.words import shown
 
 KIND = 'serial_arm'
 
@@ -31,7 +32,7 @@ def arm(machine_file: MachineFile) -> Machine:
 def serial_arm(machine_file: MachineFile) -> SerialArm:
     """The kinematics and joint limits of one file."""
     if machine_file.kind != KIND:
-        raise ConfigError([f'kind: {machine_file.kind!r} is not {KIND!r}'])
+        raise ConfigError([f'kind: {shown(machine_file.kind)} is not {KIND!r}'])
     told = [form for key, form in FORMS.items() if key in machine_file.geometry]
     if len(told) != 1:
         raise ConfigError([f'geometry: needs one of the keys {list(FORMS)}, has {len(told)}'])
@@ -40,7 +41,7 @@ def serial_arm(machine_file: MachineFile) -> SerialArm:
     )
     length = limits.characteristic_length_mm * 1e-3
     rest = np.radians(geometry.home_deg)
-    return SerialArm(geometry.chain(), limits.joint_limits(), length, rest)
+    return SerialArm(placed(geometry.chain()), limits.joint_limits(), length, rest)
 
 
 def jogging(machine_file: MachineFile) -> ResolvedRate:

@@ -7,12 +7,17 @@ import numpy as np
 from arm_control.branches import without_repeats
 from arm_control.chain import Chain
 from arm_control.tracking import tracked_by_newton
-from manipulator.arrays import Array
+from manipulator.arrays import Array, Mask
 from manipulator.pose import Pose
 
 STEPS = 60
 STARTS = 32
 TOLERANCE = 1e-10
+LOOK_BACK, STALLED = 10, 0.9
+"""A start whose error is still more than this part of what it was ten steps ago is given up."""
+
+CHUNK = 256
+"""Poses that are solved together: a few megabytes, a second, and Ctrl-C is heard."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,21 +42,33 @@ class Numerical:
 
         A branch may be missed.
         """
-        spread = np.random.default_rng(0).uniform(self.low, self.high, (STARTS, 6))
         lead = pose.position.shape[:-1]
-        starts = np.concatenate(
-            [
-                np.broadcast_to(near, (*lead, 6))[..., None, :],
-                np.broadcast_to(spread, (*lead, STARTS, 6)),
-            ],
-            axis=-2,
-        )
-        joints, error = self.descend(pose, starts)
+        places, turns = pose.position.reshape(-1, 3), pose.rotation.reshape(-1, 3, 3)
+        wanted = np.broadcast_to(near, (*lead, 6)).reshape(-1, 6)
+        found = np.full((len(places), STARTS + 1, 6), np.nan)
+        near_enough = np.flatnonzero(self._is_within_reach(places))
+        for some in np.split(near_enough, range(CHUNK, len(near_enough), CHUNK)):
+            found[some] = self._solved(Pose(places[some], turns[some]), wanted[some])
+        return found.reshape(*lead, STARTS + 1, 6)
+
+    def _solved(self, pose: Pose, near: Array) -> Array:
+        """The branches (n, 33, 6) of n poses."""
+        spread = np.random.default_rng(0).uniform(self.low, self.high, (STARTS, 6))
+        cold = np.broadcast_to(spread, (len(near), STARTS, 6))
+        joints, error = self.descend(pose, np.concatenate([near[:, None], cold], axis=1))
         return without_repeats(np.where((error < TOLERANCE)[..., None], joints, np.nan))
 
     def along(self, poses: Pose, near: Array) -> Array:
         """See `InverseMethod`."""
         return tracked_by_newton(self.chain, poses, near, self.branches)
+
+    def _is_within_reach(self, places: Array) -> Mask:
+        """Whether the links, all in one line, come to the places (n, 3)."""
+        path = np.vstack([self.chain.points, self.chain.home.position])
+        reach = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
+        away = np.linalg.norm(places - self.chain.points[0], axis=1)
+        within: Mask = away <= reach * (1 + 1e-9)
+        return within
 
     def refusal(self, pose: Pose) -> str:
         """How near the best attempt came."""
@@ -66,18 +83,38 @@ class Numerical:
 
     def descend(self, pose: Pose, joints: Array, steps: int = STEPS) -> tuple[Array, Array]:
         """Joints (..., k, 6) after the steps, and the scaled error that is left of each."""
-        goal = Pose(pose.position[..., None, :], pose.rotation[..., None, :, :])
-        scale = np.array([1 / self.length] * 3 + [1.0] * 3)
-        joints = np.array(joints)
-        for _ in range(steps):
-            error = scale * self.chain.forward(joints).twist_to(goal)
+        lead = joints.shape[:-1]
+        found = np.array(joints, dtype=np.float64).reshape(-1, 6)
+        places = np.broadcast_to(pose.position[..., None, :], (*lead, 3)).reshape(-1, 3)
+        turns = np.broadcast_to(pose.rotation[..., None, :, :], (*lead, 3, 3)).reshape(-1, 3, 3)
+        going, left = np.arange(len(found)), np.empty(len(found))
+        last = np.full(len(found), np.inf)
+        for step in range(steps + 1):
+            error = self._scale * self.chain.forward(found[going]).twist_to(
+                Pose(places[going], turns[going])
+            )
             size = np.linalg.norm(error, axis=-1)
-            if (size < TOLERANCE / 10).all():
+            left[going] = size
+            moving = size >= TOLERANCE / 10
+            if step and step % LOOK_BACK == 0:
+                moving &= size < STALLED * last[going]
+            if step % LOOK_BACK == 0:
+                last[going] = size
+            going, error, size = going[moving], error[moving], size[moving]
+            if step == steps or not going.size:
                 break
-            jacobian = scale[:, None] * self.chain.jacobian(joints)
-            transposed = np.swapaxes(jacobian, -1, -2)
-            damping = np.minimum(size**2 / 2, 0.1)[..., None, None] + 1e-12
-            normal = transposed @ jacobian + damping * np.eye(6)
-            joints = joints + np.linalg.solve(normal, transposed @ error[..., None])[..., 0]
-        error = scale * self.chain.forward(joints).twist_to(goal)
-        return joints, np.linalg.norm(error, axis=-1)
+            found[going] = self._stepped(found[going], error, size)
+        return found.reshape(*lead, 6), left.reshape(lead)
+
+    def _stepped(self, joints: Array, error: Array, size: Array) -> Array:
+        """Joints (n, 6) after one damped step against their scaled errors (n, 6), sizes (n,)."""
+        jacobian = self._scale[:, None] * self.chain.jacobian(joints)
+        transposed = np.swapaxes(jacobian, -1, -2)
+        damping = np.minimum(size**2 / 2, 0.1)[:, None, None] + 1e-12
+        normal = transposed @ jacobian + damping * np.eye(6)
+        stepped: Array = joints + np.linalg.solve(normal, transposed @ error[..., None])[..., 0]
+        return stepped
+
+    @property
+    def _scale(self) -> Array:
+        return np.array([1 / self.length] * 3 + [1.0] * 3)

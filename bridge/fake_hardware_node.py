@@ -24,6 +24,7 @@ from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, LinkError
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import MEASUREMENT
+from manipulator.words import shown
 
 PRESETS: dict[str, Callable[[SimulationConfig], SimulationConfig]] = {
     'normal': lambda told: told,
@@ -73,7 +74,7 @@ class FakeHardware(Node):
         )
         moved = declare(self, 'plant', 'servo', "'servo', or 'mujoco': loads, torque limits")
         if preset not in PRESETS:
-            raise InvalidInput(f'parameter preset: {preset!r} is not one of {list(PRESETS)}')
+            raise InvalidInput(f'parameter preset: {shown(preset)} is not one of {list(PRESETS)}')
         config = BoardConfig.from_machine(machines.read(name), str(machines.find(name)))
         config = replace(config, simulation=PRESETS[preset](config.simulation))
         hysteresis = math.radians(own) if own >= 0 else config.hysteresis
@@ -118,7 +119,7 @@ class FakeHardware(Node):
                 self._board.battery_mv = round(1000 * float(parameter.value))
             elif parameter.name == 'fault' and parameter.value:
                 if parameter.value not in KINDS:
-                    reason = f'fault: {parameter.value!r} is not one of {", ".join(KINDS)}'
+                    reason = f'fault: {shown(parameter.value)} is not one of {", ".join(KINDS)}'
                     return SetParametersResult(successful=False, reason=reason)
                 self._faults.inject(FaultKind(parameter.value))
         return SetParametersResult(successful=True)

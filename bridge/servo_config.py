@@ -11,7 +11,10 @@ from bridge.messages import MAX_JOINTS
 from manipulator.config import build, quantity
 from manipulator.errors import ConfigError
 from manipulator.machine import MachineFile
-from manipulator.words import counted
+from manipulator.words import counted, shown
+
+MAX_NAME = 64
+"""Characters of a joint's name, which messages repeat."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,11 @@ class ServoConfig:
 
     def __post_init__(self) -> None:
         problems = []
+        if len(self.name) > MAX_NAME:
+            text = (
+                f'{shown(self.name)}: {len(self.name)} characters, a name has at most {MAX_NAME}'
+            )
+            raise ConfigError([text])
         rotary = (self.centre_deg, self.us_per_deg)
         linear = (self.centre_mm, self.us_per_mm)
         if not (None not in rotary and linear == (None, None)) and not (

@@ -10,6 +10,7 @@ from bridge.calibration import COUNTS_PER_US
 from bridge.servo_config import ServoConfig
 from bridge.servo_stages import AFTER, Stage
 from manipulator.errors import ConfigError
+from manipulator.words import shown
 
 SPEED_US_S = 150.0
 """A quarter of a turn takes 6 s with an SG90."""
@@ -163,7 +164,7 @@ class ServoWalk:
         try:
             number = float(typed)
         except ValueError:
-            return self._say(f'{typed!r} is no number')
+            return self._say(f'{shown(typed)} is no number')
         if self.stage is Stage.CENTRE:
             return self._settle_centre(number)
         return self._settle_scale(number)

@@ -19,6 +19,7 @@ from manipulator.limits.constraints import Constraints
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
 from manipulator.teleop.platform_jogger import PlatformJogger
+from manipulator.words import shown
 
 Parts = tuple[Kinematics, Constraints]
 CRANK_SETTINGS = 8
@@ -29,7 +30,7 @@ def hexapod(machine_file: MachineFile) -> Machine:
     """The machine of one file; ConfigError names each fault, also a home beyond a limit."""
     kind = machine_file.kind
     if kind not in KINDS:
-        raise ConfigError([f'kind: {kind!r} is not one of {sorted(KINDS)}'])
+        raise ConfigError([f'kind: {shown(kind)} is not one of {sorted(KINDS)}'])
     kinematics, constraints = KINDS[kind](machine_file.geometry, machine_file.limits)
     home = kinematics.home
     beyond = constraints.violations(home, kinematics.inverse(home))

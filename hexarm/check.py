@@ -2,11 +2,16 @@
 
 import argparse
 import json
+from typing import Any
 
-from hexarm.machine_check import problems_of
+import numpy as np
+
+from hexarm.machine_check import Report, report_of
 from hexarm.machines import find, text_of
 from hexarm.statuses import REFUSED
+from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError
+from manipulator.machine import Machine
 from manipulator.words import counted
 
 
@@ -19,14 +24,48 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Prints the problems, one a line; status 2 when there are any."""
+    """Prints problems and warnings, one a line, and home's joints; status 2 for problems."""
     try:
-        problems = problems_of(text_of(find(arguments.file)))
+        path = find(arguments.file)
+        report = report_of(parse_yaml(text_of(path), str(path)))
+        lines = _in_words(arguments.file, report)
     except ConfigError as error:
-        problems = list(error.problems)
-    if arguments.json:
-        print(json.dumps({'problems': problems}, ensure_ascii=False))
-    else:
-        count = counted(len(problems), 'problem') if problems else 'no problems'
-        print('\n'.join([f'{arguments.file}: {count}', *problems]))
-    return REFUSED if problems else 0
+        report = Report(error.problems)
+        lines = [str(error)]
+    print(
+        json.dumps(_for_programs(report), ensure_ascii=False)
+        if arguments.json
+        else '\n'.join(lines)
+    )
+    return REFUSED if report.problems else 0
+
+
+def _in_words(file: str, report: Report) -> list[str]:
+    problems, warnings = len(report.problems), len(report.warnings)
+    said = counted(problems, 'problem') if problems else 'no problems'
+    if warnings:
+        said += f', {counted(warnings, "warning")}'
+    lines = [f'{file}: {said}', *report.problems, *(f'warning: {w}' for w in report.warnings)]
+    return lines if report.machine is None else [*lines, _home_in_words(report.machine)]
+
+
+def _home_in_words(machine: Machine) -> str:
+    kinematics = machine.kinematics
+    joints = kinematics.inverse(kinematics.home)
+    factor, unit = (np.degrees(1.0), '°') if kinematics.joint_unit == 'rad' else (1e3, ' mm')
+    values = '  '.join(f'{value:.1f}' for value in factor * joints)
+    return f'joints at home: {values}{unit}'
+
+
+def _for_programs(report: Report) -> dict[str, Any]:
+    """Joints in radians or metres."""
+    found: dict[str, Any] = {
+        'problems': list(report.problems),
+        'warnings': list(report.warnings),
+    }
+    if report.machine is not None:
+        kinematics = report.machine.kinematics
+        positions = kinematics.inverse(kinematics.home).tolist()
+        names = list(kinematics.joint_names)
+        found['joints_at_home'] = {'names': names, 'positions': positions}
+    return found

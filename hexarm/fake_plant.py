@@ -9,6 +9,7 @@ from bridge.plant import Plant
 from hexarm import machines
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
+from manipulator.words import shown
 from physics.model import mechanism
 
 TELL_EVERY = 10.0
@@ -23,7 +24,7 @@ def plant(
     Raises InvalidInput for another kind, ConfigError where the machine file has no masses.
     """
     if kind not in PLANTS:
-        raise InvalidInput(f'parameter plant: {kind!r} is not one of {list(PLANTS)}')
+        raise InvalidInput(f'parameter plant: {shown(kind)} is not one of {list(PLANTS)}')
     if kind == 'servo':
         return machine
     from physics.plant import MujocoPlant  # noqa: PLC0415 (needs mujoco)

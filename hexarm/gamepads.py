@@ -7,6 +7,7 @@ from hexarm.machines import folders, text_of
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError
 from manipulator.teleop.gamepad import Gamepad
+from manipulator.words import shown
 
 PREFIX = 'joystick_'
 
@@ -25,7 +26,9 @@ def load(name_or_path: str) -> Gamepad:
         if name_or_path not in known:
             near = difflib.get_close_matches(name_or_path, known, n=1)
             hint = f', did you mean {near[0]!r}?' if near else ''
-            problem = f'no gamepad is called {name_or_path!r}{hint} (shipped: {sorted(known)})'
+            problem = (
+                f'no gamepad is called {shown(name_or_path)}{hint} (shipped: {sorted(known)})'
+            )
             raise ConfigError([problem])
         path = known[name_or_path]
     return build(Gamepad, parse_yaml(text_of(path), str(path)), source=str(path))

@@ -2,6 +2,7 @@
 
 import difflib
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, TypeVar
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from bridge.calibration import Calibration
 from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
+from hexarm.machine_warnings import warnings_of
 from hexarm.machines import loader
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
@@ -43,16 +45,33 @@ class Findings:
         return None
 
 
+@dataclass(frozen=True)
+class Report:
+    """What is wrong with a machine file, what is doubtful, and the machine where it can be made.
+
+    Only a file without problems has warnings.
+    """
+
+    problems: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
+    machine: Machine | None = None
+
+
 def problems_of(text: str) -> list[str]:
-    """All problems of a machine file's text, none for a good one.
+    """All problems of a machine file's text, none for a good one."""
+    try:
+        return list(report_of(parse_yaml(text)).problems)
+    except ConfigError as error:
+        return list(error.problems)
+
+
+def report_of(content: Mapping[str, Any]) -> Report:
+    """Of a machine file that could be read.
 
     The sections first, each as far as it is there; then, between those that are good, what one
     says of another: names, units, ranges, speeds and the park position.
     """
     found = Findings()
-    content = found.of(lambda: parse_yaml(text))
-    if content is None:
-        return found.problems
     whole = found.of(lambda: build(MachineFile, content))
     if whole is not None:
         found.of(partial(Frames.from_config, whole.frames))
@@ -66,13 +85,15 @@ def problems_of(text: str) -> list[str]:
     kind = content.get('kind')
     if 'dynamics' in there and isinstance(kind, str) and kind in SCHEMAS:
         found.of(partial(build, SCHEMAS[kind], there['dynamics'], 'dynamics'))
-    servos = sections.get('servos')
+    servos, calibration = sections.get('servos'), None
     if isinstance(servos, ServosConfig):
         calibration = found.of(lambda: Calibration.from_config(servos))
         if machine is not None and calibration is not None:
             found.problems.extend(_between(machine, calibration))
     absent = tuple(f'{name}.' for name in ROOM if name not in there)
-    return [problem for problem in found.problems if not problem.startswith(absent)]
+    problems = tuple(problem for problem in found.problems if not problem.startswith(absent))
+    doubts = () if problems or machine is None else warnings_of(machine, calibration)
+    return Report(problems, tuple(doubts), machine)
 
 
 def _machine(kind: object, there: Mapping[str, Any], whole: MachineFile | None) -> Machine | None:

@@ -1,6 +1,7 @@
 """Finding and loading machine files: by path, then beside the source, then in share/."""
 
 import difflib
+import os
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -15,7 +16,7 @@ from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
 from manipulator.sag import Sag
-from manipulator.words import reason
+from manipulator.words import reason, shortened, shown
 
 
 def _hexapod(machine_file: MachineFile) -> Machine:
@@ -55,18 +56,20 @@ def find(name_or_path: str) -> Path:
     """The file of a shipped machine's name, or of a path; ConfigError says what there is."""
     path = Path(name_or_path).expanduser()
     if path.suffix in ('.yaml', '.yml') or '/' in name_or_path:
-        if path.is_file():
+        if os.path.isfile(path):
             return path
-        fault = 'is no file' if path.exists() else 'does not exist'
-        raise ConfigError([f'machine file {name_or_path} {fault}'])
+        fault = 'is no file' if os.path.exists(path) else 'does not exist'
+        raise ConfigError([f'machine file {shortened(name_or_path, 200)} {fault}'])
     known = shipped()
-    if name_or_path not in known and path.is_file():
+    if name_or_path not in known and os.path.isfile(path):
         return path
     if name_or_path in known:
         return known[name_or_path]
     near = difflib.get_close_matches(name_or_path, list(known), n=1)
     hint = f', did you mean {near[0]!r}?' if near else ''
-    raise ConfigError([f'no machine is called {name_or_path!r}{hint} (shipped: {sorted(known)})'])
+    raise ConfigError(
+        [f'no machine is called {shown(name_or_path)}{hint} (shipped: {sorted(known)})']
+    )
 
 
 def read(name_or_path: str) -> MachineFile:
@@ -75,12 +78,21 @@ def read(name_or_path: str) -> MachineFile:
     return build(MachineFile, parse_yaml(text_of(path), str(path)), source=str(path))
 
 
+def described(name_or_path: str) -> str:
+    """Which file a name or a path means, and what it is of, in one line."""
+    path, machine_file = find(name_or_path).resolve(), read(name_or_path)
+    kind = machine_file.kind.replace('_', ' ')
+    words = f'{kind}; {shortened(machine_file.description)}' if machine_file.description else kind
+    return f'machine {path.stem}: {path} ({words})'
+
+
 def text_of(path: Path) -> str:
     """What a file holds; ConfigError where it cannot be read as text, or is huge."""
     try:
         size = path.stat().st_size
         if size > 4 * MAX_CHARACTERS:
-            raise ConfigError([f'{size} bytes, a file may have {MAX_CHARACTERS} characters'])
+            problem = f'{size} bytes, a machine file has at most {MAX_CHARACTERS} characters'
+            raise ConfigError([problem], str(path))
         return path.read_text(encoding='utf-8')
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigError([f'cannot be read: {reason(error)}'], str(path)) from error
@@ -92,7 +104,7 @@ def loader(kind: str) -> Callable[[MachineFile], Machine]:
         return KINDS[kind]
     near = difflib.get_close_matches(kind, list(KINDS), n=1)
     hint = f', did you mean {near[0]!r}?' if near else ''
-    raise ConfigError([f'kind: {kind!r} is not one of {list(KINDS)}{hint}'])
+    raise ConfigError([f'kind: {shown(kind)} is not one of {list(KINDS)}{hint}'])
 
 
 def load(name_or_path: str) -> Machine:

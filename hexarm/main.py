@@ -1,14 +1,16 @@
 """The `hexarm` command: picks the subcommand and turns errors into one line and a status."""
 
 import argparse
+import contextlib
 import difflib
+import os
 import re
 import sys
 from pathlib import Path
 from types import ModuleType
 from typing import NoReturn
 
-from hexarm.statuses import INTERRUPTED, REFUSED
+from hexarm.statuses import INTERRUPTED, PIPE_CLOSED, REFUSED
 from manipulator.errors import ManipulatorError
 from manipulator.requirements import missing
 
@@ -22,9 +24,13 @@ examples:
   hexarm calibrate servos robocake --output mine.yaml  signs and centres, on a fake board
 
 MACHINE is a shipped name (hexarm machines) or the path of a YAML file. Exit status: 0 good,
-1 failed, 2 refused or not understood, 3 out of reach (hexarm reach). `hexarm COMMAND --help`
-tells more of a command.
+1 failed, 2 refused or not understood, 3 out of reach (hexarm reach), 130 Ctrl-C, 141 nobody
+reads the output any more. `hexarm COMMAND --help` tells more of a command.
 """
+
+
+MOST_OF_AN_ERROR = 400
+"""Characters of a wrong argument's message, which has room for the names of all commands."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -38,11 +44,24 @@ class Parser(argparse.ArgumentParser):
             near = difflib.get_close_matches(found[1], choices, n=1)
             message = f'{found[1]!r} is not one of {", ".join(choices)}'
             message += f', did you mean {near[0]!r}?' if near else ''
-        super().error(message)
+        super().error(message[:MOST_OF_AN_ERROR])
 
 
 def main(words: list[str] | None = None) -> int:
     """Runs one subcommand; see hexarm/statuses.py for what it returns."""
+    try:
+        try:
+            return _explained(words)
+        finally:
+            if sys.stdout is not None:
+                sys.stdout.flush()
+    except BrokenPipeError:
+        _silence()
+        return PIPE_CLOSED
+
+
+def _explained(words: list[str] | None) -> int:
+    """Runs one subcommand; an error is one line and status 1."""
     try:
         return _run(words)
     except ManipulatorError as error:
@@ -52,6 +71,14 @@ def main(words: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     return 1
+
+
+def _silence() -> None:
+    """Lets what is still buffered vanish: at its end Python would flush it, and complain."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(AttributeError, OSError, ValueError):
+            os.dup2(nowhere, stream.fileno())
 
 
 def _run(words: list[str] | None) -> int:

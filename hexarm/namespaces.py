@@ -5,6 +5,7 @@ import re
 from collections.abc import Collection
 
 from manipulator.errors import ManipulatorError
+from manipulator.words import shown
 
 NAMESPACE = re.compile(r'/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*/?', re.ASCII)
 
@@ -28,5 +29,5 @@ def nobody_in(namespace: str, there: Collection[str], domain: int) -> str:
 def namespace_of(word: str) -> str:
     """Without slashes at its ends; an argument error for what ROS would not accept."""
     if NAMESPACE.fullmatch(word) is None:
-        raise argparse.ArgumentTypeError(f'{word!r} is no ROS name: letters, digits, _ and /')
+        raise argparse.ArgumentTypeError(f'{shown(word)} is no ROS name: letters, digits, _ and /')
     return word.strip('/')

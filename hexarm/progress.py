@@ -32,9 +32,11 @@ def progress() -> Iterator[OnProgress]:
 
 
 class Lines:
-    """One line a stage, when it is done."""
+    """One line a stage, when it is done; on a terminal its share until then, in place."""
 
     def tell(self, stage: str, share: float) -> None:
-        """Prints a stage that is complete."""
+        """Prints how far the stage is."""
         if share >= 1.0:
             print(f'{stage}: done', file=sys.stderr)
+        elif sys.stderr.isatty():
+            print(f'{stage}: {share:.0%}', end='\r', file=sys.stderr, flush=True)

@@ -63,7 +63,7 @@ def positive(word: str) -> float:
 def run(arguments: argparse.Namespace) -> int:
     """Records; status 0 with a finished file, 1 without a message or when writing failed."""
     from hexarm.recording.bag import Bag  # noqa: PLC0415 (needs mcap)
-    from hexarm.recording.session import record  # noqa: PLC0415 (needs ROS)
+    from hexarm.recording.session import Control, record  # noqa: PLC0415 (needs ROS)
 
     namespace = arguments.namespace
     when = time.strftime('%Y%m%d-%H%M%S')
@@ -72,9 +72,17 @@ def run(arguments: argparse.Namespace) -> int:
     stop = StopSignal()
     begin = time.monotonic()
     with Bag(path) as bag:
-        print(f'recording /{namespace} into {path}; Ctrl-C ends it', flush=True)
-        until = begin + arguments.seconds
-        there, domain = record(bag, namespace, wanted, until, stop.check)
+        _say(f'waiting for publishers of {_asked(wanted)}')
+        control = Control(
+            begin + arguments.seconds,
+            stop.check,
+            lambda: _say(f'recording /{namespace} into {path}; Ctrl-C ends it'),
+            lambda there, domain: _say(
+                f'{nothing(namespace, unheard(wanted.names, (), there), there, domain)}; '
+                'still waiting, Ctrl-C ends it'
+            ),
+        )
+        there, domain = record(bag, namespace, wanted, control)
     lines = unheard(wanted.names, bag.counts, there)
     space = f'/{namespace}/'
     if not any(topic.startswith(space) or topic in wanted.names for topic in bag.counts):
@@ -88,3 +96,11 @@ def run(arguments: argparse.Namespace) -> int:
         f'{counted(len(bag.counts), "topic")} in {took:.1f} s, {bag.size / 1e6:.1f} MB'
     )
     return 0
+
+
+def _asked(wanted: Wanted) -> str:
+    return ', '.join(wanted.names) or f'/{wanted.namespace}'
+
+
+def _say(line: str) -> None:
+    print(line, flush=True)

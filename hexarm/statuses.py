@@ -6,5 +6,8 @@ REFUSED = 2
 OUT_OF_REACH = 3
 """The answer no of `hexarm reach`: a script tells it from a question that was not understood."""
 
+PIPE_CLOSED = 141
+"""Whoever read the output has gone, as in `hexarm … | head`; by the shells' rule for SIGPIPE."""
+
 INTERRUPTED = 130
 """Ctrl-C, by the shells' own rule."""

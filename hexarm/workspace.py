@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from arm_control.arm import SerialArm
 from hexarm.answers import Answer, add_machine, answering, picture_file
 from hexarm.machines import load
 from hexarm.progress import progress
@@ -21,6 +22,8 @@ from manipulator.workspace.survey import Survey, survey
 from manipulator.workspace.volume import Box, Volume
 
 POINTS, FEWER_POINTS, FEWEST_POINTS = 1_000_000, 20_000, 1000
+SLOW_POINTS = 2000
+"""For arms that are solved numerically: a millisecond and more a pose."""
 TABLE_POINTS = 100_000
 TILT = 0.5
 COLUMNS = ('x', 'y', 'z', 'admitted', 'sigma_min', 'joint_speed')
@@ -32,7 +35,8 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     add_machine(parser)
     parser.add_argument(
         '--points', type=int, metavar='N',
-        help=f'positions for the volume (default {POINTS}, for serial arms {FEWER_POINTS})',
+        help=f'positions for the volume (default {POINTS}, for serial arms {FEWER_POINTS}, '
+        f'without closed form {SLOW_POINTS})',
     )  # fmt: skip
     parser.add_argument(
         '--tilt', type=float, default=TILT, metavar='RAD',
@@ -48,7 +52,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 def answer(arguments: argparse.Namespace) -> Answer:
     """Volumes in m³ with their errors at 95 % confidence; ranges in metres and radians."""
     machine = load(arguments.machine)
-    points = arguments.points or (FEWER_POINTS if is_joint_box(machine) else POINTS)
+    points = arguments.points or default_points(machine)
     if points < FEWEST_POINTS:
         raise InvalidInput(f'--points {points} is below {FEWEST_POINTS}')
     if not 0.0 < arguments.tilt <= np.pi:
@@ -66,6 +70,14 @@ def answer(arguments: argparse.Namespace) -> Answer:
             on_progress('pictures', 1.0)
     files = [str(path) for path in written]
     return {**_for_programs(found), 'files': files}, [*_in_words(found), *files]
+
+
+def default_points(machine: Machine) -> int:
+    """As many positions as take a minute or two."""
+    arm = machine.kinematics
+    if isinstance(arm, SerialArm) and not arm.is_explicit:
+        return SLOW_POINTS
+    return FEWER_POINTS if is_joint_box(machine) else POINTS
 
 
 def _for_programs(found: Survey) -> dict[str, Any]:

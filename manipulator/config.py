@@ -15,10 +15,15 @@ from typing import Any, TypeVar
 import yaml
 
 from manipulator.errors import ConfigError
+from manipulator.words import shortened, shown
 
 T = TypeVar('T')
 U = TypeVar('U')
 MAX_CHARACTERS = 100_000
+MOST_OF_A_REASON = 200
+"""Characters of what PyYAML says, which may repeat the file."""
+
+IMPORTS = 'serial arms are described by dh or screws, see docs/arm-kinematics.md'
 
 
 def quantity(low: float, high: float, **options: Any) -> Any:
@@ -28,6 +33,8 @@ def quantity(low: float, high: float, **options: Any) -> Any:
 
 def parse_yaml(text: str, source: str = '') -> dict[str, Any]:
     """YAML text as a mapping; repeated keys, aliases, tags and huge files are refused."""
+    if text.lstrip('\ufeff \t\r\n').startswith('<'):
+        raise ConfigError([_markup(text)], source)
     if len(text) > MAX_CHARACTERS:
         raise ConfigError(
             [f'{len(text)} characters, a machine file has at most {MAX_CHARACTERS}'], source
@@ -35,10 +42,11 @@ def parse_yaml(text: str, source: str = '') -> dict[str, Any]:
     try:
         content = yaml.load(text, Loader=_StrictLoader)
     except yaml.YAMLError as error:
-        raise ConfigError([' '.join(str(error).split())], source) from error
+        raise ConfigError([_short(error)], source) from error
     except (ValueError, TypeError, OverflowError) as error:
         # PyYAML lets through what dates, numbers and keys raise that cannot be made.
-        raise ConfigError([f'holds a value that cannot be read: {error}'], source) from error
+        problem = f'holds a value that cannot be read: {_short(error)}'
+        raise ConfigError([problem], source) from error
     except RecursionError as error:
         raise ConfigError(['nested too deeply'], source) from error
     if not isinstance(content, dict):
@@ -82,7 +90,7 @@ class _StrictLoader(yaml.SafeLoader):
         for key_node, _ in node.value:
             if key_node.value in seen:
                 line = key_node.start_mark.line + 1
-                raise yaml.YAMLError(f'line {line}: key {key_node.value!r} stands twice')
+                raise yaml.YAMLError(f'line {line}: key {shown(key_node.value)} stands twice')
             if isinstance(key_node.value, str):
                 seen.add(key_node.value)
         return super().construct_mapping(node, deep)
@@ -103,7 +111,7 @@ def _convert(wanted: Any, value: object, where: str, problems: list[str]) -> Any
     if origin is typing.Literal:
         if value not in arguments:
             hint = _nearest(str(value), [str(a) for a in arguments])
-            problems.append(f'{where}: {value!r} is not one of {list(arguments)}{hint}')
+            problems.append(f'{where}: {shown(value)} is not one of {list(arguments)}{hint}')
         return value
     if origin is tuple:
         return _convert_list(arguments, value, where, problems)
@@ -200,7 +208,7 @@ _NAMES = {float: 'a number', int: 'a whole number', str: 'a text', bool: 'true o
 def _kind(value: object) -> str:
     names = {dict: 'a mapping', list: 'a list', type(None): 'nothing', bool: 'true or false'}
     name = names.get(type(value))
-    return name or f'{type(value).__name__} {value!r}'
+    return name or f'{type(value).__name__} {shown(value)}'
 
 
 def _nearest(word: str, choices: list[str]) -> str:
@@ -209,7 +217,19 @@ def _nearest(word: str, choices: list[str]) -> str:
 
 
 def _join(where: str, key: object) -> str:
-    return f'{where}.{key}' if where else str(key)
+    name = shortened(str(key))
+    return f'{where}.{name}' if where else name
+
+
+def _short(error: Exception) -> str:
+    return shortened(' '.join(str(error).split()), MOST_OF_A_REASON)
+
+
+def _markup(text: str) -> str:
+    """What a file that begins with < is."""
+    if '<robot' in text:
+        return f'is a URDF, which cannot be imported yet: {IMPORTS}'
+    return 'is XML or HTML, needs YAML'
 
 
 def _is_required(field: Any) -> bool:

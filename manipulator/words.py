@@ -2,6 +2,9 @@
 
 import numpy as np
 
+MOST_SHOWN = 80
+"""Characters of an input that a message repeats."""
+
 METRES_FROM = 0.9999
 """m. Shorter ones are told in millimetres."""
 
@@ -16,6 +19,16 @@ def length(metres: float, digits: int = 4) -> str:
 def counted(count: int, one: str, many: str = '') -> str:
     """A count and its noun: '1 pose', '2,000 poses'; `many` where it is not one with an s."""
     return f'{count:,} {one if count == 1 else many or one + "s"}'
+
+
+def shown(value: object, most: int = MOST_SHOWN) -> str:
+    """An input as a message repeats it: as Python writes it, its beginning where it is long."""
+    return shortened(repr(value[: most + 1] if isinstance(value, str) else value), most)
+
+
+def shortened(text: str, most: int = MOST_SHOWN) -> str:
+    """A text, or the beginning of a long one and that it is cut."""
+    return text if len(text) <= most else f'{text[:most]}…'
 
 
 def reason(error: Exception) -> str:

@@ -4,7 +4,7 @@ from rclpy.node import Node
 
 from bridge.calibration import Calibration
 from bridge.servo_config import BoardConfig
-from hexarm.machines import load, read
+from hexarm.machines import described, load, read
 from manipulator.nodes.run import run_node
 from panel.gripper import GripperJoint
 
@@ -19,7 +19,7 @@ def panel() -> int:
 
         return PanelNode(load, gripper_of, MACHINE)
 
-    return run_node(make)
+    return run_node(make, described)
 
 
 def gripper_of(name_or_path: str) -> GripperJoint | None:

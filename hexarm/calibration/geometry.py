@@ -20,6 +20,7 @@ from manipulator.identification.measurements import Measurements, Noise
 from manipulator.kinematics import Kinematics
 from manipulator.machine import MachineFile
 from manipulator.pose import Pose
+from manipulator.words import shown
 from manipulator.yaml_edit import Place, with_section, with_values
 
 NOISE_MM, NOISE_DEG = 0.1, 0.057
@@ -100,7 +101,7 @@ def centres(file: MachineFile, names: tuple[str, ...], offsets: Array) -> dict[P
     by_name = {servo.name: (i, servo) for i, servo in enumerate(servos)}
     for name, offset in zip(names, offsets, strict=True):
         if name not in by_name:
-            raise InvalidInput(f'servos.joints: none is called {name!r}')
+            raise InvalidInput(f'servos.joints: none is called {shown(name)}')
         i, servo = by_name[name]
         key = 'centre_mm' if servo.is_linear else 'centre_deg'
         unit = 1e-3 if servo.is_linear else np.radians(1.0)

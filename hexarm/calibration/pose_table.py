@@ -17,7 +17,7 @@ from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.identification.measurements import Measurements
 from manipulator.pose import Pose
-from manipulator.words import reason
+from manipulator.words import reason, shown
 
 UNITS = {'mm': 1e-3, 'm': 1.0, 'deg': math.radians(1.0), 'rad': 1.0}
 LENGTHS, ANGLES = ('mm', 'm'), ('deg', 'rad')
@@ -105,6 +105,6 @@ def _numbers(
                 found[k, j] = math.nan
             if not math.isfinite(found[k, j]):
                 raise InvalidInput(
-                    f'{path}, line {line}: {header[index]} is {row[index]!r}, no number'
+                    f'{path}, line {line}: {header[index]} is {shown(row[index])}, no number'
                 )
     return found

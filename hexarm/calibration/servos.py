@@ -20,7 +20,7 @@ from hexarm.machines import read
 from hexarm.statuses import INTERRUPTED
 from manipulator.errors import InvalidInput
 from manipulator.nodes.terminal import Terminal
-from manipulator.words import counted
+from manipulator.words import counted, shown
 from manipulator.yaml_edit import with_values
 
 SEED = 7
@@ -70,7 +70,7 @@ def chosen_servos(servos: tuple[ServoConfig, ...], names: list[str] | None) -> t
         if name not in known:
             near = get_close_matches(name, known, n=1)
             hint = f', did you mean {near[0]!r}?' if near else ''
-            raise InvalidInput(f'no servo is called {name!r}{hint} (there are {known})')
+            raise InvalidInput(f'no servo is called {shown(name)}{hint} (there are {known})')
     return tuple(known.index(name) for name in names or known)
 
 

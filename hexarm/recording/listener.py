@@ -41,6 +41,13 @@ class Listener:
                 self._unknown.add(name)
                 self._node.get_logger().warning(f'{name} is not recorded: {error}')
 
+    def is_matched(self, every: bool) -> bool:
+        """Whether a publisher of what is recorded has met us: one of each topic, or of any."""
+        own = {n: s for n, s in self._subscriptions.items() if self._wanted.is_own(n)}
+        met = {name for name, subscription in own.items() if subscription.get_publisher_count()}
+        published = {name for name in own if self._node.count_publishers(name)}
+        return bool(met) and (published <= met or not every)
+
     def warn(self) -> None:
         """Speaks of the topics asked for that are not there."""
         names = [name for name in self._wanted.names if name not in self.there]

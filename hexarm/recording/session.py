@@ -1,8 +1,10 @@
 """The recorder's node: looks around for topics, and writes what it hears until told to end."""
 
 import contextlib
+import math
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import rclpy
 from rclpy.experimental import EventsExecutor
@@ -20,16 +22,32 @@ LOOK_AROUND = 0.25
 """Seconds between two looks at which topics there are."""
 
 DISCOVERY = 3.0
-"""Seconds after which a topic that was not found is spoken of: it may be misspelt."""
+"""Seconds after which what was not found is spoken of: a topic may be misspelt."""
+
+PATIENCE = 60.0
+"""Seconds after which a recording without an end of its own gives up, when nobody published."""
 
 FLUSH = 1.0
 """Seconds of messages that may be lost when the process is killed."""
 
 
-def record(
-    bag: Bag, namespace: str, wanted: Wanted, until: float, interrupt: Callable[[], None]
-) -> tuple[set[str], int]:
-    """Records until the monotonic time `until`, or until `interrupt` raises Interrupted.
+@dataclass(frozen=True)
+class Control:
+    """How long a recording lasts, and whom it tells how it stands.
+
+    until is a monotonic time, infinite for one that `interrupt` ends by raising Interrupted.
+    on_listening is called once, when publishers and recorder have met; on_nobody once before,
+    with topics and ROS domain, when DISCOVERY was not enough for it.
+    """
+
+    until: float
+    interrupt: Callable[[], None]
+    on_listening: Callable[[], None]
+    on_nobody: Callable[[set[str], int], None]
+
+
+def record(bag: Bag, namespace: str, wanted: Wanted, control: Control) -> tuple[set[str], int]:
+    """Records to its end; where nobody publishes and it has none, for PATIENCE.
 
     Returns every topic that was seen, wanted or not, and the ROS domain. Raises NotWritten when
     the disk is full.
@@ -42,7 +60,7 @@ def record(
     listener, domain = Listener(node, wanted, bag), node.context.get_domain_id()
     try:
         with contextlib.suppress(Interrupted):
-            _spin(executor, listener, bag, until, interrupt)
+            _spin(executor, listener, bag, control, domain)
     finally:
         executor.shutdown()
         node.destroy_node()
@@ -51,23 +69,23 @@ def record(
 
 
 def _spin(
-    executor: EventsExecutor,
-    listener: Listener,
-    bag: Bag,
-    until: float,
-    interrupt: Callable[[], None],
+    executor: EventsExecutor, listener: Listener, bag: Bag, control: Control, domain: int
 ) -> None:
-    look_at = flush_at = time.monotonic()
-    warn_at = look_at + DISCOVERY
+    begin = look_at = flush_at = time.monotonic()
+    until = begin + PATIENCE if control.until == math.inf else control.until
+    is_met = is_told = False
     while (now := time.monotonic()) < until:
-        interrupt()
+        control.interrupt()
         if now >= look_at:
             listener.look_around(now)
             look_at = now + LOOK_AROUND
-        if now >= warn_at:
-            listener.warn()
-            warn_at = until
+            if not is_met and listener.is_matched(every=now < begin + DISCOVERY):
+                is_met, until = True, control.until
+                control.on_listening()
+        if now >= begin + DISCOVERY and not is_told:
+            listener.warn() if is_met else control.on_nobody(listener.there, domain)
+            is_told = True
         if now >= flush_at:
             bag.flush()
             flush_at = now + FLUSH
-        executor.spin_once(timeout_sec=min(0.05, until - now))
+        executor.spin_once(timeout_sec=min(0.05, max(until - now, 0.0)))

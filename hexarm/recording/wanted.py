@@ -40,6 +40,10 @@ class Wanted:
         self._space = space
         self.names = tuple(n if n.startswith('/') else space + n for n in self.names)
 
+    def is_own(self, topic: str) -> bool:
+        """Whether the topic is what the recording is made for: not one that all machines share."""
+        return topic in self.names if self.names else topic.startswith(self._space)
+
     def may_join(self, topic: str, is_published: bool, now: float) -> bool:
         """Whether to listen to the topic from now (s, monotonic) on."""
         if self.names:

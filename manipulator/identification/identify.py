@@ -13,6 +13,7 @@ from manipulator.identification.least_squares import Fit, fit
 from manipulator.identification.measurements import Measurements, Noise
 from manipulator.identification.model import Model, Parameter
 from manipulator.pose import Pose
+from manipulator.words import shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +117,7 @@ def free_mask(parameters: tuple[Parameter, ...], free: Collection[str]) -> Mask:
     groups = list(dict.fromkeys(parameter.group for parameter in parameters))
     for group in free:
         if group not in groups:
-            raise InvalidInput(f'no parameters are called {group!r} (there are {groups})')
+            raise InvalidInput(f'no parameters are called {shown(group)} (there are {groups})')
     return np.array([parameter.group in free for parameter in parameters])
 
 

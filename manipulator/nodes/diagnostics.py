@@ -54,7 +54,10 @@ class Diagnostics:
             level, message = max(level, WARN), f'{message}; {trouble}' if message else trouble
         name = self._node.get_fully_qualified_name().lstrip('/')
         stamp = self._node.get_clock().now().to_msg()
-        array = DiagnosticArray(status=[status(level, name, message, values)])
+        said = status(level, name, message, values)
+        if self._node.has_parameter('machine'):
+            said.hardware_id = str(self._node.get_parameter('machine').value)
+        array = DiagnosticArray(status=[said])
         array.header.stamp = stamp
         self._publisher.publish(array)
 

@@ -6,6 +6,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.node import Node
 
 from manipulator.errors import InvalidInput
+from manipulator.words import shown
 
 
 def declare(
@@ -38,7 +39,7 @@ def checked(name: str, value: Any, default: Any, bounds: tuple[float, float] | N
         value = float(value)
     if type(value) is not type(default):
         wanted = type(default).__name__
-        raise InvalidInput(f'parameter {name}: {value!r} is not a {wanted}')
+        raise InvalidInput(f'parameter {name}: {shown(value)} is not a {wanted}')
     if bounds is not None and not bounds[0] <= value <= bounds[1]:
         raise InvalidInput(f'parameter {name}: {value} outside [{bounds[0]}, {bounds[1]}]')
     return value

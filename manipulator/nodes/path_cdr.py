@@ -14,7 +14,7 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
-from manipulator.words import counted
+from manipulator.words import counted, shown
 
 BYTE_ORDERS = {b'\0\0': '>', b'\0\1': '<'}
 LONGEST_NAME = 256
@@ -58,7 +58,9 @@ def read_poses(serialized: bytes, frame: str) -> tuple[Pose, Array | None]:
         stamps[i] = reader.numbers('iI')
         name = reader.string()
         if name not in ('', frame):
-            raise InvalidInput(f'pose {i + 1}: frame_id {name!r}, the path is in {frame!r}')
+            raise InvalidInput(
+                f'pose {i + 1}: frame_id {shown(name)}, the path is in {shown(frame)}'
+            )
         values[i] = reader.numbers('7d')
     return _poses(values), _seconds(stamps)
 

@@ -22,8 +22,10 @@ GOODBYE = 3.0
 """Seconds that a node may take to leave the graph once it has closed what it holds."""
 
 
-def run_node(make_node: Callable[[], Node]) -> int:
+def run_node(make_node: Callable[[], Node], describe: Callable[[str], str] | None = None) -> int:
     """Spins the node until SIGINT or SIGTERM; a start-up error is one line and exit status 1.
+
+    With `describe` the node's log begins with what that says of its parameter `machine`.
 
     rclpy's own signal handlers would invalidate the context before the last message is out, so
     ours only set a flag. A node's `close()`, where it has one, runs before it is destroyed.
@@ -41,6 +43,8 @@ def run_node(make_node: Callable[[], Node]) -> int:
     executor = EventsExecutor()
     executor.add_node(node)
     try:
+        if describe is not None:
+            node.get_logger().info(describe(node.get_parameter('machine').value))
         while not stop.is_requested:
             executor.spin_once(timeout_sec=0.1)
     finally:

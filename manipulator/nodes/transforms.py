@@ -18,6 +18,7 @@ from manipulator.links import Link
 from manipulator.nodes.messages import BASE_FRAME, PIVOT_FRAME, PLATFORM_FRAME, WORK_FRAME
 from manipulator.nodes.parameters import declare
 from manipulator.pose import Pose
+from manipulator.words import shown
 
 LISTENED = QoSProfile(depth=100)
 """What every tf2 listener asks for."""
@@ -28,7 +29,9 @@ def declare_prefix(node: Node) -> str:
     meaning = 'stands before the frame names of tf and markers, as in hexapod/'
     prefix = str(declare(node, 'frame_prefix', '', meaning))
     if re.fullmatch(r'([A-Za-z_][\w/-]*)?', prefix, re.ASCII) is None:
-        raise InvalidInput(f'parameter frame_prefix: {prefix!r} is no beginning of a frame name')
+        raise InvalidInput(
+            f'parameter frame_prefix: {shown(prefix)} is no beginning of a frame name'
+        )
     return prefix
 
 

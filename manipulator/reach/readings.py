@@ -46,7 +46,11 @@ class Readings:
 
 def read_limits(machine: Machine, pose: Pose, near: Array | None = None) -> Readings:
     """All limits at poses (...), joints on the branch nearest to `near` (default: home's)."""
-    joints = machine.kinematics.inverse_or_nan(pose, near)
+    return readings_of(machine, pose, machine.kinematics.inverse_or_nan(pose, near))
+
+
+def readings_of(machine: Machine, pose: Pose, joints: Array) -> Readings:
+    """All limits at poses (...) with their joints (..., n), NaN where they do not close."""
     limits = machine.constraints.limits
     return Readings(
         tuple((limit.quantity, o, limit.unit) for limit in limits for o in limit.owners),

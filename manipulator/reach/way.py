@@ -38,7 +38,12 @@ def admits(machine: Machine, poses: Pose, near: Array | None = None) -> Mask:
     if near is None:
         joints = kinematics.inverse_or_nan(poses)
     else:
-        joints = machine.kinematics.inverse_along(poses, near)
+        joints = kinematics.inverse_along(poses, near)
+    return keeps_limits(machine, poses, joints)
+
+
+def keeps_limits(machine: Machine, poses: Pose, joints: Array) -> Mask:
+    """Which of the poses (N,) with their joints (N, n), NaN where they do not close, are kept."""
     inside = np.asarray(np.isfinite(joints).all(axis=-1), dtype=np.bool_)
     if inside.all():
         return machine.constraints.admits(poses, joints)

@@ -11,6 +11,7 @@ from manipulator.errors import ConfigError
 from manipulator.teleop.modes import MODES
 from manipulator.teleop.press import Press
 from manipulator.teleop.stick import Stick
+from manipulator.words import shown
 
 CommandFrame = Literal['base', 'work', 'pivot', 'tool']
 """The frames that a twist may be told in."""
@@ -55,7 +56,7 @@ class Gamepad:
             if mode not in MODES:
                 near = difflib.get_close_matches(mode, MODES, n=1)
                 hint = f', did you mean {near[0]!r}?' if near else ''
-                problems.append(f'modes: {mode!r} is not one of {list(MODES)}{hint}')
+                problems.append(f'modes: {shown(mode)} is not one of {list(MODES)}{hint}')
         if self.shift is None and any(stick.layer == 'shift' for stick in self.sticks):
             problems.append('shift: missing, but a stick has the layer shift')
         taken = Counter((p.button, p.axis, p.beyond > p.rest) for p in self.presses.values())

@@ -1,5 +1,6 @@
 """What a machine is like at the poses that it reaches: conditioning, joint speed, sections."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,7 +50,9 @@ def joint_rates(machine: Machine, poses: Pose) -> Array:
     return np.asarray(np.linalg.pinv(jacobian, rcond=RANK), dtype=np.float64)
 
 
-def ranges(machine: Machine) -> dict[str, tuple[float, float]]:
+def ranges(
+    machine: Machine, on_progress: Callable[[float], None] = lambda share: None
+) -> dict[str, tuple[float, float]]:
     """How far home moves along and about each axis alone, metres and radians."""
     found = {}
     for axis, name in enumerate(AXES):
@@ -59,6 +62,7 @@ def ranges(machine: Machine) -> dict[str, tuple[float, float]]:
             travel(machine, machine.kinematics.home, sign * unit).seconds for sign in (-1.0, 1.0)
         )
         found[name] = (-low, high)
+        on_progress((axis + 1) / len(AXES))
     return found
 
 

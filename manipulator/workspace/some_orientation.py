@@ -8,8 +8,8 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array, Mask
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.reach.readings import read_limits
-from manipulator.reach.way import admits
+from manipulator.reach.readings import readings_of
+from manipulator.reach.way import keeps_limits
 from manipulator.workspace.volume import Box
 
 STARTS = 40
@@ -50,17 +50,18 @@ class SomeOrientation:
         """Notes in the last three what the trial angles (N, 3) better."""
         rest = np.flatnonzero(~found)
         pose = Pose(positions[rest], so3.from_rpy(trial[rest]))
-        inside = admits(self.machine, pose)
+        joints = self.machine.kinematics.inverse_or_nan(pose)
+        inside = keeps_limits(self.machine, pose, joints)
         found[rest[inside]] = True
         rest, pose = rest[~inside], pose[~inside]
-        score = self._score(pose)
+        score = self._score(pose, joints[~inside])
         better = score > best[rest]
         best[rest[better]] = score[better]
         angles[rest[better]] = trial[rest[better]]
 
-    def _score(self, pose: Pose) -> Array:
+    def _score(self, pose: Pose, joints: Array) -> Array:
         """The worst margin that exists, metres by the characteristic length; (N,)."""
-        readings = read_limits(self.machine, pose)
+        readings = readings_of(self.machine, pose, joints)
         length = self.machine.kinematics.characteristic_length
         scales = np.array([length if unit == 'm' else 1.0 for _, _, unit in readings.names])
         margins = readings.margins / np.tile(scales, 2)

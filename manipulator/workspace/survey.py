@@ -8,13 +8,14 @@ import numpy as np
 
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.reach.way import is_connected
+from manipulator.reach.way import is_connected, is_joint_box
 from manipulator.workspace.inside import ranges
 from manipulator.workspace.some_orientation import SomeOrientation
-from manipulator.workspace.volume import Box, Volume, bounding_box, volume, with_orientation
+from manipulator.workspace.volume import PILOT, Box, Volume, bounding_box, volume, with_orientation
 
 SEED = 1
 PILOT_STEPS, PILOT_POSITIONS = 20, 4000
+FEWEST_SEARCHED = 64
 SEARCHED = 64  # positions with home's orientation for one position with some orientation
 CONNECTION_SAMPLES = 200
 
@@ -41,19 +42,26 @@ class Survey:
 
 
 def survey(machine: Machine, points: int, tilt: float, on_progress: OnProgress) -> Survey:
-    """From `points` positions with home's orientation, and a 64th of them with some other."""
+    """From `points` positions with home's orientation, and a 64th of them with some other.
+
+    Where they are to be looked for is found from fewer positions where few are asked for.
+    """
     home, length = machine.kinematics.home, machine.kinematics.characteristic_length
-    found = ranges(machine)
-    on_progress('ranges', 1.0)
+    found = ranges(machine, partial(on_progress, 'ranges'))
     straight = with_orientation(machine, home.rotation)
-    box = bounding_box(straight, home.position, length)
+    pilot = min(PILOT, points)
+    box = bounding_box(straight, home.position, length, pilot, partial(on_progress, 'box'))
     generator = np.random.default_rng(SEED)
     constant = volume(straight, box, points, generator, partial(on_progress, 'volume'))
     share = _connected_share(machine, box)
     wide = bounding_box(
-        SomeOrientation(machine, tilt, PILOT_STEPS), home.position, length, PILOT_POSITIONS
+        SomeOrientation(machine, tilt, PILOT_STEPS),
+        home.position,
+        length,
+        min(PILOT_POSITIONS, max(points // 5, 400)),
+        partial(on_progress, 'orientations box'),
     )
-    few = max(points // SEARCHED, 16)
+    few = max(points // SEARCHED, FEWEST_SEARCHED)
     steps = SomeOrientation(machine, tilt).steps
     half, some = (
         volume(
@@ -70,6 +78,8 @@ def survey(machine: Machine, points: int, tilt: float, on_progress: OnProgress) 
 
 def _connected_share(machine: Machine, box: Box) -> float:
     """Of up to 200 admitted positions of the box, the part that is connected to home."""
+    if is_joint_box(machine):
+        return 1.0
     places = box.lattice(20 * CONNECTION_SAMPLES, np.full(3, 0.5))
     rotation = machine.kinematics.home.rotation
     inside = places[with_orientation(machine, rotation)(places)][:CONNECTION_SAMPLES]

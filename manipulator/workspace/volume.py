@@ -65,23 +65,33 @@ def with_orientation(machine: Machine, rotation: Array) -> Reached:
     return reached
 
 
-def bounding_box(reached: Reached, centre: Array, size: float, pilot: int = PILOT) -> Box:
+def bounding_box(
+    reached: Reached,
+    centre: Array,
+    size: float,
+    pilot: int = PILOT,
+    on_progress: Callable[[float], None] = lambda share: None,
+) -> Box:
     """A box that holds all that is reached about `centre`, found from a box of ±size (m).
 
     It is doubled until nothing reached lies in its outer tenths, then fitted with a fifth to
-    spare on each side.
+    spare on each side. It holds no more than `centre` where no position was found.
     """
-    for _ in range(MOST_DOUBLINGS):
+    last = centre[None]
+    for doubling in range(MOST_DOUBLINGS):
+        on_progress(doubling / MOST_DOUBLINGS)
         box = Box(centre - size, centre + size)
         places = box.lattice(pilot, np.full(3, 0.5))
         inside = places[reached(places)]
+        last = inside if len(inside) else last
         if len(inside) and np.abs(inside - centre).max() > 0.9 * size:
             size *= 2.0
         elif len(inside) < pilot // 200:
             size = 1.2 * float(np.abs(inside - centre).max()) if len(inside) else size / 2.0
         else:
             break
-    low, high = inside.min(axis=0), inside.max(axis=0)
+    on_progress(1.0)
+    low, high = last.min(axis=0), last.max(axis=0)
     spare = PADDING * (high - low)
     return Box(low - spare, high + spare)
 

@@ -18,6 +18,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.http11 import Request, Response
 
 from manipulator.errors import Refused
+from manipulator.words import shown
 from panel.access import refusal
 
 JOYSTICK_PATH = '/joystick'
@@ -60,7 +61,9 @@ def _check_host(host: str) -> None:
         with socket.socket(socket.AF_INET6 if ':' in host else socket.AF_INET) as probe:
             probe.bind((host, 0))
     except OSError as error:
-        raise Refused(f'host {host!r} is no address of this computer: {error.strerror}') from error
+        raise Refused(
+            f'host {shown(host)} is no address of this computer: {error.strerror}'
+        ) from error
 
 
 @contextlib.contextmanager

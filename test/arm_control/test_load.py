@@ -1,5 +1,6 @@
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from arm_control.inverse_method import Numerical
@@ -8,6 +9,7 @@ from arm_control.parallel_axes import ParallelAxes
 from arm_control.spherical_wrist import SphericalWrist
 from bridge.servo_config import BoardConfig
 from manipulator.errors import ConfigError
+from manipulator.rotation import from_rpy
 
 
 @pytest.mark.parametrize(
@@ -87,3 +89,62 @@ def test_a_screw_without_direction_is_refused(machine_file):
     }
     with pytest.raises(ConfigError, match='has no direction'):
         arm(replace(machine_file('arm_6r'), geometry=geometry))
+
+
+CALIBRATED = (
+    (0.279332356195598, 89.97377351635724, 88.8794492754001, -0.0005515862795130782),
+    (-56.6854832098269, -0.04204899604596786, 574241.3845794561, -82.33806877859622),
+    (-326.46702272051, 0.1865592729591728, -507363.40209816804, 116.04865943980298),
+    (0.0149388687216263, 89.9772951184475, -66767.6839353205, -33.70451094100497),
+    (0.000223692592990586, -90.01224276111223, 94.9734691141216, 0.0023700249666705636),
+    (0.0, 0.0, 82.56250145549531, 0.0004683211769942338),
+)
+"""A UR5's own parameters, Universal_Robots_ROS_Driver issue 457: axes 2 to 4 almost parallel."""
+
+KEYS = ('a_mm', 'alpha_deg', 'd_mm', 'offset_deg')
+
+
+def with_rows(file, rows):
+    dh = [dict(zip(KEYS, row, strict=True)) for row in rows]
+    return replace(file, geometry={**file.geometry, 'dh': dh})
+
+
+def test_calibrated_arm_whose_distances_along_axes_cancel_is_taken_whole(machine_file):
+    calibrated = arm(with_rows(machine_file('ur5'), CALIBRATED)).kinematics
+    nominal = arm(machine_file('ur5')).kinematics
+    joints = np.array([0.3, -1.2, 1.1, -1.5, -1.4, 0.2])
+    pose = calibrated.forward(joints).pose
+    product = np.eye(4)
+    for (a, alpha, d, offset), q in zip(CALIBRATED, joints, strict=True):
+        turned, tilted, moved = np.eye(4), np.eye(4), np.eye(4)
+        turned[:3, :3] = from_rpy((0.0, 0.0, q + np.radians(offset)))
+        tilted[:3, :3] = from_rpy((np.radians(alpha), 0.0, 0.0))
+        moved[:3, 3] = 1e-3 * a, 0.0, 1e-3 * d
+        product = product @ turned @ moved @ tilted
+    assert pose.position == pytest.approx(product[:3, 3], abs=1e-9)
+    assert pose.rotation == pytest.approx(product[:3, :3], abs=1e-9)
+    assert np.linalg.norm(pose.position - nominal.forward(joints).pose.position) < 5e-3
+    found = calibrated.inverse_all(pose)
+    assert np.nanmin(np.abs(found - joints).max(axis=1)) < 1e-9
+    as_built, ideal = (np.isfinite(k.inverse_all(pose)).all(axis=1) for k in (calibrated, nominal))
+    assert as_built.sum() == ideal.sum()
+    (stroke,) = calibrated.skeleton(pose, joints)
+    assert np.abs(stroke.points).max() < 1.0
+
+
+@pytest.mark.parametrize(
+    ('change', 'said'),
+    [
+        (lambda i, a, d: (1e-3 * a, 1e-3 * d), 'all links together are 1.* are these metres'),
+        (lambda i, a, d: (a, 1e3 * d if i == 0 else d), 'joint 2 is 89.16 m from joint 1'),
+        (lambda i, a, d: (a, 133e3 if i == 1 else d), 'joint 5 is 133.1 m from joint 4'),
+        (lambda i, a, d: (1e3 * a, d), r'dh\[1\].a_mm: .* is it in another unit'),
+    ],
+)
+def test_arm_out_of_proportion_is_asked_about_its_units(machine_file, change, said):
+    file = machine_file('ur5')
+    rows = [[row.get(key, 0.0) for key in KEYS] for row in file.geometry['dh']]
+    for i, row in enumerate(rows):
+        row[0], row[2] = change(i, row[0], row[2])
+    with pytest.raises(ConfigError, match=said):
+        arm(with_rows(file, rows))

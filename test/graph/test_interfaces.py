@@ -39,3 +39,9 @@ def test_diagnostics_use_only_the_keys_of_the_document(enabled, node, interfaces
     keys = {pair.key for pair in enabled.diagnostics[name].values}
     listed = set(re.findall(r'`(\w+)`', interfaces.section(node).split('Diagnostics:')[1]))
     assert keys <= listed
+
+
+def test_diagnostics_name_the_machine(enabled, patient_robocake):
+    name = 'hexapod/pose'
+    enabled.wait('diagnostics', lambda: name in enabled.diagnostics, 5.0)
+    assert enabled.diagnostics[name].hardware_id == patient_robocake

@@ -18,6 +18,7 @@ from rclpy.serialization import deserialize_message
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
 
 from manipulator.nodes.messages import seconds
 from manipulator.nodes.qos import LATCHED as LATCHED_QUALITIES
@@ -155,6 +156,25 @@ def test_only_the_topics_asked_for_and_what_never_was(enabled, hexarm, tmp_path)
     assert said.count(wrong) == 2, 'once while it runs, once at its end'
     with AnyReader([path]) as reader:
         assert {c.topic for c in reader.connections} == {'/hexapod/pose'}
+
+
+def test_it_says_that_it_records_only_once_it_has_met_publishers(user, hexarm, tmp_path):
+    recorder = hexarm('record', 'later', '-o', str(tmp_path / 'later.mcap'))
+    assert recorder.stdout.readline() == 'waiting for publishers of /later\n'
+    said = recorder.stdout.readline()
+    assert said.startswith('nobody answers in /later on ROS domain')
+    assert said.endswith('; still waiting, Ctrl-C ends it\n')
+    publisher = user.node.create_publisher(Float64, '/later/voltage', 10)
+    assert recorder.stdout.readline().startswith('recording /later into ')
+    for _ in range(3):
+        publisher.publish(Float64(data=7.4))
+    user.spin(1.0)
+    recorder.send_signal(signal.SIGINT)
+    ends_with(recorder, 0)
+    user.node.destroy_publisher(publisher)
+    with AnyReader([tmp_path / 'later.mcap']) as reader:
+        heard = [connection.topic for connection, _, _ in reader.messages()]
+    assert heard.count('/later/voltage') == 3
 
 
 def test_namespace_without_a_machine_says_so_and_leaves_no_file(hexarm, tmp_path):

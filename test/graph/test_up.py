@@ -4,10 +4,13 @@ import os
 import signal
 import time
 import urllib.request
+from pathlib import Path
 
 import pytest
 
 pytestmark = pytest.mark.graph
+
+ROBOCAKE = Path(__file__).resolve().parents[2] / 'config' / 'robocake.yaml'
 
 
 def read_until(process, words):
@@ -34,7 +37,8 @@ def node_of(words, processes_left):
 
 def test_up_enables_runs_and_parks_on_ctrl_c(hexarm, processes_left):
     process = hexarm('up', 'hexapod')
-    read_until(process, 'is up on fake and enabled')
+    said = read_until(process, 'is up on fake and enabled')
+    assert said.count(f'machine robocake: {ROBOCAKE} (rotary hexapod; RoboCake, crank') == 5
     assert len(processes_left()) == 7  # up, five nodes, the trajectory node's path_listener
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()

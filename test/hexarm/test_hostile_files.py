@@ -63,6 +63,13 @@ def test_keys_and_values_that_cannot_be_made_are_refused(text):
         parse_yaml(text)
 
 
+def test_a_machine_is_described_in_one_line_with_its_file(tmp_path):
+    path = tmp_path / 'mine.yaml'
+    path.write_text((ROOT / 'config' / 'stewart_6_3.yaml').read_text())
+    said = machines.described(str(tmp_path / '.' / 'mine.yaml'))
+    assert said.startswith(f'machine mine: {path} (linear hexapod; Gough-Stewart platform')
+
+
 def test_anchor_bomb_is_refused_before_it_grows():
     lines = ['a0: &a0 [x, x, x, x, x, x, x, x, x]']
     lines += [f'a{k}: &a{k} [{", ".join([f"*a{k - 1}"] * 9)}]' for k in range(1, 12)]

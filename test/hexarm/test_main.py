@@ -1,12 +1,16 @@
 """The command without, or with an unknown, subcommand."""
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from hexarm.commands import COMMANDS
 from hexarm.main import main
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_no_subcommand_prints_help_with_examples_and_fails(capsys):
@@ -102,3 +106,26 @@ def test_ctrl_c_while_modules_are_imported_is_silent():
 def test_the_command_itself_is_light_so_that_ctrl_c_is_caught_early():
     script = 'import sys, hexarm.main; sys.exit("numpy" in sys.modules)'
     assert subprocess.run([sys.executable, '-c', script], check=False, timeout=60).returncode == 0
+
+
+@pytest.mark.parametrize(
+    'words', [('machines',), ('--help',), ('check', 'robocake'), ('check', '!')]
+)
+def test_output_that_nobody_reads_ends_it_quietly(words):
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, 'wb') as nobody:
+        done = subprocess.run(
+            [sys.executable, '-m', 'hexarm', *words], cwd=ROOT, check=False, timeout=60,
+            stdout=nobody, stderr=subprocess.PIPE,
+        )  # fmt: skip
+    assert done.stderr == b''
+    # argparse itself passes over help that cannot be written.
+    assert done.returncode == 141 or words == ('--help',)
+
+
+def test_wrong_arguments_are_not_repeated_whole(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(['fk', 'robocake', 'x' * 5000])
+    assert ended.value.code == 2
+    assert len(capsys.readouterr().err) < 800

@@ -1,0 +1,124 @@
+"""What of a good machine file is doubtful all the same: a home bent the other way, odd pulses."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from bridge.calibration import COUNTS_PER_US, Calibration
+from hexapod_control.rotary import RotaryHexapod
+from manipulator.arrays import Array, Mask
+from manipulator.limits.joint_range import JointRange
+from manipulator.machine import Machine
+
+LEVEL, NEARLY_LEVEL, TILTED = np.radians(2.0), np.radians(10.0), np.radians(20.0)
+"""How far a crank is from level, either way, to count as such; and to count as tilted."""
+
+ASIDE, FAR, NEAR = 0.2, 0.5, 0.2
+"""Distances from the middle of a joint's range, as shares of half the range."""
+
+WIDEST = np.radians(270.0)
+"""Of a crank range whose middle says something of the machine: a wider one is just left open."""
+
+PULSES_US = (450.0, 2550.0)
+"""What hobby servos take, about 500 to 2500 µs; other centres are counts of other drives."""
+
+US_PER_DEG = (5.5, 11.2)
+"""Of servos that turn about 180° within 1000 to 2000 µs, from a third to all of it."""
+
+GEARED_US = 700.0
+"""So far from its centre goes a pulse that fills what there is: a geared servo, or a winch's."""
+
+
+def warnings_of(machine: Machine, calibration: Calibration | None) -> list[str]:
+    """One sentence for each doubt about a machine without problems."""
+    found = list(_other_bend(machine))
+    if calibration is not None:
+        found += _pulses(machine, calibration)
+    return found
+
+
+def joint_range(machine: Machine) -> JointRange | None:
+    """The machine's limit of its joints' travel."""
+    return next((x for x in machine.constraints.limits if isinstance(x, JointRange)), None)
+
+
+def _other_bend(machine: Machine) -> Iterator[str]:
+    """Cranks that home tilts, while the other bend has them level or in mid-range.
+
+    So it is where a machine was described mirrored, or its crank angles were counted backwards.
+    """
+    kinematics, limit = machine.kinematics, joint_range(machine)
+    if not isinstance(kinematics, RotaryHexapod) or limit is None:
+        return
+    bends = kinematics.inverse_all(kinematics.home)
+    home, other = bends[0], bends[-1]
+    legs = np.flatnonzero(_is_doubtful(home, other, limit))
+    if legs.size:
+        yield (
+            f'home has {_names(kinematics.joint_names, legs.tolist())} at {_degrees(home[legs])}, '
+            f'in a range with its middle at {_degrees((limit.low + limit.high)[:1] / 2)}; bent '
+            f'the other way: {_degrees(other[legs])}. Is a crank tangent, or the whole, mirrored?'
+        )
+
+
+def _is_doubtful(home: Array, other: Array, limit: JointRange) -> Mask:
+    half, middle = (limit.high - limit.low) / 2, (limit.high + limit.low) / 2
+    aside, other_aside = (np.abs(_wrapped(q - middle)) / half for q in (home, other))
+    slope = np.abs(np.arcsin(np.sin(other)))
+    is_level = (slope < LEVEL) & (aside > ASIDE) | (slope < NEARLY_LEVEL) & (aside > FAR)
+    is_central = (other_aside < NEAR) & (aside > FAR) & (2 * half <= WIDEST)
+    doubtful: Mask = (np.abs(np.arcsin(np.sin(home))) > TILTED) & (is_level | is_central)
+    return doubtful
+
+
+def _pulses(machine: Machine, calibration: Calibration) -> Iterator[str]:
+    """Servos whose pulses leave what servos take, or turn too little or too much a microsecond."""
+    limit, names = joint_range(machine), machine.kinematics.joint_names
+    if limit is None or not set(names) <= set(calibration.names):
+        return
+    order = [calibration.names.index(name) for name in names]
+    centre_us = calibration.centre_count[order] / COUNTS_PER_US
+    scale = calibration.scale[order] / COUNTS_PER_US
+    ends = centre_us + scale * (np.stack([limit.low, limit.high]) - calibration.centre[order])
+    is_servo = (centre_us > PULSES_US[0]) & (centre_us < PULSES_US[1])
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    beyond = is_servo & ((low < PULSES_US[0]) | (high > PULSES_US[1]))
+    for joints in _alike(beyond, low, high):
+        yield (
+            f'servos.joints: the range of {_names(names, joints)} needs pulses of '
+            f'{low[joints[0]]:.0f} to {high[joints[0]]:.0f} µs, hobby servos take about 500 to '
+            f'2500: is us_per_{"deg" if calibration.unit == "rad" else "mm"} right?'
+        )
+    if calibration.unit != 'rad':
+        return
+    per_deg = np.abs(scale) * np.radians(1.0)
+    is_geared = np.maximum(high - centre_us, centre_us - low) >= GEARED_US
+    fits = (per_deg >= US_PER_DEG[0]) & (per_deg <= US_PER_DEG[1]) | is_geared
+    for joints in _alike(is_servo & ~beyond & ~fits, per_deg, low, high):
+        yield (
+            f'servos.joints: {_names(names, joints)} at {per_deg[joints[0]]:.3g} µs/deg, pulses '
+            f'of only {low[joints[0]]:.0f} to {high[joints[0]]:.0f} µs in use; hobby servos have '
+            f'{US_PER_DEG[0]} to {US_PER_DEG[1]} µs/deg, unless geared: is us_per_deg right?'
+        )
+
+
+def _alike(chosen: Mask, *values: Array) -> Iterator[list[int]]:
+    """The chosen joints, those with the same values together."""
+    groups: dict[tuple[float, ...], list[int]] = {}
+    for i in np.flatnonzero(chosen).tolist():
+        groups.setdefault(tuple(round(float(v[i]), 3) for v in values), []).append(i)
+    yield from groups.values()
+
+
+def _names(names: Sequence[str], joints: Sequence[int]) -> str:
+    return ', '.join(names[i] for i in joints)
+
+
+def _degrees(angles: Array) -> str:
+    return ', '.join(f'{angle:.1f}°' for angle in np.degrees(angles) + 0.0)
+
+
+def _wrapped(angles: Array) -> Array:
+    """Within half a turn of zero."""
+    wrapped: Array = np.remainder(angles + np.pi, 2 * np.pi) - np.pi
+    return wrapped
