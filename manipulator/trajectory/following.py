@@ -8,12 +8,16 @@ import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.machine import Machine
+from manipulator.trajectory.motion_status import MotionStatus
 
 WINDOW = 0.5
 """Seconds by which the joints may lag behind."""
 
 PATIENCE = 0.3
 """Seconds for which they may be elsewhere."""
+
+ARRIVAL_PATIENCE = 1.0
+"""Seconds that the joints may take to arrive once a plan's time is over."""
 
 FOLLOWING_SHARE, MOST_FOLLOWING = 0.06, 0.2
 """Of a joint's range (and rad, for joints that turn) that it may be from its commands."""
@@ -102,3 +106,29 @@ class Following:
         allowed = f'tolerance {tolerance[k] * factor:.3g}{unit}'
         words = f'{away[k] * factor:.3g}{unit} away from {what} ({allowed})'
         return f'{self._names[k]} is {words}', float(away[k] - tolerance[k])
+
+
+class Arrival:
+    """Holds *reached* back until the joints are there, for as long as they may take."""
+
+    def __init__(self, dt: float) -> None:
+        self._dt = dt
+        self._judged: MotionStatus | None = None
+        self._waited = 0
+
+    def judged(self, status: MotionStatus, missing: str) -> MotionStatus | None:
+        """What is to be reported of a status that may be new, once a tick; None for nothing new.
+
+        A plan whose time is over says *reached*. missing: what is not there yet, in words; what
+        does not come in time ends the motion as *stopped*, with these.
+        """
+        if status is self._judged:
+            return None
+        is_late = status.result == 'reached' and bool(missing)
+        self._waited = self._waited + 1 if is_late else 0
+        if is_late and self._waited * self._dt < ARRIVAL_PATIENCE:
+            return None
+        self._judged, self._waited = status, 0
+        if is_late:
+            return MotionStatus(status.mode, 'stopped', status.goal_stamp, missing)
+        return status

@@ -14,7 +14,7 @@ from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.trajectory.following import Following, Tolerances
+from manipulator.trajectory.following import Arrival, Following, Tolerances
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.player import Player
 from manipulator.trajectory.worker import Worker
@@ -39,9 +39,6 @@ POSE_PATIENCE, POSE_DEADLINE = 0.2, 0.5
 
 STATE_DEADLINE = 1.5
 """Seconds without the bridge's word after which its last one counts for nothing."""
-
-ARRIVAL_PATIENCE = 1.0
-"""Seconds that the joints may take to arrive once a plan's time is over."""
 
 PRESENT = 0.1
 """Of the tolerance of following, how far the joints may be from the pose where motion begins."""
@@ -81,8 +78,7 @@ class Pilot:
         self._is_measured = False
         self._joints: Array | None = None
         self._pose: Pose | None = None
-        self._judged: MotionStatus | None = None
-        self._waited = 0
+        self._arrival = Arrival(dt)
         self._misfits = 0
         self._misfit = ''
         self._override = 1.0
@@ -206,26 +202,10 @@ class Pilot:
         pose = self._player.step()
         self._following.command(self._player.joints)
         if self._is_followed:
-            self._judge(self._player.status, self._following)
+            missing = self._following.missing(self._is_measured)
+            words = f'{missing}{self._distance_words()}' if missing else ''
+            self.status = self._arrival.judged(self._player.status, words) or self.status
         return self.machine.frames.platform(pose)
-
-    def _judge(self, status: MotionStatus, following: Following) -> None:
-        """Takes the player's status over; that a goal is reached only once the joints are there.
-
-        A plan whose time is over says *reached* to us: joints that do not come in time end it as
-        *stopped*, with how far they are away.
-        """
-        if status is self._judged:
-            return
-        missing = following.missing(self._is_measured) if status.result == 'reached' else ''
-        self._waited = self._waited + 1 if missing else 0
-        if missing and self._waited * self._dt < ARRIVAL_PATIENCE:
-            return
-        self._judged, self._waited = status, 0
-        if missing:
-            reason = f'{missing}{self._distance_words()}'
-            status = MotionStatus(status.mode, 'stopped', status.goal_stamp, reason)
-        self.status = status
 
     def _distance_words(self) -> str:
         """How far the measured platform or tool is from the commanded pose."""
@@ -249,7 +229,7 @@ class Pilot:
         self._following = Following(
             kinematics.joint_names, kinematics.joint_unit, self._tolerances, self._dt
         )
-        self._judged = None
+        self._arrival = Arrival(self._dt)
         self.status = player.status if self._is_followed else CONNECTING
 
     def _gaps(self, T_base_platform: Pose, joints: Array) -> Array:

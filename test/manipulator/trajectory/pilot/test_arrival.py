@@ -5,9 +5,9 @@ import pytest
 
 from hexarm.machines import load
 from manipulator.pose import Pose
-from manipulator.trajectory.following import Tolerances
+from manipulator.trajectory.following import ARRIVAL_PATIENCE, Tolerances
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.pilot import ARRIVAL_PATIENCE, Pilot
+from manipulator.trajectory.pilot import Pilot
 
 DT = 0.01
 
