@@ -1,10 +1,22 @@
 """What tests of every folder may ask for."""
 
+import importlib.util
 import os
+import shutil
 
 import pytest
 
 from hexarm import firmware_build
+
+CHROMIUM = shutil.which('chromium') or '/usr/bin/chromium'
+QUIET = ('background-networking', 'component-update', 'sync', 'default-apps', 'extensions')
+FLAGS = [
+    '--no-sandbox',
+    '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader',
+    '--no-first-run',
+    *(f'--disable-{name}' for name in QUIET),
+]
 
 
 @pytest.fixture(scope='session')
@@ -13,3 +25,18 @@ def chip_tools():
     missing = firmware_build.missing_tools()
     if missing and os.environ.get('REQUIRE_ALL') != '1':
         pytest.skip(f'not installed: {", ".join(missing)}')
+
+
+@pytest.fixture(scope='module')
+def browser():
+    """Chromium; where it cannot be had, the tests are skipped, or fail where all must run."""
+    found = [name for name in ('playwright', 'viser') if importlib.util.find_spec(name) is None]
+    missing = found or [path for path in (CHROMIUM,) if not os.path.exists(path)]
+    if missing and os.environ.get('REQUIRE_ALL') != '1':
+        pytest.skip(f'not installed: {", ".join(missing)}')
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 (an error only if required)
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield browser
+        browser.close()
