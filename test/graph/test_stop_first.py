@@ -12,12 +12,12 @@ from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from bench.tap import Tap, TappedLine
 from bridge.board_thread import BoardThread, FakeMachine
 from bridge.calibration import Calibration
 from bridge.messages import Stop
 from bridge.program_messages import CycleAxis, Play, TableRow
 from bridge.servo_config import BoardConfig
+from bridge.tapped_line import Tap, TappedLine
 from hexarm import machines
 from hexarm.board_solver import board_solver
 from hexarm.client import Client
