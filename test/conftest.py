@@ -1,7 +1,8 @@
-"""What tests of every folder may ask for."""
+"""What tests of every folder may ask for, and what keeps those of several workers apart."""
 
 import importlib.util
 import os
+import random
 import shutil
 
 import pytest
@@ -17,6 +18,19 @@ FLAGS = [
     '--no-first-run',
     *(f'--disable-{name}' for name in QUIET),
 ]
+
+DOMAINS = range(1, 101)
+
+RUN = os.environ.get('PYTEST_XDIST_TESTRUNUID', str(os.getpid()))
+WORKER = int(os.environ.get('PYTEST_XDIST_WORKER', 'gw0').removeprefix('gw'))
+os.environ['ROS_DOMAIN_ID'] = str(random.Random(RUN).sample(DOMAINS, len(DOMAINS))[WORKER])
+os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+
+
+@pytest.fixture(scope='session')
+def worker():
+    """The number of this worker among those that run tests at the same time, from 0."""
+    return WORKER
 
 
 @pytest.fixture(scope='session')

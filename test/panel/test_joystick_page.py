@@ -83,10 +83,10 @@ class Hand:
 class Panel:
     """The panel's server with nothing but the joystick on its page."""
 
-    def __init__(self, browser, folder):
+    def __init__(self, browser, folder, port):
         self._browser = browser
         self._socket = JoystickSocket(lambda: '')
-        self._server = start_server('127.0.0.1', 8500, 'joystick', self._socket.serve)
+        self._server = start_server('127.0.0.1', port, 'joystick', self._socket.serve)
         html = (folder / 'panel' / 'joystick.html').read_text(encoding='utf-8')
         self._server.gui.add_html(joystick_frame(html))
 
@@ -125,8 +125,8 @@ class Panel:
 
 
 @pytest.fixture(scope='module')
-def panel(browser, pytestconfig):
-    panel = Panel(browser, pytestconfig.rootpath)
+def panel(browser, pytestconfig, worker):
+    panel = Panel(browser, pytestconfig.rootpath, 9500 + worker)
     yield panel
     panel.close()
 
