@@ -22,10 +22,10 @@ from bridge.board_thread import BoardThread, FakeMachine
 from bridge.faults import Faults
 from bridge.plant import Plant
 from bridge.servo_config import BoardConfig
-from bridge.tapped_line import Tap, TappedLine
 from hexarm import machines
 from hexarm.client import Client, NotReady
 from hexarm.graph import Graph, machine_graph
+from hexarm.tapped_line import Tap, TappedLine
 from manipulator.errors import ManipulatorError
 
 Pulses = tuple[float | None, ...]

@@ -17,11 +17,11 @@ from bridge.calibration import Calibration
 from bridge.messages import Stop
 from bridge.program_messages import CycleAxis, Play, TableRow
 from bridge.servo_config import BoardConfig
-from bridge.tapped_line import Tap, TappedLine
 from hexarm import machines
 from hexarm.board_solver import board_solver
 from hexarm.client import Client
 from hexarm.graph import Executable, Graph
+from hexarm.tapped_line import Tap, TappedLine
 from manipulator.nodes.qos import EVERY_WORD, LATCHED
 
 pytestmark = pytest.mark.graph
