@@ -4,6 +4,7 @@ import importlib.util
 import os
 import random
 import shutil
+from pathlib import Path
 
 import pytest
 
@@ -19,12 +20,21 @@ FLAGS = [
     *(f'--disable-{name}' for name in QUIET),
 ]
 
+FOLDER = Path(__file__).parent
 DOMAINS = range(1, 101)
 
 RUN = os.environ.get('PYTEST_XDIST_TESTRUNUID', str(os.getpid()))
 WORKER = int(os.environ.get('PYTEST_XDIST_WORKER', 'gw0').removeprefix('gw'))
 os.environ['ROS_DOMAIN_ID'] = str(random.Random(RUN).sample(DOMAINS, len(DOMAINS))[WORKER])
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+
+
+def pytest_collection_modifyitems(items):
+    """Marks what starts other programs: graphs, installations, a browser."""
+    for item in items:
+        folder = item.path.relative_to(FOLDER).parts[0]
+        if folder in ('graph', 'install') or 'browser' in item.fixturenames:
+            item.add_marker('processes')
 
 
 @pytest.fixture(scope='session')
