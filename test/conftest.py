@@ -7,8 +7,14 @@ import shutil
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from hexarm import firmware_build
+
+settings.register_profile(  # how long a computer takes is no verdict
+    'patient', deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.load_profile('patient')
 
 CHROMIUM = shutil.which('chromium') or '/usr/bin/chromium'
 QUIET = ('background-networking', 'component-update', 'sync', 'default-apps', 'extensions')

@@ -72,14 +72,15 @@ def test_cable_pulled_and_put_back_needs_enable_and_nothing_resumes(world):
     assert_within_limits(world)
 
 
-def test_a_stuck_servo_is_named_where_it_is_measured_and_the_goal_dropped(make_world):
-    world = make_world('stewart_6_6')
-    if not world.bridge.monitor.is_measured:
-        pytest.skip('its drives report commands')
+def test_a_stuck_joint_that_is_measured_is_named_and_the_goal_dropped(make_world):
+    world = make_world('arm_6r_stepper')
+    kinematics = world.machine.kinematics
+    turned = kinematics.inverse(kinematics.home)
+    turned[0] += 0.6
     world.board.stuck_channel = 0
-    world.send_goal(world.machine.kinematics.home.moved([0.1, 0.0, 0.05, 0.0, 0.0, 0.0]))
-    world.wait('stop', lambda: world.status.result == 'stopped')
-    assert 'is' in world.status.reason
+    there = world.go_to(kinematics.forward(turned).pose)
+    assert there.result == 'stopped'
+    assert f'{kinematics.joint_names[0]} is ' in there.reason
 
 
 def assert_within_limits(world):

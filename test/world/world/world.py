@@ -142,10 +142,15 @@ class World:
         self.wait(f'answer to {command}', lambda: answer.said is not None)
         return answer.said
 
+    def ask_to_arm(self):
+        return self.bridge.ask(Arm(self.calibration.counts(self.calibration.park)))
+
     def enable(self):
         self.wait('board', lambda: self.state not in ('disconnected', 'booting'))
         if self.state != 'enabled':
-            assert self.ask(Arm(self.calibration.counts(self.calibration.park))) == ''
+            answer = self.ask_to_arm()
+            self.wait('answer to ARM', lambda: answer.said is not None)
+            assert answer.said == ''
         self.wait('enabled machine', lambda: self.state == 'enabled')
         self.wait('supervisor that holds', lambda: self.status.mode == 'hold')
 
