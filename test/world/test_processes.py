@@ -75,8 +75,7 @@ def test_cable_pulled_and_put_back_needs_enable_and_nothing_resumes(world):
 def test_a_stuck_joint_that_is_measured_is_named_and_the_goal_dropped(make_world):
     world = make_world('arm_6r_stepper')
     kinematics = world.machine.kinematics
-    turned = kinematics.inverse(kinematics.home)
-    turned[0] += 0.6
+    turned = kinematics.inverse(kinematics.home) + 0.6 * np.eye(6)[0]
     world.board.stuck_channel = 0
     there = world.go_to(kinematics.forward(turned).pose)
     assert there.result == 'stopped'
