@@ -20,6 +20,7 @@ def test_a_tick_that_was_frozen_for_too_long_says_no_setpoint(world):
     frozen = world.setpoints(before)
     world.run(2.0)
     late = world.setpoints(before)[len(frozen) :]
+    assert max(world.supervisor.ages) < POSE_DEADLINE
     assert world.status.result != 'reached'
     assert np.abs(late - late[0]).max() <= 2.0
 

@@ -12,13 +12,16 @@ TOLERANCE, DELAY = 0.2, 0.06
 
 
 class Supervisor(Process):
-    """Goals, twists, poses and the bridge's word in; setpoints out."""
+    """Goals, twists, poses and the bridge's word in; setpoints out.
+
+    ages: of each setpoint when it went out, s.
+    """
 
     def __init__(self, timeline, machine, setpoints):
         super().__init__(timeline)
         self.pilot = Pilot(machine, DT, TOLERANCE)
         self.teleop = Teleop(self.pilot, DELAY)
-        self.statuses = []
+        self.statuses, self.ages = [], []
         self._seen = None
         self.pause_in_next_tick = 0.0
         self._setpoints = setpoints
@@ -63,6 +66,7 @@ class Supervisor(Process):
     def _send(self, pose, stamp, began):
         self.pilot.note_stall(self.now - began)
         if pose is not None and self.pilot.is_driving:
+            self.ages.append(self.stamp - stamp)
             self._setpoints.send(stamp, pose)
         self._note_status()
 
