@@ -2,14 +2,19 @@
 SHELL := /bin/bash
 ENV := .venv
 BIN := $(ENV)/bin
+# One worker a core; the tests of a file stay together, for its fixtures' sake. In a worker numpy has one thread.
+PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q
 
-.PHONY: demo test lint bench soak clean
+.PHONY: demo check test lint bench soak clean
 
 demo: $(ENV)/ready
 	@$(BIN)/hexarm demo
 
-test: $(ENV)/ready
-	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/python -m pytest $(PYTEST)
+check: lint   # all that starts no other program
+	@$(PYTEST) -n auto --dist loadfile -m 'not processes'
+
+test: check
+	@$(PYTEST) -m processes
 
 lint: $(ENV)/ready
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy

@@ -47,6 +47,7 @@ setup(
         ],
         'test': [
             'pytest>=8.2',
+            'pytest-xdist>=3.6',
             'pytest-rerunfailures>=16.1',  # only where the computer itself stood still
             'hypothesis>=6.100',
             'mypy>=1.11',

@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 from std_msgs.msg import Bool
 
-from bench.rig import Rig
 from bench.row import Row
 from bridge.messages import Stop
+from hexarm.rig import Rig
 from manipulator.nodes.qos import COMMAND
 
 RUNS, STOPS = 5, 20

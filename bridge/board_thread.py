@@ -6,6 +6,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -27,6 +28,21 @@ STEP, LONGEST_STEP = 0.01, 0.05
 """Seconds; where this process stalls for longer, the board's time stands still meanwhile."""
 
 DRIVES: dict[str, type[Servos]] = {'servos': Servos, 'steppers': Steppers}
+
+
+class BoardMachine(Protocol):
+    """What the thread steps: a FakeMachine, or what watches one."""
+
+    @property
+    def board(self) -> Board:
+        """Its brain."""
+
+    @property
+    def servos(self) -> Plant:
+        """Where its joints truly are."""
+
+    def step(self, dt: float, stuck_channel: int | None = None) -> None:
+        """Lets time pass, in s."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +90,7 @@ class BoardThread(threading.Thread):
 
     def __init__(
         self,
-        machine: FakeMachine,
+        machine: BoardMachine,
         line: FakeLine,
         on_positions: Callable[[Array], None],
         faults: Faults | None = None,

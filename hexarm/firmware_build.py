@@ -1,10 +1,13 @@
 """Building the board's program and its simulated chip with make, where the tools are."""
 
+import contextlib
+import fcntl
 import hashlib
 import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,7 +45,8 @@ def missing_tools() -> list[str]:
 
 def simulator() -> Path:
     """The folder of chip.so and pty_chip, up to date."""
-    _make('simulator')
+    with _alone():
+        _make('simulator')
     return FIRMWARE / 'build' / 'simulator'
 
 
@@ -83,18 +87,29 @@ def _built(header: str, what: str, *words: str) -> Path:
     """A file made with this header, in a folder of its own: machines never mix."""
     out = f'build/{hashlib.sha256(header.encode()).hexdigest()[:12]}'
     machine_h = FIRMWARE / out / 'machine.h'
-    if not machine_h.exists():
-        machine_h.parent.mkdir(parents=True, exist_ok=True)
-        machine_h.write_text(header)
-    # -o: the header is as it shall be, whatever stands in config/.
-    _make(f'OUT={out}', '-o', f'{out}/machine.h', *words, f'{out}/{what}')
+    with _alone():
+        if not machine_h.exists():
+            machine_h.parent.mkdir(parents=True, exist_ok=True)
+            machine_h.write_text(header)
+        # -o: the header is as it shall be, whatever stands in config/.
+        _make(f'OUT={out}', '-o', f'{out}/machine.h', *words, f'{out}/{what}')
     return FIRMWARE / out / what
 
 
-def _make(*words: str) -> None:
+@contextlib.contextmanager
+def _alone() -> Iterator[None]:
+    """While no other process builds: make would write a file that another is about to load."""
     missing = missing_tools()
     if missing:
         raise CannotBuild(f'not there: {", ".join(missing)} (docs/firmware.md)')
+    folder = FIRMWARE / 'build'
+    folder.mkdir(exist_ok=True)
+    with (folder / '.lock').open('w') as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def _make(*words: str) -> None:
     command = ['make', '-s', '-C', str(FIRMWARE), f'PYTHON={sys.executable}', *words]
     # A make above this one must not hand its options down.
     environment = {k: v for k, v in os.environ.items() if k not in ('MAKEFLAGS', 'MAKELEVEL')}

@@ -1,10 +1,52 @@
-"""What tests of every folder may ask for."""
+"""What tests of every folder may ask for, and what keeps those of several workers apart."""
 
+import importlib.util
 import os
+import random
+import shutil
+from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from hexarm import firmware_build
+
+settings.register_profile(  # how long a computer takes is no verdict
+    'patient', deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.load_profile('patient')
+
+CHROMIUM = shutil.which('chromium') or '/usr/bin/chromium'
+QUIET = ('background-networking', 'component-update', 'sync', 'default-apps', 'extensions')
+FLAGS = [
+    '--no-sandbox',
+    '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader',
+    '--no-first-run',
+    *(f'--disable-{name}' for name in QUIET),
+]
+
+FOLDER = Path(__file__).parent
+DOMAINS = range(1, 101)
+
+RUN = os.environ.get('PYTEST_XDIST_TESTRUNUID', str(os.getpid()))
+WORKER = int(os.environ.get('PYTEST_XDIST_WORKER', 'gw0').removeprefix('gw'))
+os.environ['ROS_DOMAIN_ID'] = str(random.Random(RUN).sample(DOMAINS, len(DOMAINS))[WORKER])
+os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+
+
+def pytest_collection_modifyitems(items):
+    """Marks what starts other programs: graphs, installations, a browser."""
+    for item in items:
+        folder = item.path.relative_to(FOLDER).parts[0]
+        if folder in ('graph', 'install') or 'browser' in item.fixturenames:
+            item.add_marker('processes')
+
+
+@pytest.fixture(scope='session')
+def worker():
+    """The number of this worker among those that run tests at the same time, from 0."""
+    return WORKER
 
 
 @pytest.fixture(scope='session')
@@ -13,3 +55,18 @@ def chip_tools():
     missing = firmware_build.missing_tools()
     if missing and os.environ.get('REQUIRE_ALL') != '1':
         pytest.skip(f'not installed: {", ".join(missing)}')
+
+
+@pytest.fixture(scope='module')
+def browser():
+    """Chromium; where it cannot be had, the tests are skipped, or fail where all must run."""
+    found = [name for name in ('playwright', 'viser') if importlib.util.find_spec(name) is None]
+    missing = found or [path for path in (CHROMIUM,) if not os.path.exists(path)]
+    if missing and os.environ.get('REQUIRE_ALL') != '1':
+        pytest.skip(f'not installed: {", ".join(missing)}')
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 (an error only if required)
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield browser
+        browser.close()

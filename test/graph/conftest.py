@@ -10,16 +10,14 @@ from pathlib import Path
 import pytest
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
-os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
-os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+from bench.stall_watch import StallWatch
+from hexarm import panel_process
+from hexarm.client import Client
+from hexarm.graph import Graph, machine_graph
+from hexarm.up import check_alive
+
 MARK = f'HEXARM_TEST_RUN={os.getpid()}'
 os.environ['HEXARM_TEST_RUN'] = str(os.getpid())
-
-from bench.stall_watch import StallWatch  # noqa: E402 (the domain is chosen above)
-from hexarm.client import Client  # noqa: E402
-from hexarm.graph import Graph, machine_graph  # noqa: E402
-from hexarm.up import check_alive  # noqa: E402
-
 ROOT = Path(__file__).resolve().parents[2]
 STALLS = StallWatch()
 
@@ -31,6 +29,12 @@ def stall_watch():
     """What the host of this computer did to it, while there are tests."""
     with STALLS:
         yield
+
+
+@pytest.fixture(scope='session', autouse=True)
+def ports_of_their_own(worker):
+    """Panels of tests that run at the same time do not look for a port in the same place."""
+    panel_process.FIRST_PORT += panel_process.PORTS * worker
 
 
 @pytest.hookimpl(tryfirst=True)

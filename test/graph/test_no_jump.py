@@ -9,8 +9,8 @@ from geometry_msgs.msg import PointStamped
 from std_msgs.msg import Bool, Float64
 from std_srvs.srv import SetBool
 
-from bench.rig import Rig
 from bridge.messages import Clear, Setpoint, Stop
+from hexarm.rig import Rig
 from manipulator.nodes.qos import COMMAND
 
 pytestmark = pytest.mark.graph

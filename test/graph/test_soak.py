@@ -12,10 +12,10 @@ import pytest
 from std_msgs.msg import Bool, Float64
 from std_srvs.srv import SetBool
 
-from bench.rig import Rig
 from bridge.faults import Faults
 from bridge.messages import Arm, Disarm, ResetCause, Setpoint
 from hexarm import machines
+from hexarm.rig import Rig
 from manipulator.errors import ManipulatorError
 from manipulator.nodes.qos import COMMAND
 from manipulator.pose import Pose

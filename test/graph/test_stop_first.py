@@ -12,7 +12,6 @@ from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from bench.tap import Tap, TappedLine
 from bridge.board_thread import BoardThread, FakeMachine
 from bridge.calibration import Calibration
 from bridge.messages import Stop
@@ -22,6 +21,7 @@ from hexarm import machines
 from hexarm.board_solver import board_solver
 from hexarm.client import Client
 from hexarm.graph import Executable, Graph
+from hexarm.tapped_line import Tap, TappedLine
 from manipulator.nodes.qos import EVERY_WORD, LATCHED
 
 pytestmark = pytest.mark.graph

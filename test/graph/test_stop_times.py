@@ -5,8 +5,8 @@ import time
 
 import pytest
 
-from bench.rig import Rig
 from bridge.messages import Setpoint
+from hexarm.rig import Rig
 
 pytestmark = pytest.mark.graph
 

@@ -8,9 +8,6 @@ from pathlib import Path
 
 import pytest
 
-os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
-os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
-
 ROOT = Path(__file__).resolve().parents[2]
 NOT_SOURCE = shutil.ignore_patterns('.*', '__pycache__', '*.egg-info', 'build', 'test')
 ROS_PREFIXES = os.environ.get('AMENT_PREFIX_PATH', sys.prefix)

@@ -1,8 +1,5 @@
 """The panel's page in a real browser, and what sees the machine move, for any machine."""
 
-import importlib.util
-import os
-import shutil
 import time
 from dataclasses import replace
 
@@ -15,15 +12,6 @@ from sensor_msgs.msg import JointState
 from hexarm.panel_process import panel_address
 from manipulator.nodes.messages import pose_of, seconds
 
-CHROMIUM = shutil.which('chromium') or '/usr/bin/chromium'
-QUIET = ('background-networking', 'component-update', 'sync', 'default-apps', 'extensions')
-FLAGS = [
-    '--no-sandbox',
-    '--use-angle=swiftshader',
-    '--enable-unsafe-swiftshader',
-    '--no-first-run',
-    *(f'--disable-{name}' for name in QUIET),
-]
 SMALL = 0.1
 """Share of the pixels: a machine without a graphics card draws them all by itself."""
 
@@ -32,21 +20,6 @@ MOVING = 3e-4
 """Radians between two reports of a servo's true angle, 20 ms apart, from which it moves."""
 
 HELD = 'moving while you hold'
-
-
-@pytest.fixture(scope='module')
-def browser():
-    """Chromium; where it cannot be had, the tests are skipped, or fail where all must run."""
-    found = [name for name in ('playwright', 'viser') if importlib.util.find_spec(name) is None]
-    missing = found or [path for path in (CHROMIUM,) if not os.path.exists(path)]
-    if missing and os.environ.get('REQUIRE_ALL') != '1':
-        pytest.skip(f'not installed: {", ".join(missing)}')
-    from playwright.sync_api import sync_playwright  # noqa: PLC0415 (an error only if required)
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield browser
-        browser.close()
 
 
 def circling(nodes, cycle):

@@ -6,10 +6,10 @@ import json
 import numpy as np
 import pytest
 
-from bench.calibration import NOISE, some_frames, true_values
 from bridge.calibration import Calibration
 from bridge.servo_config import BoardConfig
 from hexapod_control.identification.leg_model import Tolerances
+from hexarm.calibration.campaign import NOISE, some_frames, true_values
 from hexarm.calibration.machine_model import machine_model
 from hexarm.calibration.pose_table import measurements
 from hexarm.machines import load, read

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.calibration import GOAL, NOISE, Campaign, some_frames, true_values
+from hexarm.calibration.campaign import GOAL, NOISE, Campaign, some_frames, true_values
 from manipulator.errors import InvalidInput, NoSolution
 from manipulator.identification.device_frames import DeviceFrames
 from manipulator.identification.identify import identify

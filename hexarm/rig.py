@@ -1,7 +1,7 @@
 """One machine's whole graph on a board of this process: every frame and every pulse, with times.
 
 The nodes are the shipped ones, as processes that can be killed, frozen and started again one by
-one; the line is a pty. bench/stop_times.py, test/graph and test/soak use it.
+one; the line is a pty. For measurements of whole graphs (bench/stop_times.py) and their tests.
 """
 
 import bisect
@@ -10,19 +10,25 @@ import os
 import signal
 import threading
 import time
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
+from pathlib import Path
 
 import numpy as np
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 
-from bench.tap import Tap, TappedLine
 from bridge.board_thread import BoardThread, FakeMachine
+from bridge.faults import Faults
+from bridge.plant import Plant
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.client import Client, NotReady
 from hexarm.graph import Graph, machine_graph
+from hexarm.tapped_line import Tap, TappedLine
 from manipulator.errors import ManipulatorError
+
+Pulses = tuple[float | None, ...]
 
 TRIES = 10
 PULSE_PERIOD = 0.02
@@ -37,9 +43,12 @@ CIRCLE = {  # 15 mm/s, and never a moment of rest
 
 
 class Recorder:
-    """Stands in for a FakeMachine and keeps every change of its pulses, and when it was."""
+    """Stands in for a FakeMachine and keeps every change of its pulses, and when it was.
 
-    def __init__(self, machine):
+    Stepped by the board's thread, asked from another.
+    """
+
+    def __init__(self, machine: FakeMachine) -> None:
         self.machine = machine
         self.board, self.calibration = machine.board, machine.calibration
         self._changes = [(time.monotonic(), machine.board.pulses)]
@@ -48,10 +57,12 @@ class Recorder:
         self._lock = threading.Lock()
 
     @property
-    def servos(self):
+    def servos(self) -> Plant:
+        """The machine's."""
         return self.machine.servos
 
-    def step(self, dt, stuck_channel=None):
+    def step(self, dt: float, stuck_channel: int | None = None) -> None:
+        """As the machine does."""
         self.machine.step(dt, stuck_channel)
         self._board_time += dt
         if self.board.pulses != self._changes[-1][1]:
@@ -60,17 +71,17 @@ class Recorder:
                 self._periods.append(max(1.0, np.ceil(self._board_time / PULSE_PERIOD)))
             self._board_time = 0.0
 
-    def changes(self, since=float('-inf')):
+    def changes(self, since: float = float('-inf')) -> list[tuple[float, Pulses]]:
         """(time, pulses in counts) after every change since then, with the one before it."""
         with self._lock:
             return self._changes[self._before(since) :]
 
     @property
-    def slew(self):
+    def slew(self) -> float:
         """The most that a servo's pulse may change in one pulse period, in counts."""
         return max(self.calibration.count_speeds) * PULSE_PERIOD + 1.0
 
-    def largest_step(self, since=float('-inf')):
+    def largest_step(self, since: float = float('-inf')) -> float:
         """The largest change of one pulse in one pulse period, in counts.
 
         A thread that this computer held up sees the change of several periods at once.
@@ -82,17 +93,17 @@ class Recorder:
         steps = np.abs(np.diff(pulses, axis=0)) / np.reshape(periods, (-1, 1))
         return float(np.nanmax(steps)) if np.isfinite(steps).any() else 0.0
 
-    def _before(self, since):
+    def _before(self, since: float) -> int:
         """The index of the last change before a time."""
         times = [t for t, _ in self._changes]
         return max(bisect.bisect_left(times, since) - 1, 0)
 
-    def way(self, since):
+    def way(self, since: float) -> float:
         """How far any pulse has been from where it was at that time, in counts."""
         pulses = np.array([p for _, p in self.changes(since) if None not in p])
         return float(np.abs(pulses - pulses[0]).max())
 
-    def standstill(self, since, quiet):
+    def standstill(self, since: float, quiet: float) -> float:
         """When the pulses changed for the last time, once they have been still for `quiet` s."""
         deadline = time.monotonic() + 10.0
         while time.monotonic() < deadline:
@@ -106,7 +117,15 @@ class Recorder:
 class Rig:
     """A context manager: board, line, user, and the graph's processes by name."""
 
-    def __init__(self, folder, space, kind='hexapod', machine='robocake', boot_s=0.2, faults=None):
+    def __init__(
+        self,
+        folder: Path,
+        space: str,
+        kind: str = 'hexapod',
+        machine: str = 'robocake',
+        boot_s: float = 0.2,
+        faults: Faults | None = None,
+    ) -> None:
         config = BoardConfig.from_machine(machines.read(machine))
         self._path = folder / 'board'
         self.tap = Tap()
@@ -117,14 +136,15 @@ class Rig:
         self._space = space
         nodes = machine_graph(kind, machine, str(self._path), self._path)
         self._nodes = {node.entry: node for node in nodes}
-        self._graphs = {}
+        self._graphs: dict[str, Graph] = {}
         self._stack = ExitStack()
 
     @property
-    def names(self):
+    def names(self) -> tuple[str, ...]:
+        """Of the nodes."""
         return tuple(self._nodes)
 
-    def __enter__(self):
+    def __enter__(self) -> 'Rig':
         with ExitStack() as stack:
             self.board.start()
             stack.callback(self.board.close)
@@ -135,39 +155,41 @@ class Rig:
             self._stack = stack.pop_all()
         return self
 
-    def __exit__(self, *exception):
+    def __exit__(self, *exception: object) -> None:
         self._stack.close()
 
-    def start(self, name):
+    def start(self, name: str) -> None:
         """Starts a process, after the end of the one before it."""
         if name in self._graphs:
             self._graphs[name].__exit__(None, None, None)
         self._graphs[name] = Graph([self._nodes[name]], self._space).__enter__()
 
-    def pid(self, name):
+    def pid(self, name: str) -> int:
+        """Of a node's process."""
         return self._graphs[name].pids()[name]
 
-    def dead(self):
+    def dead(self) -> list[str]:
+        """What is to be said of processes that ended by themselves."""
         return [words for graph in self._graphs.values() if (words := graph.dead())]
 
-    def send(self, name, number):
+    def send(self, name: str, number: int) -> float:
         """Sends a signal to one process and returns when."""
         before = time.monotonic()
         os.kill(self.pid(name), number)
         return before
 
-    def pull(self):
+    def pull(self) -> float:
         """Pulls the cable and returns when."""
         before = time.monotonic()
         self.board.do(lambda: self.board.plug(None))
         return before
 
-    def plug(self):
+    def plug(self) -> None:
         """Puts the cable back: the board starts again."""
         line = TappedLine(self._path, self.tap)
         self.board.do(lambda: self.board.plug(line))
 
-    def enable(self):
+    def enable(self) -> None:
         """Asks again where the question went to a bridge that is no more."""
         for _ in range(TRIES):
             with contextlib.suppress(NotReady):
@@ -175,9 +197,9 @@ class Rig:
                 return
         raise NotReady(f'not enabled in {TRIES} tries: {self.user.summary}')
 
-    def circle(self, seconds):
+    def circle(self, seconds: float) -> None:
         """Has the platform circle about home for a while; again, where this computer stalls."""
-        last = None
+        last: ManipulatorError | None = None
         for _ in range(TRIES):
             try:
                 self.set_parameters('trajectory', CIRCLE)
@@ -192,13 +214,14 @@ class Rig:
                 last = error
         raise NotReady(f'no circle in {TRIES} tries ({last}): {self.user.summary}')
 
-    def stop_time(self, name, number):
+    def stop_time(self, name: str, number: int) -> float:
         """Seconds from a signal to a process until the servo targets stand still."""
         signalled = self.send(name, number)
         # Nothing but the signal must move them afterwards: hear nothing, ask for nothing.
         return self.recorder.standstill(signalled, FROZEN) - signalled
 
-    def set_parameters(self, node, values):
+    def set_parameters(self, node: str, values: Mapping[str, Sequence[float]]) -> None:
+        """Of a node; NotReady where it refuses one."""
         kind = ParameterType.PARAMETER_DOUBLE_ARRAY
         request = SetParameters.Request(
             parameters=[
@@ -211,9 +234,11 @@ class Rig:
         future = client.call_async(request)
         self.user.wait('the parameters', future.done, 3.0)
         self.user.node.destroy_client(client)
-        assert all(result.successful for result in future.result().results)
+        refused = [r.reason for r in future.result().results if not r.successful]
+        if refused:
+            raise NotReady(f'{node}: {refused[0]}')
 
-    def _end_all(self):
+    def _end_all(self) -> None:
         for name in self._graphs:
             # A frozen process hears nothing else.
             if self._graphs[name].dead() is None:

@@ -1,0 +1,94 @@
+"""Processes that freeze, die or come late: the machine holds, and nothing jumps or resumes."""
+
+import numpy as np
+import pytest
+
+from manipulator.pose import Pose
+from manipulator.trajectory.pilot import POSE_DEADLINE
+
+FAR = Pose.from_xyz_rpy((0.010, 0.0, 0.0412))
+HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))
+PROCESSES = ['supervisor', 'inverse', 'forward', 'bridge']
+
+
+def test_a_tick_that_was_frozen_for_too_long_says_no_setpoint(world):
+    world.send_goal(HIGHER)
+    world.wait('motion', lambda: world.pose.position[2] > 0.0422)
+    before = world.now
+    world.supervisor.pause_in_next_tick = POSE_DEADLINE + 0.1
+    world.run(POSE_DEADLINE + 0.05)
+    frozen = world.setpoints(before)
+    world.run(2.0)
+    late = world.setpoints(before)[len(frozen) :]
+    assert max(world.supervisor.ages) < POSE_DEADLINE
+    assert world.status.result != 'reached'
+    assert np.abs(late - late[0]).max() <= 2.0
+
+
+@pytest.mark.parametrize('name', PROCESSES)
+def test_a_process_that_is_started_again_moves_nothing_and_takes_goals(world, name):
+    world.send_goal(FAR)
+    world.run(0.4)
+    world.restart(name)
+    world.run(3.0)
+    since = world.now
+    world.run(1.0)
+    still = world.pulses(since)
+    assert np.nanmax(np.abs(still - still[0])) <= 2.0
+    world.enable()
+    assert world.go_to(HIGHER).result == 'reached'
+
+
+@pytest.mark.parametrize('name', PROCESSES)
+@pytest.mark.parametrize('seconds', [0.1, 0.3, 1.0, 3.0])
+def test_a_frozen_process_breaks_no_limit(world, name, seconds):
+    world.send_goal(FAR)
+    world.run(0.3)
+    getattr(world, name).freeze(seconds)
+    world.run(seconds + 3.0)
+    assert_within_limits(world)
+    world.enable()
+    assert world.go_to(HIGHER).result == 'reached'
+
+
+def test_the_clock_of_one_computer_is_set_and_the_motion_goes_on(world):
+    world.send_goal(FAR)
+    world.run(0.2)
+    world.supervisor.clock_offset = 3600.0
+    world.wait('goal', lambda: world.status.result == 'reached')
+
+
+def test_cable_pulled_and_put_back_needs_enable_and_nothing_resumes(world):
+    world.send_goal(FAR)
+    world.run(0.3)
+    world.cable.pull()
+    world.wait('word', lambda: world.state == 'disconnected')
+    world.run(1.0)
+    world.cable.plug()
+    world.wait('board', lambda: world.state == 'disarmed')
+    world.run(1.0)
+    assert np.isnan(world.pulses(world.now - 0.5)).all()
+    world.enable()
+    assert world.go_to(HIGHER).result == 'reached'
+    assert_within_limits(world)
+
+
+def test_a_stuck_joint_that_is_measured_is_named_and_the_goal_dropped(make_world):
+    world = make_world('arm_6r_stepper')
+    kinematics = world.machine.kinematics
+    turned = kinematics.inverse(kinematics.home) + 0.6 * np.eye(6)[0]
+    world.board.stuck_channel = 0
+    there = world.go_to(kinematics.forward(turned).pose)
+    assert there.result == 'stopped'
+    assert f'{kinematics.joint_names[0]} is ' in there.reason
+
+
+def assert_within_limits(world):
+    """Every frame within the counts' ranges, every pulse within what its servo can follow."""
+    settings = world.board.machine.board.settings
+    counts, ranges = world.setpoints(), np.array(settings.count_ranges)
+    assert (counts >= ranges[:, 0]).all()
+    assert (counts <= ranges[:, 1]).all()
+    changes = np.abs(np.diff(world.pulses(), axis=0))
+    most = np.array(settings.count_speeds) * 0.02 + 1.0
+    assert not (changes > most).any()

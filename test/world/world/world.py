@@ -1,0 +1,199 @@
+"""One machine, its processes and links, and the user who asks for something."""
+
+import numpy as np
+
+from bridge.board_thread import FakeMachine
+from bridge.calibration import Calibration
+from bridge.messages import Arm, Clear, Disarm, Setpoint, Stop
+from bridge.servo_config import BoardConfig
+from hexarm import machines
+from world.board import BoardProcess, Cable
+from world.bridge import Bridge
+from world.kinematics import Forward, Inverse
+from world.supervisor import Supervisor
+from world.timeline import Link, Process, Timeline
+
+PATIENCE = 20.0
+TWIST_PERIOD = 1 / 30
+MEASUREMENTS = 5
+"""Depth of the measurements' links; commands have 1 (manipulator/nodes/qos.py)."""
+
+
+class World:
+    """A machine by its name or the path of its file; time passes in `run` and `wait`."""
+
+    def __init__(self, name, boot_s=0.2):
+        self.machine = machines.load(name)
+        config = BoardConfig.from_machine(machines.read(name))
+        self.calibration = Calibration.from_config(config.servos)
+        self.deadline = 1e-3 * config.link.setpoint_deadline_ms
+        self.timeline = Timeline()
+        self.user = Process(self.timeline)
+        fake = FakeMachine.from_config(config, boot_s, hysteresis=config.hysteresis)
+        self.board = BoardProcess(self.timeline, fake)
+        self.cable = self.board.cable = Cable(self.timeline, self.board)
+        nobody = self.user
+        names = ('setpoint', 'commands', 'words', 'goals', 'twists')
+        self.links = {name: Link(nobody, None) for name in names}
+        deep = ('pose', 'joints_ik', 'joints_pose', 'joints')
+        self.links |= {name: Link(nobody, None, depth=MEASUREMENTS) for name in deep}
+        for start in (self.start_supervisor, self.start_inverse, self.start_forward):
+            start()
+        self.start_bridge()
+
+    # Processes: each start takes the place of the one before, which is dead
+
+    def start_supervisor(self):
+        new = self.supervisor = Supervisor(self.timeline, self.machine, self.links['setpoint'])
+        for link, accept in (
+            ('words', new.on_machine_state),
+            ('goals', new.on_goal),
+            ('twists', new.on_twist),
+            ('pose', new.on_pose),
+            ('joints', new.on_joints),
+        ):
+            self.links[link].lead_to(new, accept)
+
+    def start_inverse(self):
+        new = self.inverse = Inverse(self.timeline, self.machine, self.links['commands'])
+        self.links['setpoint'].lead_to(new, new.on_setpoint)
+        self.links['joints_ik'].lead_to(new, new.on_joints)
+
+    def start_forward(self):
+        new = self.forward = Forward(self.timeline, self.machine, self.links['pose'])
+        self.links['joints_pose'].lead_to(new, new.on_joints)
+
+    def start_bridge(self):
+        new = self.bridge = Bridge(
+            self.timeline,
+            self.machine,
+            self.calibration,
+            self.deadline,
+            self.cable,
+            self.links['words'],
+            Fan([self.links[name] for name in ('joints', 'joints_ik', 'joints_pose')]),
+        )
+        self.links['commands'].lead_to(new, new.on_command)
+        self.cable.lead_to(new)
+
+    def restart(self, name):
+        """Kills a process and starts another in its place."""
+        getattr(self, name).kill()
+        getattr(self, f'start_{name}')()
+
+    # Time
+
+    @property
+    def now(self):
+        return self.timeline.now
+
+    def run(self, seconds):
+        self.timeline.run(seconds)
+
+    def wait(self, what, is_so, seconds=PATIENCE):
+        end = self.now + seconds
+        while not is_so():
+            assert self.now < end, f'no {what} within {seconds:g} s: {self.summary}'
+            self.run(0.01)
+
+    # What is known
+
+    @property
+    def state(self):
+        return self.bridge.monitor.status.word
+
+    @property
+    def status(self):
+        """The last motion_status."""
+        return self.supervisor.statuses[-1][1]
+
+    @property
+    def summary(self):
+        return f'machine {self.state}, motion {self.status}'
+
+    @property
+    def pose(self):
+        """Where the platform truly is."""
+        order = [self.calibration.names.index(n) for n in self.machine.kinematics.joint_names]
+        joints = self.board.machine.servos.positions[order]
+        pilot = self.supervisor.pilot
+        near = self.machine.kinematics.home
+        if pilot.is_driving:
+            near = pilot.machine.frames.platform(pilot.player.state.pose)
+        return self.machine.kinematics.forward(joints, near).pose
+
+    def frames(self, kind=object, since=float('-inf')):
+        """(time, message) of what the host put on the cable."""
+        return [(t, m) for t, m in self.cable.frames if t >= since and isinstance(m, kind)]
+
+    def setpoints(self, since=float('-inf')):
+        """Counts (n, channels) of the setpoint frames."""
+        return np.array([m.counts for _, m in self.frames(Setpoint, since)], dtype=float)
+
+    def pulses(self, since=float('-inf')):
+        """Counts (n, channels) that the board put out, 100 times a second."""
+        return np.array([counts for t, counts in self.board.pulses if t >= since])
+
+    # The user
+
+    def ask(self, command):
+        """What the board answered, '' for obeyed."""
+        answer = self.bridge.ask(command)
+        self.wait(f'answer to {command}', lambda: answer.said is not None)
+        return answer.said
+
+    def ask_to_arm(self):
+        return self.bridge.ask(Arm(self.calibration.counts(self.calibration.park)))
+
+    def enable(self):
+        self.wait('board', lambda: self.state not in ('disconnected', 'booting'))
+        if self.state != 'enabled':
+            answer = self.ask_to_arm()
+            self.wait('answer to ARM', lambda: answer.said is not None)
+            assert answer.said == ''
+        self.wait('enabled machine', lambda: self.state == 'enabled')
+        self.wait('supervisor that holds', lambda: self.status.mode == 'hold')
+
+    def disable(self):
+        return self.ask(Disarm())
+
+    def emergency_stop(self):
+        return self.bridge.ask(Stop())
+
+    def clear(self):
+        return self.ask(Clear())
+
+    def send_goal(self, pose):
+        """Its stamp, by which the statuses know it."""
+        stamp = self.user.stamp
+        self.links['goals'].send(stamp, pose)
+        return stamp
+
+    def go_to(self, pose):
+        """Waits until the goal is reached, or anything else came of it; the status then."""
+        stamp = self.send_goal(pose)
+        ends = ('reached', 'refused', 'stopped')
+        self.wait(
+            'end of the goal',
+            lambda: self.status.goal_stamp == stamp and self.status.result in ends,
+        )
+        return self.status
+
+    def jog(self, twist, seconds, source='cmd_vel'):
+        """Holds a stick for so long, then sends the zero of its release."""
+        end = self.now + seconds
+        while self.now < end:
+            self.links['twists'].send(self.user.stamp, source, np.array(twist, dtype=float))
+            self.run(TWIST_PERIOD)
+        self.links['twists'].send(self.user.stamp, source, np.zeros(6))
+
+
+class Fan:
+    """Sends over several links at once."""
+
+    def __init__(self, links):
+        self._links = links
+
+    def send(self, *value):
+        for link in self._links:
+            link.send(*value)
