@@ -13,6 +13,12 @@ from manipulator.unit_hints import hint_at_metres
 
 ATTEMPTS = 8
 MARGIN = 1.01
+MOST_TICKS = 60_000
+"""Of a move, all of which are checked: ten minutes at 100 Hz.
+
+A way that would need more passes a singular posture, or changes branches: slowing down does not
+help there.
+"""
 
 
 def check_goal(machine: Machine, goal: Pose, near: Array) -> None:
@@ -51,8 +57,18 @@ def plan_to(machine: Machine, start: MotionState, goal: Pose, near: Array, dt: f
             move = plan_straight(start.pose, goal, limits, slowness)
         else:
             move = plan_move(start, goal, limits, slowness)
+        _refuse_endless(move, quantity, dt)
         demand = check_plan(move, machine, near, dt)
         if demand.fits:
             return move
         slowness, quantity = slowness * demand.slowness * MARGIN, demand.quantity
     raise Refused(f'{quantity} stays above its limit at 1/{slowness:.3g} of full speed')
+
+
+def _refuse_endless(move: Plan, quantity: str, dt: float) -> None:
+    if move.checked_duration > MOST_TICKS * dt:
+        reason = f': {quantity} is too high on it' if quantity else ''
+        raise Refused(
+            f'the way would take {move.checked_duration:.0f} s, at most {MOST_TICKS * dt:.0f} s'
+            + reason
+        )
