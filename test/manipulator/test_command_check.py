@@ -91,6 +91,14 @@ def test_silence_makes_the_measured_joints_the_start(check):
     check.admit(raised(0.01), 101.0)
 
 
+def test_time_left_before_a_silence_does_not_let_a_joint_step_away_from_where_it_is(check):
+    check.admit(HOME, 100.2)
+    way = 0.05 * MACHINE.motion.joint.speed
+    with pytest.raises(LimitViolated, match=r'would jump by .* in 0\.02 s'):
+        check.admit(MACHINE.kinematics.forward(AT_HOME - way, HOME).pose, 101.0)
+    check.admit(HOME, 101.0)
+
+
 def test_pose_out_of_reach_or_beyond_a_limit_is_refused_and_the_next_works(check):
     with pytest.raises(Unreachable, match='leg'):
         check.admit(raised(0.2), 100.01)
