@@ -9,7 +9,7 @@ import pytest
 from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.errors import Refused
-from manipulator.motion_limits import Derivatives, JointDerivatives, MotionLimits
+from manipulator.motion_limits import BRAKING_SHARE, Derivatives, JointDerivatives, MotionLimits
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.player import Goal, Player
@@ -87,11 +87,10 @@ def test_a_goal_that_takes_no_more_than_a_tick_is_driven_to_in_one(way):
     assert steps.sum() == pytest.approx(way, rel=1e-6)
 
 
-def limited(**speeds):
-    """The machine with these limits of speed, and none that matters but for them."""
+def limited(**parts):
+    """The machine with these limits of motion, and none that matters but for them."""
     free = Derivatives(1e3, 1e6, 1e9)
     joint = JointDerivatives.of(1e3, 1e6)
-    parts = {name: replace(free, speed=speed) for name, speed in speeds.items()}
     motion = MotionLimits(parts.get('linear', free), parts.get('angular', free), joint)
     return replace(MACHINE, motion=motion)
 
@@ -103,13 +102,29 @@ def test_a_cycle_says_how_many_times_it_is_faster_than_platform_or_tool_may_be(p
     amplitude, frequency = np.zeros(6), np.full(6, 10.0)
     amplitude[axis] = 0.005 if part == 'linear' else 0.1
     peak = 2 * np.pi * frequency[0] * amplitude[axis]
-    motion = player(limited(**{part: limit}))
+    motion = player(limited(**{part: Derivatives(limit, 1e6, 1e9)}))
     if peak < limit:
         motion.start_cycle(Cycle(HOME, amplitude, frequency, np.zeros(6)))
         return
     name = 'platform speed' if part == 'linear' else 'turning speed'
     with pytest.raises(Refused, match=f'{name} is {peak / limit:.2f} times too fast'):
         motion.start_cycle(Cycle(HOME, amplitude, frequency, np.zeros(6)))
+
+
+@pytest.mark.parametrize(('axis', 'part'), [(2, 'linear'), (3, 'angular')])
+def test_a_cycle_says_how_many_times_it_must_be_slower_for_the_acceleration_of_its_own_part(
+    axis, part
+):
+    amplitude, rate = np.zeros(6), 2 * np.pi * 2.0
+    amplitude[axis] = 0.005 if part == 'linear' else 0.1
+    peak = rate**2 * amplitude[axis]
+    cycle = Cycle(HOME, amplitude, np.full(6, 2.0), np.zeros(6))
+    other = 'angular' if part == 'linear' else 'linear'
+    player(limited(**{other: Derivatives(1e-3, 1e-3)})).start_cycle(cycle)
+    strict = Derivatives(1e3, peak / 9.0 / (1.0 - BRAKING_SHARE))
+    name = 'platform acceleration' if part == 'linear' else 'turning acceleration'
+    with pytest.raises(Refused, match=rf'{name} is [23]\.\d\d times too fast'):
+        player(limited(**{part: strict})).start_cycle(cycle)
 
 
 def test_nothing_came_of_a_path_is_said_with_its_stamp_and_reason():
