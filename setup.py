@@ -48,6 +48,8 @@ setup(
         'test': [
             'pytest>=8.2',
             'pytest-xdist>=3.6',
+            'coverage>=7.4',  # which tests run which line: bench/mutants.py
+            'pytest-cov>=5',
             'pytest-rerunfailures>=16.1',  # only where the computer itself stood still
             'hypothesis>=6.100',
             'mypy>=1.11',

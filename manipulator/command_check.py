@@ -51,6 +51,8 @@ class CommandCheck:
         age = now - self._commanded_at
         is_fresh = self._commanded is not None and age < FORGET_AFTER
         near = self._commanded if is_fresh else self._measured
+        if not is_fresh:
+            self._unused = 0.0
         joints = self._machine.kinematics.inverse(T_base_platform, self._ahead(near, age))
         self._check_limits(T_base_platform, joints, near)
         if near is not None:

@@ -49,10 +49,11 @@ def plan_straight(
     """The quickest such move; slowness k ≥ 1 makes it take k times as long."""
     way = start.twist_to(goal)
     lengths = float(np.linalg.norm(way[:3])), float(np.linalg.norm(way[3:]))
+    parts = tuple(zip((limits.linear, limits.angular), lengths, strict=True))
     bounds = [
         min(
-            getattr(limit, name) / max(length, getattr(limit, name) / FASTEST)
-            for limit, length in zip((limits.linear, limits.angular), lengths, strict=True)
+            getattr(limit, name) / length if length > getattr(limit, name) / FASTEST else FASTEST
+            for limit, length in parts
         )
         for name in ('speed', 'acceleration', 'jerk')
     ]

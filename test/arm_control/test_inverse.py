@@ -95,6 +95,13 @@ def test_whole_turns_are_chosen_near_but_within_the_range(arm_6r):
     assert (np.abs(last) <= 350.0).all()
 
 
+@pytest.mark.parametrize('side', [1, -1])
+def test_an_angle_beyond_either_end_of_its_range_comes_back_by_a_whole_turn(arm_6r, side):
+    beyond = np.radians([10.0, 20.0, 80.0, 30.0, 60.0, side * 460.0])
+    last = np.degrees(arm_6r.inverse_all(arm_6r.chain.forward(beyond), beyond)[:, 5])
+    assert {side * 100.0, side * 280.0} <= set(last.round(6))
+
+
 def test_branches_within_the_joint_ranges_come_before_nearer_ones(arm_6r):
     inside = np.radians([10.0, 20.0, 80.0, 30.0, 60.0, 0.0])
     pose = arm_6r.chain.forward(inside)

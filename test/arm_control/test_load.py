@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from arm_control.inverse_method import Numerical
+from arm_control.joint_limits import ArmLimits
 from arm_control.load import arm, jogging, serial_arm
 from arm_control.parallel_axes import ParallelAxes
 from arm_control.spherical_wrist import SphericalWrist
 from bridge.servo_config import BoardConfig
+from manipulator.config import build
 from manipulator.errors import ConfigError
 from manipulator.rotation import from_rpy
 
@@ -70,6 +72,33 @@ def test_every_fault_of_the_limits_is_named(machine_file):
         jogging(replace(file, limits={**file.limits, 'joints': joints}))
     assert 'joints[1]' in str(caught.value)
     assert "did you mean 'speed_deg_s'" in str(caught.value)
+
+
+ENDS = {
+    'range_deg': (-720.0, 720.0),
+    'speed_deg_s': (0.1, 5000.0),
+    'acceleration_deg_s2': (1.0, 1e6),
+    'characteristic_length_mm': (1.0, 5000.0),
+    'damping_onset': (0.001, 0.5),
+}
+
+
+@pytest.mark.parametrize('key', ENDS)
+def test_limits_may_be_as_low_and_as_high_as_this_and_no_further(machine_file, key):
+    file, (low, high) = machine_file('arm_6r'), ENDS[key]
+
+    def limits(value):
+        if key not in file.limits['joints'][0]:
+            return build(ArmLimits, {**file.limits, key: value})
+        first, *others = file.limits['joints']
+        value = [min(value, 0.0), max(value, 0.0)] if key == 'range_deg' else value
+        return build(ArmLimits, {**file.limits, 'joints': [{**first, key: value}, *others]})
+
+    beyond = 1e-6 * (high - low)
+    for end, outside in ((low, low - beyond), (high, high + beyond)):
+        limits(end)
+        with pytest.raises(ConfigError, match=rf'{key}.*: \S+ outside \['):
+            limits(outside)
 
 
 def test_a_home_outside_the_joint_ranges_is_refused(machine_file):

@@ -95,6 +95,17 @@ def test_ends_of_the_range_can_be_reached(robocake):
             assert robocake.counts(wanted)[i] in (1100, 4900)
 
 
+@pytest.mark.parametrize(('sign', 'low', 'high'), [(1, -60.0, 140.0), (-1, -120.0, 80.0)])
+def test_a_servo_whose_centre_is_not_the_middle_has_its_range_on_the_right_side(sign, low, high):
+    joint = servo(sign=sign, centre_us=1200.0, centre_deg=10.0, pulse_range_us=[500.0, 2500.0])
+    calibration = Calibration.from_config(servos(joint))
+    assert np.degrees(calibration.range_of(0)) == pytest.approx((low, high))
+    for end, beyond in ((low, low - 0.1), (high, high + 0.1)):
+        calibration.counts([math.radians(end)])
+        with pytest.raises(OutOfRange, match='lift'):
+            calibration.counts([math.radians(beyond)])
+
+
 def test_one_count_beyond_the_range_is_refused(robocake):
     count = 1 / 21 * math.radians(1)
     for i in range(6):

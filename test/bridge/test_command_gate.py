@@ -1,3 +1,4 @@
+import contextlib
 import math
 
 import numpy as np
@@ -43,6 +44,7 @@ def test_joints_may_come_in_any_order(gate):
     [
         ([*NAMES[:5], 'crank_7'], "unknown joint 'crank_7'"),
         ([*NAMES[:5], 'crank_1'], 'joint crank_1 stands twice'),
+        ([*NAMES[:4], 'crank_4', 'crank_6'], 'joint crank_4 stands twice'),
         (NAMES[:4], 'no position for crank_5, crank_6'),
         ([], 'no position for crank_1'),
         ([f'j{i}' for i in range(10_000)], "unknown joint 'j0'"),
@@ -128,6 +130,27 @@ def test_a_stream_at_the_servos_speed_passes_and_a_faster_one_does_not(gate):
     leap = PARK + (angle + speed * 0.035) * np.array([1, 0, 0, 0, 0, 0])
     with pytest.raises(Refused, match=r'crank_1: .* from the last command'):
         admit(gate, leap, receipt=NOW + 0.1)
+
+
+@pytest.mark.parametrize(('part', 'is_refused'), [(0.99, False), (1.01, True)])
+def test_what_a_late_command_left_of_a_gap_the_next_may_use_and_no_more(gate, part, is_refused):
+    step = 0.01 * CALIBRATION.speed  # 10 ms of the way that the servos could have gone in 40
+    admit(gate, PARK)
+    admit(gate, PARK + step, receipt=NOW + 0.04)
+    left = 0.04 - 0.02 - 0.01
+    leap = PARK + step + part * (0.02 + left) * CALIBRATION.speed
+    with pytest.raises(Refused, match='would jump') if is_refused else contextlib.nullcontext():
+        admit(gate, leap, receipt=NOW + 0.04)
+
+
+@pytest.mark.parametrize('tick', [0.01, 0.02])
+@pytest.mark.parametrize(('part', 'is_refused'), [(0.99, False), (1.01, True)])
+def test_regular_commands_save_nothing_up_for_a_longer_step(gate, tick, part, is_refused):
+    for k in range(10):
+        admit(gate, PARK, receipt=NOW + tick * k)
+    leap = PARK + part * (0.02 + tick) * CALIBRATION.speed
+    with pytest.raises(Refused, match='would jump') if is_refused else contextlib.nullcontext():
+        admit(gate, leap, receipt=NOW + tick * 10)
 
 
 def test_after_a_silence_the_joints_count_and_not_the_last_command(gate):

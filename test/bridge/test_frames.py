@@ -148,6 +148,14 @@ def test_whole_frames_that_mean_nothing_are_told_from_damaged_ones(code, payload
     assert caught.value.is_known_type is is_known
 
 
+@pytest.mark.parametrize('body', [b'', b'\3', b'\3\5'])
+def test_a_content_too_short_for_a_frame_is_damage_though_its_crc_is_right(body):
+    content = body + checksum(body).to_bytes(2, 'little')
+    with pytest.raises(ProtocolError, match=f'{len(content)} bytes are too short') as caught:
+        decode(cobs.encode(content))
+    assert not isinstance(caught.value, Unreadable)
+
+
 @pytest.mark.parametrize(
     ('message', 'sequence'),
     [

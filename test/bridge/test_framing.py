@@ -53,6 +53,13 @@ def test_a_damaged_frame_is_counted_and_the_next_one_is_read():
     assert reader.bad_frames == 1
 
 
+def test_a_crc_alone_is_a_damaged_frame_and_the_next_one_is_read():
+    reader = FrameReader()
+    crc_of_nothing = b'\x03\xff\xff\0'
+    assert reader.feed(crc_of_nothing + FRAMES[1])[0].sequence == 1
+    assert (reader.bad_frames, reader.unreadable) == (1, [])
+
+
 def test_whole_frames_without_a_meaning_are_handed_over_once():
     reader = FrameReader()
     # A DISARM whose type was replaced before the CRC was made: type 0x7e.

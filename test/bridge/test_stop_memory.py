@@ -40,6 +40,19 @@ def test_a_stop_is_remembered_until_it_is_cleared(path):
     assert not StopMemory(path).is_kept
 
 
+def test_stops_and_clears_of_one_bridge_are_written_as_they_come(path):
+    with running(path) as memory:
+        for _ in range(2):
+            memory.keep(lambda: True)
+            until(path.exists)
+            memory.keep(lambda: False)
+            until(lambda: not path.exists())
+
+
+def test_a_disk_that_hangs_keeps_no_process_alive(path):
+    assert StopMemory(path).daemon
+
+
 def test_two_machines_do_not_share_it(tmp_path):
     home = {'XDG_STATE_HOME': str(tmp_path)}
     pairs = [('/hexapod/serial_bridge', '/dev/a'), ('/hexapod/serial_bridge', '/dev/b')]

@@ -2,17 +2,23 @@
 
 import random
 
+import numpy as np
 import pytest
 
 from bridge import cobs
 from bridge.frames import checksum, encode
+from bridge.framing import FrameReader
 from bridge.messages import (
+    NO_JOINT,
     Ack,
     Arm,
     Clear,
     Disarm,
     Fault,
     FaultCode,
+    Flag,
+    Hello,
+    Joint,
     Known,
     Mode,
     ResetCause,
@@ -23,6 +29,7 @@ from bridge.messages import (
 )
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
+CENTRE = Joint(Known.COMMANDED, 3000)
 MOVED = tuple(count + 200 for count in PARK)
 
 
@@ -143,6 +150,40 @@ def test_unknown_and_malformed_frames_are_refused_and_counted(armed):
         assert [f.code.name for f in armed.faults()] == [fault]
     assert armed.state().refused == 3
     assert armed.state().mode is Mode.ARMED
+
+
+@pytest.mark.parametrize(
+    ('code', 'message'),
+    [
+        (0x81, Hello(1, ResetCause.POWER_ON, 6, 1500)),
+        (0x82, State(0, 0, Mode.ARMED, Flag(0), FaultCode.NONE, 0, 0, 0, 0, (CENTRE,) * 6)),
+        (0x83, Ack(1, Result.OK)),
+        (0x84, Fault(FaultCode.STALE, NO_JOINT, 17)),
+    ],
+)
+def test_what_only_a_board_says_is_refused_from_a_host_though_it_is_whole(armed, code, message):
+    armed.say(message)
+    (fault,) = armed.faults()
+    assert fault == Fault(FaultCode.UNKNOWN_TYPE, NO_JOINT, code)
+    assert (armed.state().refused, armed.state().bad_frames) == (1, 0)
+
+
+@pytest.mark.parametrize('body', [b'', b'\3', b'\3\5'])
+def test_a_frame_without_a_head_is_damaged_though_its_crc_is_right(armed, body):
+    armed.board.feed(cobs.encode(body + checksum(body).to_bytes(2, 'little')) + b'\0')
+    assert armed.ask(Disarm()) is Result.OK
+    assert (armed.state().refused, armed.state().bad_frames) == (0, 1)
+
+
+def test_frames_of_a_board_are_counted_up(armed):
+    armed.say(Stop())
+    wire = b''
+    for _ in range(40):
+        armed.board.step(0.005)
+        wire += armed.board.take_output()
+    sequences = [frame.sequence for frame in FrameReader().feed(wire)]
+    assert len(sequences) >= 10
+    assert set(np.diff(sequences)) == {1}
 
 
 def test_garbage_moves_nothing_and_the_next_frame_works(armed):

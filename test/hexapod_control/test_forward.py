@@ -87,6 +87,13 @@ def test_lengths_that_no_pose_has_are_refused(base, solver):
         solver.solve(base, np.full(6, np.nan), home())
 
 
+@pytest.mark.parametrize('length', [np.nan, np.inf, -np.inf])
+def test_lengths_that_are_not_finite_end_at_the_first_step(base, solver, length):
+    lengths = np.array([0.1] * 5 + [length])
+    with np.errstate(invalid='ignore'), pytest.raises(NoSolution, match='met a singular pose'):
+        solver.solve(base, lengths, home())
+
+
 def test_a_singular_architecture_is_refused(platform):
     solver = ForwardByLengths(platform, 0.05)
     similar = platform * [2.0, 2.0, 1.0]

@@ -46,6 +46,17 @@ def test_crank_joints_turn_freely_about_their_bolt(hexapod, tilt):
     np.testing.assert_allclose(tilt.values(low, joints), 0.0, atol=1e-12)
 
 
+@pytest.mark.parametrize('side', [1, -1])
+def test_a_rod_at_a_right_angle_to_its_cranks_plane_has_a_tilt(hexapod, tilt, side):
+    """Rounding may make its sine a little more than one."""
+    g, joints = hexapod.geometry, np.linspace(0.0, 3.0, 200)[:, None].repeat(6, axis=1)
+    for leg, tips in enumerate(hexapod.crank_tips(joints).swapaxes(0, 1)):
+        ends = tips + side * g.rod_lengths[leg] * g.normals[leg]
+        poses = Pose.from_xyz_rpy(ends - g.platform_points[leg])
+        values = tilt.values(poses, joints)[:, leg]
+        np.testing.assert_allclose(values, side * np.pi / 2 - tilt.at_home[leg], atol=1e-7)
+
+
 def test_crank_joints_tilt_by_what_the_platform_moves_outward(hexapod, tilt):
     pose = Pose.from_xyz_rpy([0.01, 0.0, 0.04119])
     change = tilt.values(pose, hexapod.inverse(pose))[0]

@@ -80,6 +80,27 @@ def test_angles_stay_within_half_a_turn_of_the_crank_centre(hexapod, many, centr
     np.testing.assert_allclose(turns, np.rint(turns), atol=1e-12)
 
 
+@pytest.mark.parametrize('centre', [-2.0, 0.0, 2.0, 9.0])
+def test_every_way_to_bend_the_legs_closes_them_within_half_a_turn_of_the_crank_centre(
+    hexapod, centre
+):
+    other, pose = RotaryHexapod(hexapod.geometry, 0.07, 0.3, centre), moved_by(0.003, 0.0, 0.004)
+    every = other.inverse_all(pose)
+    assert np.abs(every - centre).max() <= np.pi + 1e-12
+    assert len(np.unique(every.round(6), axis=0)) == 64
+    poses = Pose(np.tile(pose.position, (64, 1)), np.tile(pose.rotation, (64, 1, 1)))
+    assert np.abs(rod_lengths(other, poses, every) - 0.058).max() < 1e-12
+    np.testing.assert_allclose(every[0], other.inverse(pose), atol=1e-12)
+
+
+def test_elbow_in_is_chosen_where_it_is_nearer_by_more_than_a_tenth_of_a_radian(hexapod):
+    out, inside = hexapod.inverse(hexapod.home), hexapod.inverse(hexapod.home, np.zeros(6))
+    middle = (out + inside) / 2
+    for nearer, expected in ((0.08, out), (0.12, inside), (1.0, inside)):
+        near = middle + np.sign(inside - out) * nearer / 2
+        np.testing.assert_allclose(hexapod.inverse(hexapod.home, near), expected, atol=1e-12)
+
+
 def test_many_chunks_give_what_one_gives(hexapod, many):
     twice = Pose(np.concatenate([many.position] * 2), np.concatenate([many.rotation] * 2))
     joints = hexapod.inverse(twice)

@@ -1,12 +1,14 @@
 """Every command that a session took ends: acknowledged, or failed with the reason."""
 
 import random
+from dataclasses import replace
 
 import pytest
 
 from bridge.events import Acknowledged, CommandFailed, Disconnected
 from bridge.frames import encode
-from bridge.messages import Arm, Clear, Disarm, Hello, Mode, ResetCause, Stop
+from bridge.framing import FrameReader
+from bridge.messages import Ack, Arm, Clear, Disarm, Hello, Mode, ResetCause, Result, Stop
 from bridge.program_messages import Finish, Play
 from manipulator.errors import Refused
 
@@ -53,6 +55,25 @@ def test_what_was_obeyed_is_not_said_to_have_failed_where_another_command_comes_
     assert line.session.receive(line.board.take_output(), line.now) == []
     assert line.board.mode is Mode.ARMING
     assert line.command(Stop()) == [Acknowledged(Arm(PARK)), Acknowledged(Stop())]
+
+
+@pytest.mark.parametrize(('command', 'mode'), [(Stop(), Mode.STOPPED), (Disarm(), Mode.DISARMED)])
+def test_the_mode_is_known_from_the_acknowledgement_before_a_state_tells_it(armed, command, mode):
+    before = armed.session.state
+    armed.session.send_command(command, armed.now)
+    (frame,) = FrameReader().feed(armed.session.take_output())
+    armed.session.receive(encode(Ack(frame.sequence, Result.OK), 1), armed.now)
+    assert armed.session.state == replace(before, mode=mode)
+    with pytest.raises(Refused, match=f'takes no setpoints now: {mode.name.lower()}'):
+        armed.setpoint()
+
+
+def test_a_clear_that_is_acknowledged_changes_no_mode(armed):
+    before = armed.session.state
+    armed.session.send_command(Clear(), armed.now)
+    (frame,) = FrameReader().feed(armed.session.take_output())
+    armed.session.receive(encode(Ack(frame.sequence, Result.OK), 1), armed.now)
+    assert armed.session.state == before
 
 
 def test_refusal_of_a_command_comes_with_its_reason(armed):

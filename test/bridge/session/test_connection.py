@@ -69,6 +69,15 @@ def test_a_board_that_falls_silent_is_lost_and_found_again(armed):
     assert armed.sent == []
 
 
+def test_a_board_that_fell_silent_and_stays_away_is_said_again(armed):
+    armed.is_mute = True
+    lost, missed, again = armed.run(0.6 + 5.0 + 5.0)
+    assert lost == Disconnected('the board has been silent for 0.5 s')
+    assert missed == again == Disconnected('the port is open, but no board said HELLO for 5 s')
+    with pytest.raises(Refused, match='no board to talk to: waiting'):
+        armed.command(Disarm())
+
+
 def test_a_restart_of_the_board_is_noticed_while_setpoints_flow(armed):
     armed.board.reset(ResetCause.WATCHDOG)
     events = []

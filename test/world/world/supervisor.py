@@ -8,7 +8,7 @@ from world.intake import Intake
 from world.timeline import Process
 
 DT = 0.01
-TOLERANCE, DELAY = 0.2, 0.06
+DELAY = 0.06
 
 
 class Supervisor(Process):

@@ -67,6 +67,38 @@ def test_jog_brakes_the_plan_along_its_way_and_drops_it(robocake):
     assert (robocake.status.mode, robocake.status.result) == ('hold', 'idle')
 
 
+@pytest.mark.parametrize('ticks_of_the_goal', [0, 1, 15])
+def test_a_single_jog_command_drops_a_goal_that_is_driven_or_waits(robocake, ticks_of_the_goal):
+    goal = HOME.moved([0.012, 0.006, 0, 0, 0, 0])
+    robocake.pursue(Goal(goal, 7.0))
+    robocake.run(ticks_of_the_goal)
+    robocake.run(1, [0, 0, 0.001, 0, 0, 0])
+    robocake.run(200)
+    assert robocake.status.mode == 'hold'
+    assert robocake.status.result != 'reached'
+    assert np.abs(robocake.state.pose.twist_to(goal)).max() > 1e-3
+    robocake.check_limits()
+
+
+def test_a_jog_command_drops_a_cycle_on_the_way_to_its_first_pose(robocake):
+    robocake.start_cycle(Cycle(HOME, [0.003] * 3 + [0.0] * 3, [0.5] * 6, [1.0] * 6))
+    robocake.run(5)
+    robocake.run(1, [0, 0, 0.001, 0, 0, 0])
+    poses = robocake.run(200)
+    assert robocake.status.mode == 'hold'
+    assert np.abs(poses[-1].twist_to(poses[-100])).max() == 0.0
+
+
+def test_no_path_is_expected_during_a_jog_and_one_that_was_is_dropped(robocake):
+    robocake.expect(3.0)
+    robocake.run(5, [0, 0, 0.01, 0, 0, 0])
+    assert robocake.expected is None
+    with pytest.raises(Refused, match='cmd_vel/joy has the machine'):
+        robocake.expect(4.0)
+    assert robocake.expected is None
+    assert robocake.status.mode == 'jog'
+
+
 def test_goals_and_cycles_are_refused_during_a_jog_and_taken_after_it(robocake):
     robocake.run(5, [0, 0, 0.01, 0, 0, 0])
     goal = Goal(HOME, 3.0)

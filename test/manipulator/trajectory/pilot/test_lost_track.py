@@ -6,6 +6,8 @@ import pytest
 from hexarm.machines import load
 from manipulator.errors import Refused
 from manipulator.pose import Pose
+from manipulator.trajectory.path import Tolerance
+from manipulator.trajectory.path_timing import PathRequest, plan_path
 from manipulator.trajectory.player import Goal
 
 HOME = load('robocake').kinematics.home
@@ -74,6 +76,31 @@ def test_a_goal_is_not_reached_while_the_joints_are_still_elsewhere(driving):
     assert set(said) == {'moving'}
     assert driving.status.result == 'stopped'
     assert 'away from its command' in driving.status.reason
+
+
+def test_how_much_of_a_path_is_over_is_said_while_the_joints_lag_behind(driving):
+    """By a quarter of a second, which is more than the tolerance of where a goal is reached."""
+    inverse, joints = driving.machine.kinematics.inverse, driving.machine.kinematics.inverse(HOME)
+    heights = HOME.position + np.array([[0, 0, 0], [0, 0, 0.012], [0, 0, -0.012], [0, 0, 0.012]])
+    request = PathRequest(Pose(heights, np.eye(3)), 0.05, Tolerance())
+    driving.player.pursue(Goal(HOME, 5.0, plan_path(driving.machine, request, joints, 0.01)))
+    commanded, said_late = [HOME] * 25, []
+    while driving.status.result != 'reached':
+        commanded.append(driving.step())
+        driving.note_joints(inverse(commanded[-25]))
+        is_late = np.abs(inverse(commanded[-1]) - inverse(commanded[-26])).max() > 0.2
+        if is_late and driving.player.status.result == 'moving':
+            assert driving.status == driving.player.status
+            said_late.append(driving.status.percent)
+        assert len(commanded) < 400
+    assert len(set(said_late)) >= 3
+
+
+def test_a_machine_whose_joints_are_not_measured_reaches_its_goals(driving):
+    driving.player.pursue(Goal(ELSEWHERE, 4.0))
+    for _ in range(300):
+        driving.step()
+    assert (driving.status.result, driving.status.goal_stamp) == ('reached', 4.0)
 
 
 def test_joints_that_come_late_reach_the_goal_when_they_are_there(driving):

@@ -35,6 +35,23 @@ def test_no_goal_is_taken_until_the_board_follows(pilot):
     assert pilot.status.result == 'reached'
 
 
+def test_a_machine_that_was_never_enabled_is_disabled_and_says_so_of_no_goal(pilot):
+    said = pilot.status
+    assert (said.mode, said.result, said.goal_stamp) == ('disabled', 'idle', 0.0)
+    assert said.reason == 'the servos are not enabled'
+
+
+@pytest.mark.parametrize('is_followed', [False, True])
+def test_a_machine_that_is_taken_over_holds_once_its_board_follows(pilot, is_followed):
+    pilot.note_machine_state('enabled', is_followed)
+    pilot.see(HOME)
+    assert pilot.is_driving
+    expected = ('hold', '') if is_followed else ('disabled', 'does not follow setpoints yet')
+    assert pilot.status.mode == expected[0]
+    assert pilot.status.reason.endswith(expected[1])
+    assert (pilot.status.reason == '') == is_followed
+
+
 def test_motion_begins_where_the_joints_are(pilot):
     pilot.enable_at(ELSEWHERE)
     assert np.abs(pilot.step().twist_to(ELSEWHERE)).max() < 1e-12
