@@ -25,6 +25,7 @@ from manipulator.nodes.messages import (
 )
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.path_goals import GOAL_PATH, PathGoals
+from manipulator.nodes.planning_thread import PlanningThread
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.teleop_topics import TeleopTopics
@@ -37,7 +38,6 @@ from manipulator.trajectory.lag import lag_of
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.teleop import Teleop
-from manipulator.trajectory.worker import InThread
 
 DELAY = 'age in seconds of a measured pose by the time that its correction moves the joints'
 TOLERANCE = (
@@ -63,7 +63,7 @@ class TrajectoryNode(Node):
         declare(self, 'goal_motion', Motion.LINE.value, GOAL_MOTION, is_read_only=False)
         delay = declare(self, 'measurement_delay', 0.06, DELAY, (0.0, 1.0))
         self._dt = 1.0 / rate
-        machine, self._worker = load(name), InThread()
+        machine, self._worker = load(name), PlanningThread()
         tolerances = Tolerances.of(machine, tolerance, goal_tolerance)
         self._pilot = Pilot(machine, self._dt, tolerances, self._worker)
         self._teleop = Teleop(self._pilot, delay)
