@@ -4,12 +4,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from manipulator.errors import InvalidInput
 from manipulator.frames import Frames, FramesConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.motion_limits import MotionConfig, MotionLimits
 from manipulator.sag import Sag
 from manipulator.teleop.jogger import Jogger
+
+JOG_SINGULARITIES = ('stop', 'slide')
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,8 @@ class Machine:
     frames are those that its user works in; kinematics and constraints are in the base frame,
     unless the machine was made by `in_frames`. make_jogger makes what follows twists with this
     machine, or with the same in other frames. sag is what the drives stay behind by, where that is
-    to be compensated.
+    to be compensated. jog_singularity: what a jog does where a singular posture does not let it
+    keep its direction.
     """
 
     kinematics: Kinematics
@@ -48,3 +52,10 @@ class Machine:
     make_jogger: 'Callable[[Machine], Jogger]'
     frames: Frames = field(default_factory=Frames)
     sag: Sag | None = None
+    jog_singularity: str = JOG_SINGULARITIES[0]
+
+    def __post_init__(self) -> None:
+        """Raises InvalidInput for an unknown jog_singularity."""
+        if self.jog_singularity not in JOG_SINGULARITIES:
+            known = ' or '.join(map(repr, JOG_SINGULARITIES))
+            raise InvalidInput(f'jog_singularity is {self.jog_singularity!r}, needs {known}')

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PointStamped, PoseStamped
@@ -10,7 +11,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 from manipulator.errors import ManipulatorError
-from manipulator.machine import Machine
+from manipulator.machine import JOG_SINGULARITIES, Machine
 from manipulator.nodes.diagnostics import OK, WARN, Diagnostics, Report, status
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.jitter import Jitter
@@ -36,6 +37,7 @@ from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.teleop import Teleop
 
 DELAY = 'age in seconds of a measured pose by the time that its correction moves the joints'
+SINGULARITY = 'what a jogged arm does where it cannot keep its direction: stop or slide'
 TOLERANCE = 'how far a joint may be from its commands of the last half second (rad or m)'
 
 
@@ -48,8 +50,10 @@ class TrajectoryNode(Node):
         rate = declare(self, 'rate', 100.0, 'setpoints per second (Hz)', (10.0, 500.0))
         tolerance = declare(self, 'following_tolerance', 0.2, TOLERANCE, (0.0001, 10.0))
         delay = declare(self, 'measurement_delay', 0.06, DELAY, (0.0, 1.0))
+        singularity = declare(self, 'jog_singularity', JOG_SINGULARITIES[0], SINGULARITY)
         self._dt = 1.0 / rate
-        self._pilot = Pilot(load(name), self._dt, tolerance)
+        machine = replace(load(name), jog_singularity=singularity)
+        self._pilot = Pilot(machine, self._dt, tolerance)
         self._teleop = Teleop(self._pilot, delay)
         self._seen: MotionStatus | None = None
         self._published: MotionStatus | None = None
