@@ -18,7 +18,7 @@ SWITCH_INTERVAL = 0.001
 
 
 class PlanningThread:
-    """A `Worker` that works tasks out one after the other in a thread of its own, beside a control loop."""
+    """A `Worker` of one thread beside a control loop: one task after the other."""
 
     is_beside = True
 

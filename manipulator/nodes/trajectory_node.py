@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PointStamped, PoseStamped
@@ -10,7 +11,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 from manipulator.errors import ManipulatorError, Refused
-from manipulator.machine import Machine
+from manipulator.machine import JOG_SINGULARITIES, Machine
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.jitter import Jitter
@@ -40,6 +41,7 @@ from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.teleop import Teleop
 
 DELAY = 'age in seconds of a measured pose by the time that its correction moves the joints'
+SINGULARITY = 'what a jogged arm does where it cannot keep its direction: stop or slide'
 TOLERANCE = (
     'how far a joint may be from its commands of the last half second (rad or m); '
     '0: 6 % of its range, at most 0.2 rad'
@@ -62,8 +64,10 @@ class TrajectoryNode(Node):
         goal_tolerance = declare(self, 'goal_tolerance', 0.0, GOAL_TOLERANCE, (0.0, 10.0))
         declare(self, 'goal_motion', Motion.LINE.value, GOAL_MOTION, is_read_only=False)
         delay = declare(self, 'measurement_delay', 0.06, DELAY, (0.0, 1.0))
+        singularity = declare(self, 'jog_singularity', JOG_SINGULARITIES[0], SINGULARITY)
         self._dt = 1.0 / rate
-        machine, self._worker = load(name), PlanningThread()
+        machine = replace(load(name), jog_singularity=singularity)
+        self._worker = PlanningThread()
         tolerances = Tolerances.of(machine, tolerance, goal_tolerance)
         self._pilot = Pilot(machine, self._dt, tolerances, self._worker)
         self._teleop = Teleop(self._pilot, delay)
