@@ -11,7 +11,7 @@ from bridge.framing import FrameReader
 from bridge.messages import Arm, Clear, Setpoint, Stop
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from manipulator.errors import InvalidInput, ManipulatorError, Refused
+from manipulator.errors import InvalidInput, Refused
 
 EPOCH = 1.7e9
 STEP = 0.005
@@ -98,6 +98,15 @@ def test_a_command_becomes_a_frame_and_the_machine_is_followed(enabled):
     assert [ticket.received for ticket in enabled.written] == [pytest.approx(enabled.now - 0.02)]
 
 
+def test_a_machine_that_was_stopped_is_followed_again_with_the_next_frame(enabled):
+    enabled.command(enabled.park)
+    enabled.answered(enabled.driver.stop())
+    enabled.answered(enabled.driver.clear_fault())
+    assert (enabled.state.status.word, enabled.state.is_followed) == ('enabled', False)
+    enabled.command(enabled.park)
+    assert enabled.state.is_followed
+
+
 @pytest.mark.parametrize('turn', [0.5, -0.5])
 def test_a_jump_is_refused_and_nothing_is_sent(enabled, turn):
     enabled.command(enabled.park)
@@ -121,12 +130,12 @@ def test_what_is_not_enabled_says_why_it_takes_no_command(rig):
         rig.command(rig.park)
 
 
-def test_a_stop_that_no_board_has_obeyed_lets_no_command_through(enabled):
-    """Also where the board refuses it and still moves."""
-    enabled.driver.session.is_stop_wanted = True
-    with pytest.raises(ManipulatorError):
+def test_from_the_moment_a_stop_is_asked_for_no_command_is_admitted(enabled):
+    enabled.driver.stop()
+    with pytest.raises(Refused):
         enabled.command(enabled.park)
-    assert enabled.sent(Setpoint) == []
+    enabled.run(0.1)
+    assert enabled.sent(Setpoint | Stop) == [Stop()]
 
 
 @pytest.mark.parametrize('restart', ['enable', 'clear_fault'])

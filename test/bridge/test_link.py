@@ -194,6 +194,8 @@ def test_what_piled_up_while_nobody_listened_is_told_as_its_last(rig):
 
 def test_a_board_is_not_silent_because_nobody_listened(rig):
     rig.pass_time(0.7)
+    rig.link.turn(b'', rig.now)  # held up after it had found nothing to read
+    rig.link.written(b'', rig.now)
     rig.turn()
     assert rig.logged(Disconnected) == []
 
