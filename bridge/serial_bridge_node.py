@@ -1,38 +1,28 @@
 """The node between the graph and the board: joint commands down, joint states up."""
 
+import dataclasses
 import time
+from typing import TypeVar
 
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
-from bridge.board_answers import BoardAnswers
-from bridge.calibration import Calibration
-from bridge.command_gate import CommandGate
-from bridge.events import (
-    CommandFailed,
-    Disconnected,
-    Event,
-    FaultReported,
-    Incompatible,
-    StateReceived,
-)
-from bridge.gripper import Gripper
+from bridge.driver import Asked, BoardDriver, MachineState
 from bridge.latencies import Latencies
-from bridge.link_monitor import LinkMonitor
-from bridge.link_thread import LinkThread, Ticket
+from bridge.link import Ticket
+from bridge.link_monitor import JointTable
+from bridge.link_thread import LinkThread
 from bridge.machine_state_node import LEVELS, StateTopic
-from bridge.messages import Arm, Clear, Command, Disarm
 from bridge.programs_node import BoardPrograms
 from bridge.serial_port import SerialPort
 from bridge.servo_config import BoardConfig
-from bridge.session import Session
 from bridge.stop_memory import StopMemory, stop_file
-from bridge.stop_node import StopNode
+from bridge.stop_node import StopNode, answer_of
 from bridge.stop_socket import StopSocket, stop_address
 from hexarm import machines
-from manipulator.errors import ManipulatorError, Refused
+from manipulator.errors import ManipulatorError
 from manipulator.nodes.bounded import decoded
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.graph_check import received_by
@@ -41,6 +31,7 @@ from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
 
 SAY_AGAIN_AFTER = 2.0
+_Response = TypeVar('_Response', SetBool.Response, Trigger.Response)
 MOST_BYTES = 10_000
 """Of a joint_command: that of seven joints has less than 500."""
 
@@ -58,31 +49,19 @@ class SerialBridge(Node):
             self, 'baud', 0, 'bits per second; 0: the machine file says', (0, 4_000_000)
         )
         config = BoardConfig.from_machine(machines.read(machine), str(machines.find(machine)))
-        self._baud = baud or config.link.baud
-        self._calibration = Calibration.from_config(config.servos)
-        self._gate = CommandGate(self._calibration, 1e-3 * config.link.setpoint_deadline_ms)
-        self._gripper = Gripper(config.servos, self._calibration)
-        self._memory = StopMemory(
-            stop_file(self.get_fully_qualified_name(), self._port), self.get_logger().error
-        )
-        self._session = Session(len(self._calibration.names), self._memory.is_kept)
-        self._monitor = LinkMonitor(self._session, self._calibration)
+        line = dataclasses.replace(config.link, baud=baud or config.link.baud)
+        config = dataclasses.replace(config, link=line)
+        name = self.get_fully_qualified_name()
+        self._memory = StopMemory(stop_file(name, self._port), self.get_logger().error)
         # Receipt times are monotonic, but read like the system's clock at the start.
-        self._clock_start = time.time() - time.monotonic()
+        epoch = time.time() - time.monotonic()
+        self._driver = BoardDriver(config, self, epoch, self._memory.is_kept)
         self._command_at: float | None = None
         self._receipt_to_frame, self._setpoint_to_frame = Latencies(), Latencies()
-        self._is_followed = False
-        self._link = LinkThread(
-            lambda: SerialPort(self._port, self._baud),
-            self._session,
-            self._on_event,
-            self._on_written,
-            bytes_per_second=self._baud / 5,  # twice what the line carries
-        )
-        self._answers = BoardAnswers(self._link.request, lambda: self._monitor.trouble)
-        programs = BoardPrograms(self, self._calibration, self._link.request)
-        stops = StopNode(self, self._link, self._answers, self._remember)
-        address = stop_address(self.get_fully_qualified_name(), self.context.get_domain_id())
+        self._link = LinkThread(lambda: SerialPort(self._port, line.baud), self._driver.link)
+        programs = BoardPrograms(self, self._driver.calibration, self._driver.link.request)
+        stops = StopNode(self, self._driver, self._remember)
+        address = stop_address(name, self.context.get_domain_id())
         self._aside = programs, stops, StopSocket(address, stops.stop, self.get_logger().warning)
         self._make_interfaces()
         for part in (self._memory, self._link, *self._aside):
@@ -107,125 +86,74 @@ class SerialBridge(Node):
     # From the graph (the executor's thread)
 
     def _on_command(self, serialized: bytes) -> None:
-        self._command_at = time.monotonic()
+        self._command_at = now = time.monotonic()
         try:
             message = decoded(serialized, JointState, MOST_BYTES)
-            self._refuse_unless_enabled()
-            self._link.put_setpoint(self._admitted(message, self._command_at))
+            stamp = seconds(message.header.stamp) or None
+            if stamp is None:
+                self.get_logger().info('joint_command without a stamp: taken as now', once=True)
+            self._driver.command(message.name, message.position, stamp, now)
         except ManipulatorError as error:
-            self._monitor.refuse(str(error))
+            self._driver.monitor.refuse(str(error))
             self._warn(f'joint_command refused: {error}')
-
-    def _admitted(self, message: JointState, now: float) -> Ticket:
-        stamp = seconds(message.header.stamp) or None
-        if stamp is None:
-            self.get_logger().info('joint_command without a stamp: taken as now', once=True)
-        present = None if self._monitor.joints is None else self._monitor.joints.positions
-        names, positions = self._gripper.joined((message.name, message.position), now, present)
-        setpoint = self._gate.admit(names, positions, stamp, now + self._clock_start, present)
-        return Ticket(setpoint, now, stamp)
-
-    def _refuse_unless_enabled(self) -> None:
-        if not (self._monitor.is_enabled_here and self._session.accepts_setpoints):
-            self._restart()
-            current = self._monitor.status
-            raise Refused(f'{current.word}{f" ({current.reason})" if current.reason else ""}')
-
-    def _restart(self) -> None:
-        """What comes next must start where the joints are."""
-        self._gate.restart()
-        self._gripper.restart()
 
     def _on_gripper(self, message: Float64) -> None:
         try:
-            self._refuse_unless_enabled()
-            self._gripper.aim(message.data)
+            self._driver.aim_gripper(message.data)
         except ManipulatorError as error:
             self._warn(f'gripper refused: {error}')
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        if request.data and self._monitor.status.word == 'enabled':
-            # An ARM would hold up the setpoints of a machine that is moving.
-            response.success, response.message = True, 'enabled already'
-        elif request.data:
-            park = self._calibration.counts(self._calibration.park)
-            done = 'arming: the servos go to park one by one'
-            response.success, response.message = self._ask(Arm(park), done)
-        else:
-            response.success, response.message = self._ask(Disarm(), 'disarmed: no more pulses')
-        return response
+        return self._answered(self._driver.enable(request.data), response)
 
     def _on_clear_fault(
         self, request: Trigger.Request, response: Trigger.Response
     ) -> Trigger.Response:
-        if self._monitor.is_clear:
-            # A CLEAR would hold up the setpoints of a machine that is moving.
-            word = self._monitor.status.word
-            response.success, response.message = True, f'nothing to clear: the machine is {word}'
-        else:
-            done = 'cleared: nothing moves until a new command'
-            response.success, response.message = self._ask(Clear(), done)
-        return response
+        return self._answered(self._driver.clear_fault(), response)
 
-    def _ask(self, command: Command, done: str) -> tuple[bool, str]:
-        is_obeyed, said = self._answers.ask(command, done)
-        if is_obeyed:
-            self._restart()
-        return is_obeyed, said
+    def _answered(self, asked: Asked, response: _Response) -> _Response:
+        response.success, response.message = answer_of(self._driver, asked)
+        return response
 
     # From the board (the link's thread)
 
-    def _on_event(self, event: Event) -> None:
-        now = time.monotonic()
-        self._monitor.note(event, now)
-        self._remember()
-        match event:
-            case StateReceived():
-                self._publish_joints()
-            case FaultReported():
-                self._warn(self._monitor.last_refusal)
-            case CommandFailed(command, reason):
-                self._warn(f'{type(command).__name__.upper()}: {reason}')
-            case Disconnected(reason) | Incompatible(reason):
-                self._warn(reason)
-        self._publish_status()
-
-    def _remember(self) -> None:
-        """Keeps it for a bridge that starts after this one whether a STOP stands."""
-        self._memory.keep(lambda: self._session.is_stop_wanted)
-
-    def _on_written(self, ticket: Ticket, now: float) -> None:
-        self._is_followed = True
-        self._receipt_to_frame.add(now - ticket.received)
-        if ticket.stamped is not None and not self._gate.has_notable_offset:
-            self._setpoint_to_frame.add(time.time() - ticket.stamped)
-
-    def _publish_joints(self) -> None:
-        joints = self._monitor.joints
-        if joints is None or not any(joints.is_known):
-            return
+    def on_joints(self, joints: JointTable) -> None:
+        """Publishes the joints whose position is known."""
         known = [i for i, is_known in enumerate(joints.is_known) if is_known]
         message = JointState()
         message.header.stamp = self.get_clock().now().to_msg()
-        message.name = [self._calibration.names[i] for i in known]
+        message.name = [self._driver.calibration.names[i] for i in known]
         message.position = joints.positions[known].tolist()
         message.velocity = joints.velocities[known].tolist()
         message.effort = [0.0] * len(known)
         self._joint_states.publish(message)
 
-    def _publish_status(self) -> None:
-        """Publishes the machine's state when it has changed."""
-        current = self._monitor.status
-        self._is_followed = self._is_followed and current.word == 'enabled'
+    def on_machine_state(self, state: MachineState) -> None:
+        """Publishes it when it has changed."""
+        self._remember()
         values: dict[str, object] = {
-            'reason': current.reason,
-            'followed': 'yes' if self._is_followed else 'no',
+            'reason': state.status.reason,
+            'followed': 'yes' if state.is_followed else 'no',
             'port': self._port,
-            'joints': 'measured' if self._monitor.is_measured else 'commanded',
-            'board': self._monitor.board,
-            'joints_unknown': ' '.join(self._monitor.unknown_joints),
+            'joints': 'measured' if state.is_measured else 'commanded',
+            'board': state.board,
+            'joints_unknown': ' '.join(state.unknown_joints),
         }
-        self._machine_state.say(current, values)
+        self._machine_state.say(state.status, values)
+
+    def on_trouble(self, text: str) -> None:
+        """Logs it."""
+        self._warn(text)
+
+    def on_written(self, ticket: Ticket, now: float) -> None:
+        """Counts what it took from the command to the frame."""
+        self._receipt_to_frame.add(now - ticket.received)
+        if ticket.stamped is not None and not self._driver.gate.has_notable_offset:
+            self._setpoint_to_frame.add(time.time() - ticket.stamped)
+
+    def _remember(self) -> None:
+        """Keeps it for a bridge that starts after this one whether a STOP stands."""
+        self._memory.keep(lambda: self._driver.session.is_stop_wanted)
 
     def _warn(self, text: str) -> None:
         self.get_logger().warning(text, throttle_duration_sec=SAY_AGAIN_AFTER)
@@ -233,15 +161,15 @@ class SerialBridge(Node):
     def _report(self) -> Report:
         if not self._link.is_alive():
             raise RuntimeError('the thread of the serial link has died')
-        current = self._monitor.status
+        current = self._driver.monitor.status
         age = time.monotonic() - self._command_at if self._command_at is not None else None
         values: dict[str, object] = {
             'port': self._port,
             **self._setpoint_to_frame.report('setpoint_to_frame'),
             **self._receipt_to_frame.report('receipt_to_frame'),
             'last_command_age_s': 'none yet' if age is None else age,
-            **self._monitor.report(),
+            **self._driver.monitor.report(),
         }
-        if self._gate.has_notable_offset:
-            values['joint_command_clock_offset_s'] = self._gate.clock_offset
+        if self._driver.gate.has_notable_offset:
+            values['joint_command_clock_offset_s'] = self._driver.gate.clock_offset
         return LEVELS[current.level], current.reason or current.word, values

@@ -12,7 +12,8 @@ from contextlib import contextmanager
 
 from bridge.calibration import COUNTS_PER_US
 from bridge.events import Disconnected, Event, FaultReported, Incompatible
-from bridge.link_thread import LinkThread, Ticket
+from bridge.link import Link, Ticket
+from bridge.link_thread import LinkThread
 from bridge.messages import Arm, Clear, Command, Disarm, FaultCode, Known, Mode, Setpoint, Stop
 from bridge.serial_port import SerialPort
 from bridge.servo_config import BoardConfig
@@ -42,15 +43,16 @@ class ServoLine:
         self._port: SerialPort | None = _opened(port, config.link.baud)
         self._session = Session(len(config.servos.joints))
         self._is_ready = threading.Event()
-        self._link = LinkThread(self._open_once, self._session, self._note)
+        self._link = Link(self._session, self._note)
+        self._thread = LinkThread(self._open_once, self._link)
 
     def __enter__(self) -> 'ServoLine':
         """LinkError where no board answers."""
-        self._link.start()
+        self._thread.start()
         try:
             self._await_board()
         except BaseException:
-            self._link.close()
+            self._thread.close()
             raise
         return self
 
@@ -64,7 +66,7 @@ class ServoLine:
                     self.is_off = True
                 except Refused:  # a STOP is under way, or a frame was lost
                     time.sleep(LOOK_EVERY)
-            self._link.close()
+            self._thread.close()
 
     @property
     def mode(self) -> Mode | None:
@@ -143,7 +145,7 @@ class ServoLine:
             raise LinkError(self.trouble or 'the port was lost')
         return port
 
-    def _note(self, event: Event) -> None:
+    def _note(self, event: Event, now: float) -> None:
         """In the link's thread."""
         match event:
             case Disconnected(reason) | Incompatible(reason):

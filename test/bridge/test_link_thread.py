@@ -8,10 +8,11 @@ import time
 import pytest
 
 from bridge.board_thread import BoardThread, FakeMachine
-from bridge.events import Acknowledged, Connected, Disconnected, StateReceived
+from bridge.events import Connected, Disconnected, StateReceived
 from bridge.fake_line import FakeLine
-from bridge.link_thread import LinkThread, Ticket
-from bridge.messages import Arm, Clear, Disarm, Mode, ResetCause, Setpoint, Stop
+from bridge.link import Link, Ticket
+from bridge.link_thread import LinkThread
+from bridge.messages import Arm, Clear, Mode, ResetCause, Setpoint, Stop
 from bridge.serial_port import SerialPort
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
@@ -30,28 +31,21 @@ class Rig:
     def __init__(self, path):
         self.path = path
         self.events = []
-        self.modes = []
         self.written = []
         self.changed = threading.Condition()
         self.stall = 0.0
         self.machine = FakeMachine.from_config(CONFIG, boot_s=0.1, hysteresis=0.0)
         self.board = BoardThread(self.machine, FakeLine(path), lambda positions: None)
-        self.link = LinkThread(
-            lambda: SerialPort(str(path), 250_000),
-            Session(6),
-            self._note,
-            lambda ticket, now: self.written.append(ticket),
-        )
+        self.link = Link(Session(6), self._note, lambda ticket, now: self.written.append(ticket))
+        self.thread = LinkThread(lambda: SerialPort(str(path), 250_000), self.link)
         self.board.start()
-        self.link.start()
+        self.thread.start()
 
-    def _note(self, event):
+    def _note(self, event, now):
         stall, self.stall = self.stall, 0.0
         time.sleep(stall)
         with self.changed:
-            if isinstance(event, StateReceived):
-                self.modes.append(event.state.mode)
-            else:
+            if not isinstance(event, StateReceived):
                 self.events.append(event)
             self.changed.notify_all()
 
@@ -74,7 +68,7 @@ class Rig:
         self.link.put_setpoint(Ticket(Setpoint(200, counts), time.monotonic()))
 
     def close(self):
-        self.link.close()
+        self.thread.close()
         self.board.close()
 
 
@@ -89,10 +83,11 @@ def rig(tmp_path):
 def no_board(tmp_path):
     """A link that looks for a port which is not there."""
     events = []
-    link = LinkThread(lambda: SerialPort(str(tmp_path / 'no'), 250_000), Session(6), events.append)
-    link.start()
+    link = Link(Session(6), lambda event, now: events.append(event))
+    thread = LinkThread(lambda: SerialPort(str(tmp_path / 'no'), 250_000), link)
+    thread.start()
     yield link, events
-    link.close()
+    thread.close()
 
 
 def test_setpoints_reach_the_servos(rig):
@@ -103,43 +98,6 @@ def test_setpoints_reach_the_servos(rig):
     rig.wait_for_mode(Mode.HOLDING)
 
 
-def test_the_newest_setpoint_wins(rig):
-    rig.arm()
-    for k in range(2000):
-        rig.put((3000 + k % 100,) * 6)
-    rig.put((3250,) * 6)
-    rig.wait_for(lambda: rig.link.session.state.joints[0].count == 3250)
-    assert rig.written[-1].setpoint.counts == (3250,) * 6
-
-
-def test_a_flood_of_setpoints_is_thinned_out_before_the_line(rig):
-    rig.arm()
-    start = time.monotonic()
-    for k in range(3000):
-        rig.put((3000 + k % 100,) * 6)
-        time.sleep(0.0001)
-    seconds = time.monotonic() - start
-    rig.put((3250,) * 6)
-    rig.wait_for(lambda: rig.link.session.state.joints[0].count == 3250)
-    assert 1 < len(rig.written) <= 400 * seconds + 2
-
-
-def test_setpoints_while_disarmed_are_dropped_and_not_kept_for_later(rig):
-    rig.wait_for_event(Connected)
-    rig.put((3300,) * 6)
-    rig.arm()
-    assert rig.written == []
-    assert rig.machine.board.pulses == (3000.0,) * 6
-
-
-def test_a_setpoint_older_than_its_deadline_is_not_written(rig):
-    rig.arm()
-    rig.link.put_setpoint(Ticket(Setpoint(200, (3300,) * 6), time.monotonic() - 0.25))
-    rig.put((3100,) * 6)
-    rig.wait_for(lambda: rig.link.session.state.joints[0].count == 3100)
-    assert [ticket.setpoint.counts for ticket in rig.written] == [(3100,) * 6]
-
-
 def test_stop_is_answered_and_further_stops_too(rig):
     rig.arm()
     futures = [rig.link.request(Stop()) for _ in range(5)]
@@ -148,18 +106,6 @@ def test_stop_is_answered_and_further_stops_too(rig):
     with pytest.raises(Refused, match='clear the stop first'):
         rig.link.request(Arm(PARK)).result(2.0)
     rig.link.request(Clear()).result(2.0)
-
-
-@pytest.mark.parametrize('command', [Stop(), Arm(PARK), Clear(), Disarm()])
-def test_who_is_answered_finds_that_it_was_told(rig, command):
-    rig.arm()
-    rig.link.request(Stop()).result(2.0)
-    rig.link.request(Clear()).result(2.0)
-    rig.events.clear()
-    told = []
-    rig.link.request(command).add_done_callback(lambda done: told.append(list(rig.events)))
-    rig.wait_for(lambda: told)
-    assert told == [[Acknowledged(command)]]
 
 
 def test_an_unplugged_board_is_lost_and_found_again_disarmed(rig):
@@ -206,15 +152,14 @@ def test_a_board_is_not_lost_because_this_thread_was_held_up(rig):
     assert not any(isinstance(event, Disconnected) for event in rig.events)
 
 
-def test_where_the_joints_were_long_ago_is_not_told_as_news(rig):
-    rig.arm()
-    rig.put((3100,) * 6)
-    rig.wait_for(lambda: rig.link.session.state.joints[0].count == 3100)
-    rig.modes.clear()
-    rig.stall = 0.7
-    rig.wait_for(lambda: Mode.HOLDING in rig.modes)
-    # One before the stall, or two; of some ten that piled up before the deadline, the last.
-    assert rig.modes.count(Mode.ARMED) <= 3
+def test_nobody_waits_for_a_thread_that_has_ended(tmp_path):
+    link = Link(Session(6), lambda event, now: None)
+    thread = LinkThread(lambda: SerialPort(str(tmp_path / 'no'), 250_000), link)
+    thread.start()
+    thread.close()
+    with pytest.raises(Refused, match='the thread of the serial link does not run'):
+        link.request(Stop()).result(2.0)
+    assert link.session.is_stop_wanted
 
 
 def test_a_missing_port_is_said_and_looked_for(no_board):
@@ -237,9 +182,10 @@ def test_a_device_that_sends_noise_without_end_stalls_nothing(tmp_path):
             line.write(noise)
 
     shouter = threading.Thread(target=shout)
-    link = LinkThread(lambda: SerialPort(str(line.path), 250_000), Session(6), lambda event: None)
+    link = Link(Session(6), lambda event, now: None)
+    thread = LinkThread(lambda: SerialPort(str(line.path), 250_000), link)
     shouter.start()
-    link.start()
+    thread.start()
     try:
         deadline = time.monotonic() + 5.0
         while link.session.reader.bad_frames < 1000 and time.monotonic() < deadline:
@@ -250,5 +196,5 @@ def test_a_device_that_sends_noise_without_end_stalls_nothing(tmp_path):
     finally:
         is_over.set()
         shouter.join()
-        link.close()
+        thread.close()
         line.close()

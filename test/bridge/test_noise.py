@@ -15,6 +15,7 @@ from bridge.board import Board
 from bridge.board_modes import BoardSettings
 from bridge.events import StateReceived
 from bridge.framing import FrameReader
+from bridge.link import Link
 from bridge.link_thread import LinkThread
 from bridge.messages import Mode, Stop
 from bridge.serial_port import SerialPort
@@ -97,12 +98,11 @@ def test_endless_noise_takes_little_of_the_processor_and_requests_are_heard(nois
     tty.setraw(theirs)
     name, seen = os.ttyname(theirs), []
     rate = 50_000
-    link = LinkThread(
-        lambda: SerialPort(name, 250_000), Session(6), seen.append, bytes_per_second=rate
-    )
+    link = Link(Session(6), lambda event, now: seen.append(event), bytes_per_second=rate)
+    thread = LinkThread(lambda: SerialPort(name, 250_000), link)
     os.set_blocking(ours, False)
     sent = 0
-    link.start()
+    thread.start()
     try:
         begin, used = time.monotonic(), time.thread_time()
         total = time.process_time()
@@ -116,7 +116,7 @@ def test_endless_noise_takes_little_of_the_processor_and_requests_are_heard(nois
         with pytest.raises(Refused):
             link.request(Stop()).result(2.0)
     finally:
-        link.close()
+        thread.close()
         os.close(ours)
         os.close(theirs)
     assert sent < rate * elapsed + 3 * 65_536

@@ -32,7 +32,7 @@ SETTINGS = BoardSettings(
 )
 
 
-class BoardDriver:
+class BoardHost:
     """Plays the host to one board; time passes in steps of 5 ms."""
 
     def __init__(self, make_board, **changes):
@@ -111,16 +111,16 @@ BOARDS = {'python': Board, 'chip': SimulatedBoard}
 
 @pytest.fixture
 def make_both(chip_tools):
-    """A BoardDriver of each board, for settings that differ from the usual ones."""
-    return lambda **changes: [BoardDriver(board, **changes) for board in BOARDS.values()]
+    """A BoardHost of each board, for settings that differ from the usual ones."""
+    return lambda **changes: [BoardHost(board, **changes) for board in BOARDS.values()]
 
 
 @pytest.fixture(params=BOARDS)
 def make_driver(request):
-    """A BoardDriver for settings that differ from the usual ones."""
+    """A BoardHost for settings that differ from the usual ones."""
     if request.param == 'chip':
         request.getfixturevalue('chip_tools')
-    return lambda **changes: BoardDriver(BOARDS[request.param], **changes)
+    return lambda **changes: BoardHost(BOARDS[request.param], **changes)
 
 
 @pytest.fixture

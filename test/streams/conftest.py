@@ -1,4 +1,4 @@
-"""One machine's whole chain without processes: pilot, command check, gate, session, board."""
+"""One machine's whole chain without processes: pilot, command check, driver, board."""
 
 from dataclasses import dataclass
 
@@ -6,13 +6,9 @@ import numpy as np
 import pytest
 
 from bridge.board_thread import FakeMachine
-from bridge.calibration import Calibration
-from bridge.command_gate import CommandGate
-from bridge.events import FaultReported, StateReceived
-from bridge.link_monitor import LinkMonitor
+from bridge.driver import BoardDriver
 from bridge.messages import Arm
 from bridge.servo_config import BoardConfig
-from bridge.session import Session
 from hexarm import machines
 from manipulator.command_check import CommandCheck
 from manipulator.errors import ManipulatorError
@@ -51,25 +47,25 @@ class Loop:
     def __init__(self, name):
         self.machine = machines.load(name)
         config = BoardConfig.from_machine(machines.read(name))
-        self.calibration = Calibration.from_config(config.servos)
         self.fake = FakeMachine.from_config(config, boot_s=0.0, hysteresis=config.hysteresis)
         self.board = self.fake.board
-        self.session = Session(len(self.calibration.names))
-        self.monitor = LinkMonitor(self.session, self.calibration)
-        self.gate = CommandGate(self.calibration, 1e-3 * config.link.setpoint_deadline_ms)
+        self.driver = BoardDriver(config, self)
+        self.monitor, self._link = self.driver.monitor, self.driver.link
         self.check = CommandCheck(self.machine)
         self.pilot = Pilot(self.machine, DT)
         self.teleop = Teleop(self.pilot, delay=0.06)
-        self.park = self.calibration.counts(self.calibration.park)
-        names = self.machine.kinematics.joint_names
-        self._order = [self.calibration.names.index(n) for n in names]
+        calibration = self.driver.calibration
+        self.park = calibration.counts(calibration.park)
+        self._names = list(self.machine.kinematics.joint_names)
+        self._order = [calibration.names.index(n) for n in self._names]
         self._measured = None
-        self._is_followed = False
+        self._state = ('', False, False)
+        self._written = None
         self.tick = 0
         self.sent, self.refusals, self.true_joints = [], [], []
         self.times_of_a_tick = lambda: [DT]
         self.is_stalled = False
-        self.session.opened(self.now)
+        self._link.opened(self.now)
 
     @property
     def now(self):
@@ -98,79 +94,61 @@ class Loop:
 
     def ask(self, command):
         """As the bridge's services do; Refused where there is nothing to ask of."""
-        self._hear(self.session.send_command(command, self.now))
-        self.gate.restart()
+        asked = self._link.request(command)
+        self._turn()
+        if asked.done():
+            asked.result()
 
     def _step(self):
         self.tick += 1
         for dt in self.times_of_a_tick():
             self.fake.step(dt)
             self.true_joints.append(self.fake.servos.positions[self._order])
-        self._hear(self.session.receive(self.board.take_output(), self.now))
-        self._hear(self.session.tick(self.now))
-        self._is_followed = self._is_followed and self.monitor.status.word == 'enabled'
-        word, is_measured = self.monitor.status.word, self.monitor.is_measured
-        self.pilot.note_machine_state(word, self._is_followed, is_measured)
+        self._turn(self.board.take_output())
+        self.pilot.note_machine_state(*self._state)
         self.teleop.drive(self.now)
         pose = self.pilot.step()
-        if pose is not None and self._may_send() and not self.is_stalled:
+        if pose is not None and not self.is_stalled:
             self._send(pose)
-        self.board.feed(self.session.take_output())
 
-    def _may_send(self):
-        may = self.monitor.is_enabled_here and self.session.accepts_setpoints
-        if not may:
-            self.gate.restart()
-        return may
+    def _turn(self, received=b''):
+        output = self._link.turn(received, self.now)
+        pulses = [np.nan if p is None else p for p in self.board.pulses]
+        self.board.feed(output)
+        self._link.written(b'', self.now)
+        return np.array(pulses)
 
     def _send(self, pose):
-        pulses = np.array([np.nan if p is None else p for p in self.board.pulses])
+        may_send = self.monitor.is_enabled_here and self.driver.session.accepts_setpoints
         try:
             joints = self.check.admit(pose, self.now)
-            setpoint = self.gate.admit(
-                self.calibration.names,
-                self._of_all(joints),
-                self.now,
-                self.now,
-                self.monitor.joints.positions,
-            )
+            self.driver.command(self._names, joints.tolist(), self.now, self.now)
         except ManipulatorError as error:
-            self.refusals.append(f'tick {self.tick}: {error}')
+            if may_send:
+                self.refusals.append(f'tick {self.tick}: {error}')
             return
-        self.session.send_setpoint(setpoint, self.now)
-        self._is_followed = True
-        frames = self.pilot.machine.frames
-        counts = np.array(setpoint.counts, dtype=float)
-        mode = self.pilot.status.mode
+        pulses = self._turn()
+        frames, mode = self.pilot.machine.frames, self.pilot.status.mode
+        counts = np.array(self._written.setpoint.counts, dtype=float)
+        is_first = mode == 'disabled'
         self.sent.append(
-            Sent(
-                self.tick,
-                frames.pivot(pose),
-                frames,
-                mode == 'disabled',
-                mode,
-                joints,
-                counts,
-                pulses,
-            )
+            Sent(self.tick, frames.pivot(pose), frames, is_first, mode, joints, counts, pulses)
         )
 
-    def _of_all(self, joints):
-        """Joints that the pose says nothing of, as a gripper, stay at park."""
-        positions = self.calibration.park.copy()
-        positions[self._order] = joints
-        return positions.tolist()
+    # What the driver announces
 
-    def _hear(self, events):
-        for event in events:
-            self.monitor.note(event, self.now)
-            if isinstance(event, FaultReported):
-                self.refusals.append(f'tick {self.tick}: the board: {event.fault}')
-            if isinstance(event, StateReceived):
-                self._note_joints()
+    def on_machine_state(self, state):
+        self._state = (state.status.word, state.is_followed, state.is_measured)
 
-    def _note_joints(self):
-        positions = self.monitor.joints.positions[self._order]
+    def on_written(self, ticket, now):
+        self._written = ticket
+
+    def on_trouble(self, text):
+        if text.startswith('the board: '):
+            self.refusals.append(f'tick {self.tick}: {text}')
+
+    def on_joints(self, joints):
+        positions = joints.positions[self._order]
         if not np.isfinite(positions).all():
             self._measured = None
             self.check.note_joints(None)

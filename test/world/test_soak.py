@@ -5,6 +5,7 @@ import random
 import numpy as np
 import pytest
 
+from bridge.driver import BoardDriver
 from bridge.messages import Clear, Setpoint, Stop
 from manipulator.pose import Pose
 
@@ -73,9 +74,9 @@ def recover(world):
     while world.state != 'enabled' or world.status.mode == 'disabled':
         assert world.now < end, world.summary
         if world.state in ('stopped', 'fault'):
-            world.bridge.ask(Clear())
+            world.bridge.ask(BoardDriver.clear_fault)
         elif world.state in ('disarmed', 'unclaimed'):
-            world.ask_to_arm()
+            world.bridge.ask(lambda driver: driver.enable(True))
         world.run(0.5)
 
 

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
+from bridge.driver import BoardDriver
 from bridge.messages import Setpoint, Stop
 from manipulator.pose import Pose
 
@@ -63,7 +64,7 @@ def test_a_stop_whose_frames_are_lost_is_said_again(world, lost):
 def test_a_stop_while_the_cable_is_out_is_obeyed_by_the_board_that_comes_back(world):
     world.cable.pull()
     world.run(0.5)
-    assert 'no board' in world.emergency_stop().said
+    assert 'no board' in world.ask(BoardDriver.stop)
     world.cable.plug()
     world.wait('stop', lambda: world.state == 'stopped')
     assert not world.frames(Setpoint, since=world.now - 1.0)

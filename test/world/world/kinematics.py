@@ -8,17 +8,22 @@ from world.timeline import Process
 
 
 class Inverse(Process):
-    """Setpoints and joints in, joint commands out (manipulator/nodes/ik_node.py)."""
+    """Setpoints and joints in, joint commands out (manipulator/nodes/ik_node.py).
+
+    published: (time, joints); what it refused stands in `on_setpoint.refusals`.
+    """
 
     def __init__(self, timeline, machine, commands):
         super().__init__(timeline)
         self._machine, self._commands = machine, commands
         self.check = CommandCheck(machine)
+        self.published = []
         self.on_setpoint = Intake(self, self._take)
         self.on_joints = Intake(self, lambda stamp, joints: self.check.note_joints(joints))
 
     def _take(self, stamp, pose):
         joints = commanded(self._machine.sag, pose, self.check.admit(pose, self.now))
+        self.published.append((self.now, joints))
         self._commands.send(stamp, joints)
 
 

@@ -4,7 +4,8 @@ import numpy as np
 
 from bridge.board_thread import FakeMachine
 from bridge.calibration import Calibration
-from bridge.messages import Arm, Clear, Disarm, Setpoint, Stop
+from bridge.driver import BoardDriver
+from bridge.messages import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from world.board import BoardProcess, Cable
@@ -24,10 +25,10 @@ class World:
 
     def __init__(self, name, boot_s=0.2):
         self.machine = machines.load(name)
-        config = BoardConfig.from_machine(machines.read(name))
+        self._config = config = BoardConfig.from_machine(machines.read(name))
         self.calibration = Calibration.from_config(config.servos)
-        self.deadline = 1e-3 * config.link.setpoint_deadline_ms
         self.timeline = Timeline()
+        self.bridge = None
         self.user = Process(self.timeline)
         fake = FakeMachine.from_config(config, boot_s, hysteresis=config.hysteresis)
         self.board = BoardProcess(self.timeline, fake)
@@ -64,14 +65,16 @@ class World:
         self.links['joints_pose'].lead_to(new, new.on_joints)
 
     def start_bridge(self):
+        """A STOP that the one before was asked for is known to it (bridge/stop_memory.py)."""
+        before = self.bridge
         new = self.bridge = Bridge(
             self.timeline,
-            self.machine,
-            self.calibration,
-            self.deadline,
+            self._config,
+            self.machine.kinematics.joint_names,
             self.cable,
             self.links['words'],
             Fan([self.links[name] for name in ('joints', 'joints_ik', 'joints_pose')]),
+            before is not None and before.driver.session.is_stop_wanted,
         )
         self.links['commands'].lead_to(new, new.on_command)
         self.cable.lead_to(new)
@@ -136,32 +139,27 @@ class World:
 
     # The user
 
-    def ask(self, command):
-        """What the board answered, '' for obeyed."""
-        answer = self.bridge.ask(command)
-        self.wait(f'answer to {command}', lambda: answer.said is not None)
+    def ask(self, question):
+        """What a service of the bridge answered, '' for obeyed: `ask(BoardDriver.stop)`."""
+        answer = self.bridge.ask(question)
+        self.wait('answer', lambda: answer.said is not None)
         return answer.said
-
-    def ask_to_arm(self):
-        return self.bridge.ask(Arm(self.calibration.counts(self.calibration.park)))
 
     def enable(self):
         self.wait('board', lambda: self.state not in ('disconnected', 'booting'))
-        if self.state != 'enabled':
-            answer = self.ask_to_arm()
-            self.wait('answer to ARM', lambda: answer.said is not None)
-            assert answer.said == ''
+        assert self.ask(lambda driver: driver.enable(True)) == ''
         self.wait('enabled machine', lambda: self.state == 'enabled')
         self.wait('supervisor that holds', lambda: self.status.mode == 'hold')
 
     def disable(self):
-        return self.ask(Disarm())
+        return self.ask(lambda driver: driver.enable(False))
 
     def emergency_stop(self):
-        return self.bridge.ask(Stop())
+        """The answer that is to come."""
+        return self.bridge.ask(BoardDriver.stop)
 
     def clear(self):
-        return self.ask(Clear())
+        return self.ask(BoardDriver.clear_fault)
 
     def send_goal(self, pose):
         """Its stamp, by which the statuses know it."""

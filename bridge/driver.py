@@ -1,0 +1,206 @@
+"""What the bridge does between the graph and the board: it admits, sends, answers and tells.
+
+No ROS, no thread, no port, no clock: decoded values and times in, values out.
+"""
+
+from collections.abc import Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass
+from typing import Protocol
+
+from bridge.calibration import Calibration
+from bridge.command_gate import CommandGate
+from bridge.events import (
+    Acknowledged,
+    CommandFailed,
+    Disconnected,
+    Event,
+    FaultReported,
+    Incompatible,
+    StateReceived,
+)
+from bridge.gripper import Gripper
+from bridge.link import Link, Ticket
+from bridge.link_monitor import JointTable, LinkMonitor
+from bridge.machine_status import MachineStatus
+from bridge.messages import Arm, Clear, Command, Disarm, Stop
+from bridge.servo_config import BoardConfig
+from bridge.session import Session
+from manipulator.errors import Refused
+
+ANSWER_WITHIN = 1.0
+"""Seconds that a service waits for the board."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a service has asked of the board, and what to say where it is obeyed."""
+
+    done: str
+    future: 'Future[None]'
+    is_withdrawn_late: bool = True
+    """What was said to have failed must not be sent later; a STOP must."""
+
+
+@dataclass(frozen=True)
+class MachineState:
+    """What the bridge tells of its machine; is_followed: the board has taken a joint command."""
+
+    status: MachineStatus
+    is_followed: bool
+    is_measured: bool
+    board: str
+    unknown_joints: tuple[str, ...]
+
+
+class Listener(Protocol):
+    """Who publishes what the driver announces, in the thread that has the link's port."""
+
+    def on_joints(self, joints: JointTable) -> None:
+        """After each STATE that tells where any joint is."""
+
+    def on_machine_state(self, state: MachineState) -> None:
+        """After every event, whether it has changed or not."""
+
+    def on_trouble(self, text: str) -> None:
+        """Of the board or the line, for people to read."""
+
+    def on_written(self, ticket: Ticket, now: float) -> None:
+        """A setpoint was handed to the port."""
+
+
+class BoardDriver:
+    """One board and its servos.
+
+    Commands and questions come from one thread, only `stop` from any; `link` belongs to the
+    thread that has the port. `now` is monotonic, in seconds.
+    """
+
+    def __init__(
+        self,
+        config: BoardConfig,
+        listener: Listener,
+        epoch: float = 0.0,
+        is_stop_wanted: bool = False,
+    ) -> None:
+        """`epoch` is what the system's clock says where `now` is zero, s.
+
+        is_stop_wanted: of a STOP that an earlier driver was asked for and nobody has cleared.
+        """
+        self.calibration = Calibration.from_config(config.servos)
+        self.gate = CommandGate(self.calibration, 1e-3 * config.link.setpoint_deadline_ms)
+        self._gripper = Gripper(config.servos, self.calibration)
+        self.session = Session(len(self.calibration.names), is_stop_wanted)
+        self.monitor = LinkMonitor(self.session, self.calibration)
+        rate = config.link.baud / 5  # twice what the line carries
+        self.link = Link(self.session, self._note, self._note_written, rate)
+        self._listener, self._epoch = listener, epoch
+        self._is_followed = False
+        self._must_restart = False
+
+    # From the graph
+
+    def command(
+        self, names: Sequence[str], positions: Sequence[float], stamp: float | None, now: float
+    ) -> None:
+        """Sends a joint command (rad or m) to the board, or raises why not.
+
+        stamp: by the sender's clock, s; None means "now". A gripper that it does not name goes on
+        as it was asked.
+        """
+        self._refuse_unless_enabled()
+        present = None if self.monitor.joints is None else self.monitor.joints.positions
+        names, positions = self._gripper.joined((names, positions), now, present)
+        setpoint = self.gate.admit(names, positions, stamp, now + self._epoch, present)
+        self.link.put_setpoint(Ticket(setpoint, now, stamp))
+
+    def aim_gripper(self, opening: float) -> None:
+        """From 0 (closed) to 1 (open), with the joint commands that follow; or an error."""
+        self._refuse_unless_enabled()
+        self._gripper.aim(opening)
+
+    def enable(self, is_on: bool) -> Asked:
+        """Servos on, one by one, at park; or off."""
+        if not is_on:
+            return self._ask(Disarm(), 'disarmed: no more pulses')
+        if self.monitor.status.word == 'enabled':
+            # An ARM would hold up the setpoints of a machine that is moving.
+            return _answered('enabled already')
+        park = self.calibration.counts(self.calibration.park)
+        return self._ask(Arm(park), 'arming: the servos go to park one by one')
+
+    def clear_fault(self) -> Asked:
+        """Ends a stop or a fault."""
+        if self.monitor.is_clear:
+            # A CLEAR would hold up the setpoints of a machine that is moving.
+            return _answered(f'nothing to clear: the machine is {self.monitor.status.word}')
+        return self._ask(Clear(), 'cleared: nothing moves until a new command')
+
+    def stop(self) -> Asked:
+        """Now, or as soon as there is a board; from any thread."""
+        return self._ask(Stop(), 'stopped: ~/clear_fault ends it')
+
+    def answer(self, asked: Asked) -> tuple[bool, str]:
+        """Whether the board obeyed, and what to say: once that is known, or ANSWER_WITHIN is over.
+
+        A request is done only when machine_state shows it: who is answered may look at once.
+        """
+        if not asked.future.done():
+            if asked.is_withdrawn_late:
+                asked.future.cancel()
+            return False, f'no answer within {ANSWER_WITHIN:g} s'
+        error = asked.future.exception()
+        if error is None:
+            return True, asked.done
+        trouble = self.monitor.trouble
+        return False, f'{error}{f": {trouble}" if trouble else ""}'
+
+    def _ask(self, command: Command, done: str) -> Asked:
+        return Asked(done, self.link.request(command), not isinstance(command, Stop))
+
+    def _refuse_unless_enabled(self) -> None:
+        """What comes after a refusal, or after an answer, must start where the joints are."""
+        is_enabled = self.monitor.is_enabled_here and self.session.accepts_setpoints
+        if self._must_restart or not is_enabled:
+            self._must_restart = False
+            self.gate.restart()
+            self._gripper.restart()
+        if not is_enabled:
+            current = self.monitor.status
+            raise Refused(f'{current.word}{f" ({current.reason})" if current.reason else ""}')
+
+    # From the board
+
+    def _note(self, event: Event, now: float) -> None:
+        self.monitor.note(event, now)
+        match event:
+            case StateReceived():
+                joints = self.monitor.joints
+                if joints is not None and any(joints.is_known):
+                    self._listener.on_joints(joints)
+            case Acknowledged(Arm() | Disarm() | Clear()):
+                self._must_restart = True
+            case FaultReported():
+                self._listener.on_trouble(self.monitor.last_refusal)
+            case CommandFailed(command, reason):
+                self._listener.on_trouble(f'{type(command).__name__.upper()}: {reason}')
+            case Disconnected(reason) | Incompatible(reason):
+                self._listener.on_trouble(reason)
+        self._listener.on_machine_state(self._state())
+
+    def _state(self) -> MachineState:
+        monitor, status = self.monitor, self.monitor.status
+        self._is_followed = self._is_followed and status.word == 'enabled'
+        return MachineState(
+            status, self._is_followed, monitor.is_measured, monitor.board, monitor.unknown_joints
+        )
+
+    def _note_written(self, ticket: Ticket, now: float) -> None:
+        self._is_followed = True
+        self._listener.on_written(ticket, now)
+
+
+def _answered(done: str) -> Asked:
+    future: Future[None] = Future()
+    future.set_result(None)
+    return Asked(done, future)

@@ -1,0 +1,252 @@
+"""What the bridge admits, answers and announces: in simulated time, with a fake board."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from bridge.board_thread import FakeMachine
+from bridge.driver import ANSWER_WITHIN, BoardDriver
+from bridge.framing import FrameReader
+from bridge.messages import Arm, Clear, Setpoint, Stop
+from bridge.servo_config import BoardConfig
+from hexarm import machines
+from manipulator.errors import InvalidInput, Refused
+
+EPOCH = 1.7e9
+STEP = 0.005
+
+
+class Rig:
+    """A driver of a board, and all that it announces; `is_mute`: the board answers nothing."""
+
+    def __init__(self, name='robocake'):
+        config = BoardConfig.from_machine(machines.read(name))
+        servos = dataclasses.replace(config.servos, arm_interval_ms=20)
+        config = dataclasses.replace(config, servos=servos)
+        self.board = FakeMachine.from_config(config, boot_s=0.1, hysteresis=0.0).board
+        self.now = 100.0
+        self.joints, self.states, self.troubles, self.written, self.frames = [], [], [], [], []
+        self.is_mute = False
+        self._reader = FrameReader()
+        self.driver = BoardDriver(config, self, EPOCH)
+        self.park = self.driver.calibration.park
+        self.names = self.driver.calibration.names
+        self.driver.link.opened(self.now)
+
+    def on_joints(self, joints):
+        self.joints.append(joints)
+
+    def on_machine_state(self, state):
+        self.states.append(state)
+
+    def on_trouble(self, text):
+        self.troubles.append(text)
+
+    def on_written(self, ticket, now):
+        self.written.append(ticket)
+
+    def run(self, seconds):
+        for _ in range(round(seconds / STEP)):
+            self.now += STEP
+            self.board.step(STEP)
+            received = self.board.take_output()
+            output = self.driver.link.turn(b'' if self.is_mute else received, self.now)
+            self.frames += [frame.message for frame in self._reader.feed(output)]
+            self.board.feed(b'' if self.is_mute else output)
+            self.driver.link.written(b'', self.now)
+
+    def answered(self, asked):
+        self.run(0.1)
+        return self.driver.answer(asked)
+
+    def enable(self):
+        self.run(0.3)
+        assert self.answered(self.driver.enable(True))[0]
+        self.run(1.0)
+        assert self.state.status.word == 'enabled'
+
+    def command(self, positions, names=None):
+        stamp = EPOCH + self.now
+        self.driver.command(names or self.names, list(positions), stamp, self.now)
+        self.run(0.02)
+
+    def sent(self, kind):
+        return [message for message in self.frames if isinstance(message, kind)]
+
+    @property
+    def state(self):
+        return self.states[-1]
+
+
+@pytest.fixture
+def rig():
+    return Rig()
+
+
+@pytest.fixture
+def enabled(rig):
+    rig.enable()
+    return rig
+
+
+def test_a_command_becomes_a_frame_and_the_machine_is_followed(enabled):
+    assert not enabled.state.is_followed
+    enabled.command(enabled.park)
+    assert enabled.sent(Setpoint)[-1].counts == enabled.driver.calibration.counts(enabled.park)
+    assert enabled.state.is_followed
+    assert [ticket.received for ticket in enabled.written] == [pytest.approx(enabled.now - 0.02)]
+
+
+def test_a_machine_that_was_stopped_is_followed_again_with_the_next_frame(enabled):
+    enabled.command(enabled.park)
+    enabled.answered(enabled.driver.stop())
+    enabled.answered(enabled.driver.clear_fault())
+    assert (enabled.state.status.word, enabled.state.is_followed) == ('enabled', False)
+    enabled.command(enabled.park)
+    assert enabled.state.is_followed
+
+
+@pytest.mark.parametrize('turn', [0.5, -0.5])
+def test_a_jump_is_refused_and_nothing_is_sent(enabled, turn):
+    enabled.command(enabled.park)
+    with pytest.raises(Refused, match='would jump'):
+        enabled.command(enabled.park + turn)
+    enabled.run(0.1)
+    assert len(enabled.sent(Setpoint)) == 1
+
+
+def test_what_is_not_enabled_says_why_it_takes_no_command(rig):
+    rig.run(0.3)
+    with pytest.raises(Refused, match=r'^disarmed$'):
+        rig.command(rig.park)
+    rig.enable()
+    rig.command(rig.park)
+    rig.run(0.3)
+    assert rig.state.status.word == 'holding'
+    rig.driver.stop()
+    rig.run(0.1)
+    with pytest.raises(Refused, match=r'^stopped \(until ~/clear_fault is called\)$'):
+        rig.command(rig.park)
+
+
+def test_from_the_moment_a_stop_is_asked_for_no_command_is_admitted(enabled):
+    enabled.driver.stop()
+    with pytest.raises(Refused):
+        enabled.command(enabled.park)
+    enabled.run(0.1)
+    assert enabled.sent(Setpoint | Stop) == [Stop()]
+
+
+@pytest.mark.parametrize('restart', ['enable', 'clear_fault'])
+def test_after_an_answer_the_next_command_must_start_where_the_joints_are(enabled, restart):
+    rig = enabled
+    far = rig.park + 0.06  # a step within a pulse period, no start
+    rig.command(rig.park)
+    if restart == 'enable':
+        rig.driver.enable(False)
+        rig.run(0.02)
+        rig.driver.enable(True)
+    else:
+        rig.driver.stop()
+        rig.run(0.02)
+        rig.driver.clear_fault()
+    while not rig.driver.session.accepts_setpoints:
+        rig.run(STEP)
+    with pytest.raises(Refused, match='where the joint is'):
+        rig.command(far)
+
+
+def test_without_an_answer_between_the_next_command_starts_at_the_last(enabled):
+    enabled.command(enabled.park)
+    enabled.command(enabled.park + 0.06)
+    assert len(enabled.sent(Setpoint)) == 2
+
+
+def test_services_answer_when_the_board_has_obeyed(rig):
+    rig.run(0.3)
+    assert rig.answered(rig.driver.enable(True)) == (
+        True,
+        'arming: the servos go to park one by one',
+    )
+    assert rig.answered(rig.driver.stop()) == (True, 'stopped: ~/clear_fault ends it')
+    assert rig.answered(rig.driver.enable(True)) == (
+        False,
+        'the board is stopped: clear the stop first',
+    )
+    assert rig.answered(rig.driver.clear_fault()) == (
+        True,
+        'cleared: nothing moves until a new command',
+    )
+    assert rig.answered(rig.driver.enable(False)) == (True, 'disarmed: no more pulses')
+
+
+def test_what_is_so_already_is_not_asked_of_a_machine_that_may_be_moving(enabled):
+    enabled.frames.clear()
+    assert enabled.driver.answer(enabled.driver.enable(True)) == (True, 'enabled already')
+    nothing = 'nothing to clear: the machine is enabled'
+    assert enabled.driver.answer(enabled.driver.clear_fault()) == (True, nothing)
+    enabled.run(0.1)
+    assert enabled.sent(Arm | Clear) == []
+
+
+def test_a_refusal_is_told_with_what_is_wrong_with_the_board(rig):
+    rig.driver.link.lost('/dev/ttyACM0 has vanished', rig.now)
+    asked = rig.driver.enable(True)
+    rig.run(STEP)
+    reason = 'no board to talk to: no port: /dev/ttyACM0 has vanished'
+    assert rig.driver.answer(asked) == (False, reason)
+
+
+def test_what_was_said_to_have_failed_is_not_sent_later_but_for_a_stop(enabled):
+    late = f'no answer within {ANSWER_WITHIN:g} s'
+    off, stop = enabled.driver.enable(False), enabled.driver.stop()
+    assert enabled.driver.answer(off) == enabled.driver.answer(stop) == (False, late)
+    enabled.frames.clear()
+    enabled.run(0.1)
+    assert enabled.frames == [Stop()]
+
+
+def test_a_gripper_stays_until_it_is_asked_and_forgets_that_with_the_enable():
+    rig = Rig('arm_6r')
+    rig.enable()
+    names, positions = list(rig.names[:6]), rig.park[:6]
+    rig.command(positions, names)
+    at_park = rig.driver.calibration.counts(rig.park)
+    assert rig.sent(Setpoint)[-1].counts == at_park
+    rig.driver.aim_gripper(1.0)
+    for _ in range(5):
+        rig.command(positions, names)
+    opened = rig.sent(Setpoint)[-1].counts
+    assert opened[:6] == at_park[:6]
+    assert opened[6] != at_park[6]
+    rig.answered(rig.driver.enable(False))
+    with pytest.raises(Refused, match='disarmed'):
+        rig.driver.aim_gripper(0.0)
+    rig.enable()
+    for _ in range(5):
+        rig.command(positions, names)
+    assert rig.sent(Setpoint)[-1].counts == at_park
+
+
+def test_a_machine_without_a_gripper_says_so(enabled):
+    with pytest.raises(InvalidInput, match='no gripper'):
+        enabled.driver.aim_gripper(0.5)
+
+
+def test_joints_are_announced_once_any_is_known(rig):
+    rig.run(0.3)
+    assert rig.joints == []
+    assert rig.state.unknown_joints == rig.names
+    rig.enable()
+    assert np.allclose(rig.joints[-1].positions, rig.park, atol=1e-3)
+    assert rig.state.unknown_joints == ()
+
+
+def test_what_goes_wrong_is_announced_in_words(enabled):
+    enabled.is_mute = True
+    enabled.driver.enable(False)
+    enabled.run(0.6)
+    assert enabled.troubles[0] == 'DISARM: no answer from the board after 4 tries'
+    assert 'silent' in enabled.troubles[1]
+    assert enabled.state.status.word == 'disconnected'
