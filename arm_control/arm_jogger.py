@@ -52,12 +52,14 @@ class ArmJogger:
             step.held_by,
             state.off_line,
             state.is_leaving,
+            state.is_under_way,
         )
 
     def _stepped(
         self, motion: JogMotion, twist: Array, dt: float, slowing: float = AT_ONCE
     ) -> JogStep:
-        state = JogState(motion.joints, motion.rates, motion.off_line, motion.is_leaving)
+        line = motion.off_line, motion.is_leaving, motion.is_under_way
+        state = JogState(motion.joints, motion.rates, *line)
         return self.jog.step(state, self._of_tool(twist, motion.pose), dt, slowing)
 
     def _of_tool(self, twist: Array, T_work_pivot: Pose) -> Array:

@@ -37,12 +37,14 @@ class JogState:
 
     off_line (6,) is the twist that would bring the tool back onto its commanded line within a
     second, in base axes. is_leaving: it is on its way out of a singular posture, off the line.
+    is_under_way: it has moved along the line, which it does not leave any more until it has stood.
     """
 
     joints: Array
     rates: Array
     off_line: Array = field(default_factory=lambda: STRAIGHT)
     is_leaving: bool = False
+    is_under_way: bool = False
 
     @classmethod
     def at_rest(cls, joints: Array) -> 'JogState':
@@ -125,7 +127,10 @@ class ResolvedRate:
         if drive.is_sliding:
             off_line = STRAIGHT
         is_leaving = drive.is_leaving or (state.is_leaving and tick.is_singular)
-        after = JogState(frozen(joints), frozen(rates), off_line, is_leaving)
+        is_on_line = bool(rates.any()) and not (drive.is_sliding or is_leaving)
+        is_asked = bool(wanted.any() or rates.any())
+        is_under_way = is_on_line or (state.is_under_way and is_asked)
+        after = JogState(frozen(joints), frozen(rates), off_line, is_leaving, is_under_way)
         return JogStep(after, drive.scale, drive.held_by, tick.posture.sigma_min, driven)
 
     def posture(self, joints: Array) -> Posture:
@@ -174,10 +179,12 @@ class _Tick:
         sigma = self.posture.sigma_min
         if self._jog.slides and sigma < self._jog.onset:
             return self._sliding(self._place())
-        leaving = None
+        found = self._folding() if sigma < LOST else None
+        if found or self._state.is_under_way:
+            return found
         if sigma < LOST or (self._state.is_leaving and self.is_singular):
-            leaving = self._leaving()
-        return leaving or (self._sliding(JOINT_CORNER) if self._is_trapped() else None)
+            found = self._leaving()
+        return found or (self._sliding(JOINT_CORNER) if self._is_trapped() else None)
 
     def missed(self, rates: Array) -> tuple[Array, float]:
         """How far (6,) the tool is off its line with these rates, and the part of the twist."""
@@ -208,14 +215,18 @@ class _Tick:
     def _place(self, direction: int = -1) -> str:
         return singularity(self._jog.arm.method, self.posture.right[direction])
 
-    def _leaving(self) -> _Drive | None:
-        """Out of a singular posture, on the line if bending a lost joint leads along it."""
+    def _folding(self) -> _Drive | None:
+        """The beginning of a lost joint's bend that leads along the line."""
         stops = self.room.to_low <= AT_STOP, self.room.to_high <= AT_STOP
         to_middle = self.room.to_high - self.room.to_low
         rates = folding_rates(self.posture, self._twist, to_middle, *stops)
-        if rates.any():
-            fastest = float((self._jog.scaling.speed / np.maximum(np.abs(rates), LOST)).min())
-            return _Drive(rates, fastest, self._place())
+        if not rates.any():
+            return None
+        fastest = float((self._jog.scaling.speed / np.maximum(np.abs(rates), LOST)).min())
+        return _Drive(rates, fastest, self._place())
+
+    def _leaving(self) -> _Drive | None:
+        """Sliding out of a singular posture; None where it would lead along it."""
         drive = self._sliding(self._place(), is_leaving=True)
         gained = self._gained(drive.rates)
         if gained <= LOST:

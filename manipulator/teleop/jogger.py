@@ -20,8 +20,8 @@ class JogMotion:
     'speed of joint 2', 'crank angle of leg 3', 'wrist singularity (…)'.
 
     For the jogger's next step: off_line (6,) is the twist that would bring the tool back onto its
-    commanded line within a second, in base axes; is_leaving says that it is on its way out of a
-    singular posture, off the line.
+    commanded line within a second, in base axes; is_leaving: it is on its way out of a singular
+    posture, off the line; is_under_way: it moves, or has stopped, on the line.
     """
 
     pose: Pose
@@ -32,6 +32,7 @@ class JogMotion:
     held_by: str = ''
     off_line: Array = field(default_factory=lambda: STRAIGHT)
     is_leaving: bool = False
+    is_under_way: bool = False
 
     @classmethod
     def at_rest(cls, pose: Pose, joints: Array) -> 'JogMotion':
