@@ -10,7 +10,7 @@ from hexarm import machines
 from world.board import BoardProcess, Cable
 from world.bridge import Bridge
 from world.kinematics import Forward, Inverse
-from world.supervisor import Supervisor
+from world.supervisor import SupervisorProcess
 from world.timeline import Link, Process, Timeline
 
 PATIENCE = 20.0
@@ -33,7 +33,7 @@ class World:
         self.board = BoardProcess(self.timeline, fake)
         self.cable = self.board.cable = Cable(self.timeline, self.board)
         nobody = self.user
-        names = ('setpoint', 'commands', 'words', 'goals', 'twists')
+        names = ('setpoint', 'commands', 'words', 'goals', 'paths', 'twists')
         self.links = {name: Link(nobody, None) for name in names}
         deep = ('pose', 'joints_ik', 'joints_pose', 'joints')
         self.links |= {name: Link(nobody, None, depth=MEASUREMENTS) for name in deep}
@@ -44,10 +44,12 @@ class World:
     # Processes: each start takes the place of the one before, which is dead
 
     def start_supervisor(self):
-        new = self.supervisor = Supervisor(self.timeline, self.machine, self.links['setpoint'])
+        setpoints = self.links['setpoint']
+        new = self.supervisor = SupervisorProcess(self.timeline, self.machine, setpoints)
         for link, accept in (
             ('words', new.on_machine_state),
             ('goals', new.on_goal),
+            ('paths', new.on_path),
             ('twists', new.on_twist),
             ('pose', new.on_pose),
             ('joints', new.on_joints),
