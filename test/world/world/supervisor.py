@@ -1,11 +1,42 @@
-"""The process of the motion supervisor."""
+"""The process of the motion supervisor, with its thread for plans."""
 
+from concurrent.futures import Future
+from threading import Event
+
+from manipulator.errors import ManipulatorError
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.supervisor import Supervisor
+from manipulator.trajectory.worker import Effort, Job
 from world.intake import Intake
 from world.timeline import Process
 
 DT = 0.01
+PLANNING_S = 0.02
+
+
+class Thread:
+    """Works tasks out one after the other, each in `seconds`, also while its process is frozen."""
+
+    is_beside = True
+
+    def __init__(self, timeline, seconds=PLANNING_S):
+        self.seconds = seconds
+        self._timeline = timeline
+        self._free_at = timeline.now
+
+    def submit(self, task):
+        future, cancelled = Future(), Event()
+        self._free_at = max(self._free_at, self._timeline.now) + self.seconds
+        wait = self._free_at - self._timeline.now
+        self._timeline.after(wait, lambda: self._work_out(task, future, cancelled))
+        return Job(future, cancelled)
+
+    def _work_out(self, task, future, cancelled):
+        if future.set_running_or_notify_cancel():
+            try:
+                future.set_result(task(Effort(is_cancelled=cancelled.is_set)))
+            except ManipulatorError as error:
+                future.set_exception(error)
 
 
 class SupervisorProcess(Process):
@@ -16,7 +47,8 @@ class SupervisorProcess(Process):
 
     def __init__(self, timeline, machine, setpoints):
         super().__init__(timeline)
-        self.core = Supervisor(machine, DT)
+        self.thread = Thread(timeline)
+        self.core = Supervisor(machine, DT, worker=self.thread)
         self.statuses, self.ages = [], []
         self.pause_in_next_tick = 0.0
         self._setpoints = setpoints

@@ -7,6 +7,9 @@ from bridge.calibration import Calibration
 from bridge.messages import Arm, Clear, Disarm, Setpoint, Stop
 from bridge.servo_config import BoardConfig
 from hexarm import machines
+from manipulator.trajectory.path import Tolerance
+from manipulator.trajectory.path_planning import PathGoal
+from manipulator.trajectory.path_timing import PathRequest
 from world.board import BoardProcess, Cable
 from world.bridge import Bridge
 from world.kinematics import Forward, Inverse
@@ -15,6 +18,7 @@ from world.timeline import Link, Process, Timeline
 
 PATIENCE = 20.0
 TWIST_PERIOD = 1 / 30
+PATH_TOLERANCE = Tolerance(1e-4, np.radians(0.1))
 MEASUREMENTS = 5
 """Depth of the measurements' links; commands have 1 (manipulator/nodes/qos.py)."""
 
@@ -171,9 +175,19 @@ class World:
         self.links['goals'].send(stamp, pose)
         return stamp
 
+    def send_path(self, poses, speed=0.02):
+        """Poses (n,) of the platform; as `send_goal`."""
+        stamp = self.user.stamp
+        request = PathRequest(poses, speed, PATH_TOLERANCE)
+        self.links['paths'].send(stamp, PathGoal(stamp, lambda: request))
+        return stamp
+
     def go_to(self, pose):
         """Waits until the goal is reached, or anything else came of it; the status then."""
-        stamp = self.send_goal(pose)
+        return self.end_of(self.send_goal(pose))
+
+    def end_of(self, stamp):
+        """Waits until a goal or path is over; the status then."""
         ends = ('reached', 'refused', 'stopped')
         self.wait(
             'end of the goal',
