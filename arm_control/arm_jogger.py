@@ -4,7 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from arm_control.resolved_rate import AT_ONCE, JogState, JogStep, ResolvedRate
+from arm_control.rate_scaling import AT_ONCE
+from arm_control.resolved_rate import JogState, JogStep, ResolvedRate
 from manipulator.arrays import Array, frozen
 from manipulator.frames import Frames
 from manipulator.pose import Pose
@@ -14,7 +15,8 @@ from manipulator.teleop.speed_limits import ticks_for, towards
 SHARE_BEFORE_STOPS = 0.5
 """Of the tool's acceleration, what braking before a stop counts on; the rest is for bends: a joint
 may turn ever faster while the tool goes straight on."""
-ROUNDING = 1e-9
+ROUNDING = 1e-6
+"""Part of a tick's change of twist."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,25 +31,33 @@ class ArmJogger:
     frames: Frames
 
     def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
-        """See `Jogger`; in a corner of the joint ranges the direction bends, so as to get out."""
+        """See `Jogger`; in a corner of the joint ranges the tool slides, so as to get out."""
         limits = self.jog.motion
         wanted = towards(motion.twist, twist, limits, dt)
         ticks = max(float(ticks_for(wanted, limits, dt)), 1.0)
         step = self._stepped(motion, wanted, dt, SHARE_BEFORE_STOPS / (ticks * dt))
-        driven = step.scale * wanted
+        driven = step.driven * wanted
         if ticks_for(driven - motion.twist, limits, dt) > 1.0 + ROUNDING:
             # No part of what is wanted can be reached as gently as the tool asks for.
             straight = towards(motion.twist, np.zeros(6), limits, dt)
             braked = self._stepped(motion, straight, dt)
-            driven, step = braked.scale * straight, replace(step, state=braked.state)
+            driven, step = braked.driven * straight, replace(step, state=braked.state)
         state = step.state
-        pose = self.frames.pivot(self.jog.arm.chain.forward(state.joints))
-        return JogMotion(pose, state.joints, frozen(driven), state.rates, step.scale, step.held_by)
+        return JogMotion(
+            self.frames.pivot(self.jog.arm.chain.forward(state.joints)),
+            state.joints,
+            frozen(driven),
+            state.rates,
+            step.scale,
+            step.held_by,
+            state.off_line,
+            state.is_leaving,
+        )
 
     def _stepped(
         self, motion: JogMotion, twist: Array, dt: float, slowing: float = AT_ONCE
     ) -> JogStep:
-        state = JogState(motion.joints, motion.rates)
+        state = JogState(motion.joints, motion.rates, motion.off_line, motion.is_leaving)
         return self.jog.step(state, self._of_tool(twist, motion.pose), dt, slowing)
 
     def _of_tool(self, twist: Array, T_work_pivot: Pose) -> Array:

@@ -1,6 +1,7 @@
 """A serial chain of revolute joints as a product of exponentials (docs/arm-kinematics.md, 1)."""
 
 from dataclasses import dataclass, field
+from itertools import accumulate
 
 import numpy as np
 
@@ -49,6 +50,8 @@ class Chain:
         sine = np.sin(joints)[..., None, None]
         versine = (1.0 - np.cos(joints))[..., None, None]
         exponentials = _IDENTITY + sine * self._sine + versine * self._versine
+        if joints.ndim == 1:
+            return np.array([_IDENTITY, *accumulate(exponentials, np.dot)])
         count = len(self.axes)
         moved = np.empty((*joints.shape[:-1], count + 1, 4, 4))
         moved[..., 0, :, :] = _IDENTITY

@@ -1,28 +1,27 @@
-"""The way out where joints stand at their stops (docs/arm-kinematics.md, 9)."""
+"""The ways out where a twist cannot be kept to (docs/arm-kinematics.md, 9)."""
 
 import itertools
 
 import numpy as np
 
-from arm_control.damping import DampedInverse
+from arm_control.line_keeping import LOST
+from arm_control.posture import Posture
 from manipulator.arrays import Array, Mask
 
 NEGLIGIBLE = 1e-9
 
 
-def is_dead(inverse: DampedInverse, at_low: Mask, at_high: Mask) -> bool:
-    """Whether each of the twelve unit twists ±x … ±ωz presses a joint onto its stop, or stands.
+def blocked(unit_rates: Array, at_low: Mask, at_high: Mask) -> Mask:
+    """Which of the twelve unit twists ±x … ±ωz (12,) press a joint onto its stop, or stand.
 
-    Twists are scaled as a whole, so that one joint at a stop stops all; in a corner of the joint
-    range this may leave none of the twelve.
+    unit_rates (6, 6) has the joint rates for +x … +ωz as its columns. Twists are scaled as a
+    whole, so that one joint at a stop stops all; in a corner of the joint range this may leave
+    none of the twelve.
     """
-    rates = inverse.unit_rates()
-    either = np.concatenate([rates, -rates], axis=1)
-    blocked = (either[at_high] > NEGLIGIBLE).any(axis=0) | (either[at_low] < -NEGLIGIBLE).any(
-        axis=0
-    )
-    stands = np.abs(either).max(axis=0) < NEGLIGIBLE
-    return bool((blocked | stands).all())
+    either = np.concatenate([unit_rates, -unit_rates], axis=1)
+    low = (either[at_low] < -NEGLIGIBLE).any(axis=0)
+    high = (either[at_high] > NEGLIGIBLE).any(axis=0)
+    return np.asarray(low | high | (np.abs(either).max(axis=0) < NEGLIGIBLE), dtype=np.bool_)
 
 
 def sliding_rates(
@@ -48,3 +47,36 @@ def sliding_rates(
         if admissible and cost < least:
             best, least = rates, cost
     return best
+
+
+def folding_rates(
+    posture: Posture, scaled_twist: Array, to_middle: Array, at_low: Mask, at_high: Mask
+) -> Array:
+    """Joint rates (6,) that begin to bend a lost joint so that the tool goes the wanted way.
+
+    At σ = 0 turning the joints along v does not move the tool, but accelerates it by J̇(v)·v, to
+    the same side for v and −v: a stretched elbow bends inwards either way. The way is taken that
+    leads to_middle (6,) of the joint ranges. Zeros where the twist leads to the other side.
+    """
+    lost = posture.sigma < LOST
+    idle, beyond = (
+        posture.right[lost],
+        posture.left[:, lost] @ (scaled_twist @ posture.left[:, lost]),
+    )
+    pull, ways = np.linalg.eigh(_accelerations(posture, idle, beyond))
+    if not pull.size or pull[-1] <= NEGLIGIBLE * float(beyond @ beyond) ** 0.5:
+        return np.zeros(6)
+    bend = ways[:, -1] @ idle
+    for rates in (bend, -bend) if bend @ to_middle >= 0 else (-bend, bend):
+        if not (rates[at_low] < -NEGLIGIBLE).any() and not (rates[at_high] > NEGLIGIBLE).any():
+            return rates
+    return np.zeros(6)
+
+
+def _accelerations(posture: Posture, idle: Array, along: Array) -> Array:
+    """How idle motions (k, 6) accelerate the tool `along` (6,): a quadratic form (k, k)."""
+
+    def mean(a: Array, b: Array) -> float:
+        return float((posture.turning(a + b) - posture.turning(a - b)) @ along) / 4
+
+    return np.array([[mean(a, b) for b in idle] for a in idle]).reshape(len(idle), len(idle))

@@ -34,8 +34,8 @@ class JointConfig:
 class ArmLimits:
     """The `limits` section of a serial arm's machine file.
 
-    damping_onset is the singular value below which motion is damped, with metres divided by
-    characteristic_length_mm (docs/arm-kinematics.md, 8).
+    damping_onset is the singular value below which a posture counts as near to singular, with
+    metres divided by characteristic_length_mm (docs/arm-kinematics.md, 8).
     """
 
     joints: tuple[JointConfig, JointConfig, JointConfig, JointConfig, JointConfig, JointConfig]

@@ -25,8 +25,13 @@ def arm(machine_file: MachineFile) -> Machine:
         jog.arm,
         jog.arm.limits.constraints(),
         jog.motion,
-        make_jogger=lambda machine: ArmJogger(jog, machine.frames),
+        make_jogger=lambda machine: _jogger(jog, machine),
     )
+
+
+def _jogger(jog: ResolvedRate, machine: Machine) -> ArmJogger:
+    slides = machine.jog_singularity == 'slide'
+    return ArmJogger(replace(jog, slides=slides), machine.frames)
 
 
 def serial_arm(machine_file: MachineFile) -> SerialArm:

@@ -1,40 +1,48 @@
-"""One jog tick: from the wanted twist to the next joint angles (docs/arm-kinematics.md, 7 to 9).
-
-The wanted twist is scaled as a whole, never one joint alone, so that the tool keeps its direction.
-"""
+"""One jog tick: from a twist to the next joint angles (docs/arm-kinematics.md, 7 to 9)."""
 
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.corner import is_dead, sliding_rates
-from arm_control.damping import DampedInverse
+from arm_control.corner import blocked, folding_rates, sliding_rates
+from arm_control.line_keeping import LOST, LineRates, exact_rates, line_rates, without_noise
+from arm_control.posture import Posture
+from arm_control.rate_scaling import AT_ONCE, AT_STOP, RateScaling, Room, Scale
+from arm_control.singularity import singularity
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput
 from manipulator.motion_limits import MotionLimits
 
-AT_STOP = 1e-4
-"""Radians from its stop at which a joint stands there: 0.006°, finer than any of our drives."""
 CORNER = 0.05
 """Radians from its stop at which a joint counts as part of a corner."""
-NOISE = 1e-9
-"""Part of the fastest joint's rate below which another joint's is rounding."""
-STANDING = 1e-9
-"""rad/s."""
-AT_ONCE = 1e12
-"""1/s, for a twist that may fall as fast as the joints can brake."""
-ROUNDING = 1e-6
-"""Radians by which a jog stays off the end of each range: who solves its pose again for the joints
-must not find one beyond it."""
+SLOWEST = 0.01
+"""Part of a twist, slower than which the tool does not creep on into a singular posture."""
+MOST_GROWTH = 0.5
+"""Part of themselves by which the joints' rates may grow within a tick."""
+LEFT = 0.25
+"""Of the damping onset: the σmin at which a singular posture has been left."""
+AHEAD = 0.1
+"""Radians of the fastest joint, over which a motion out of a singular posture must show."""
+SHARE = 0.2
+"""Of what the best single joint gains, that such a motion must gain."""
+SLIDING = 'sliding off the line: '
+JOINT_CORNER = 'corner of the joint ranges'
+STRAIGHT = frozen(np.zeros(6))
 
 
 @dataclass(frozen=True, eq=False)
 class JogState:
-    """Joint angles and rates (6,), in rad and rad/s."""
+    """Joint angles and rates (6,), in rad and rad/s.
+
+    off_line (6,) is the twist that would bring the tool back onto its commanded line within a
+    second, in base axes. is_leaving: it is on its way out of a singular posture, off the line.
+    """
 
     joints: Array
     rates: Array
+    off_line: Array = field(default_factory=lambda: STRAIGHT)
+    is_leaving: bool = False
 
     @classmethod
     def at_rest(cls, joints: Array) -> 'JogState':
@@ -50,41 +58,52 @@ class JogStep:
     """What one tick came to.
 
     scale is the part of the wanted twist that the joints allow (1 when nothing holds it back),
-    held_by what set it: '', 'speed of joint 2', 'stop of joint 3', or 'corner' where the arm
-    slides out of a corner of its range in the nearest possible direction. sigma_min below the
-    damping onset means that motion is damped.
+    held_by what set it: '', 'speed of joint 2', 'stop of joint 3', the singularity ahead, or
+    SLIDING and where. driven is the part of the twist that the tool goes with by now.
     """
 
     state: JogState
     scale: float
     held_by: str
     sigma_min: float
+    driven: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Drive:
+    """Joint rates (6,), the part of them that may be driven, and what sets it."""
+
+    rates: Array
+    scale: float
+    held_by: str
+    is_sliding: bool = False
+    is_leaving: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class ResolvedRate:
-    """Steps an arm within its joint limits; `onset` is the σ below which motion is damped.
+    """Steps an arm within its joint limits.
 
-    The twist's own speed limits are the business of manipulator/teleop/speed_limits.py.
+    Near a singular posture (σ below `onset`) the tool keeps to its commanded line and stops where
+    it cannot. Where `slides`, its motion is damped there instead, and bends off the line. The
+    twist's own speed limits are the business of manipulator/teleop/speed_limits.py.
     """
 
     arm: SerialArm
     motion: MotionLimits
     onset: float
+    slides: bool = False
+    scaling: RateScaling = field(init=False, repr=False)
     _unit: Array = field(init=False, repr=False)
-    _speed: Array = field(init=False, repr=False)
-    _acceleration: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Combines the joints' own limits with the machine's."""
-        joint = self.motion.joint.tightened(self.arm.limits.speed, self.arm.limits.acceleration)
+        limits = self.arm.limits
+        joint = self.motion.joint.tightened(limits.speed, limits.acceleration)
+        scaling = RateScaling(limits.low, limits.high, joint.speed, joint.acceleration)
         unit = np.array([1 / self.arm.characteristic_length] * 3 + [1.0] * 3)
-        for name, value in (
-            ('_unit', frozen(unit)),
-            ('_speed', joint.speed),
-            ('_acceleration', joint.acceleration),
-        ):
-            object.__setattr__(self, name, value)
+        object.__setattr__(self, 'scaling', scaling)
+        object.__setattr__(self, '_unit', frozen(unit))
 
     def step(self, state: JogState, twist: Array, dt: float, slowing: float = AT_ONCE) -> JogStep:
         """The state dt seconds later, for a twist (6,) of the tool in base axes.
@@ -96,71 +115,136 @@ class ResolvedRate:
         wanted = np.asarray(twist, dtype=np.float64)
         if wanted.shape != (6,) or not np.isfinite(wanted).all() or not 0 < dt < np.inf:
             raise InvalidInput(f'twist {wanted.tolist()} over {dt} s, needs six finite, positive')
-        midway = state.joints + 0.5 * dt * state.rates
-        scaled_jacobian = self.arm.chain.jacobian(midway) * self._unit[:, None]
-        scaled_twist = wanted * self._unit
-        inverse = DampedInverse.of(scaled_jacobian, self.onset)
-        rates, to_high, to_low = _without_noise(inverse.rates(scaled_twist)), *self._room(state)
-        scale, held_by = self._scale(rates, to_high, to_low, dt, slowing)
-        if scale == 0.0:
-            near_singular = inverse.sigma_min < self.onset
-            if near_singular or is_dead(inverse, to_low <= CORNER, to_high <= CORNER):
-                stops = to_low <= AT_STOP, to_high <= AT_STOP
-                slide = sliding_rates(scaled_jacobian, scaled_twist, 0.5 * self.onset, *stops)
-                rates, held_by = _without_noise(slide), 'corner'
-                scale, _ = self._scale(rates, to_high, to_low, dt, slowing)
-        following = self._followed(state.rates, scale * rates, to_high, to_low, dt)
-        # Only rounding is cut off here: what the stops do is in `following` already.
-        highest = np.maximum(self.arm.limits.high - ROUNDING, state.joints)
-        lowest = np.minimum(self.arm.limits.low + ROUNDING, state.joints)
-        joints = np.minimum(np.maximum(state.joints + dt * following, lowest), highest)
-        after = JogState(frozen(joints), frozen(following))
-        return JogStep(after, scale, held_by, inverse.sigma_min)
+        tick = _Tick(self, state, wanted * self._unit, dt, slowing)
+        drive = tick.damped() if self.slides else tick.on_line()
+        if drive.scale == 0.0 and wanted.any():
+            drive = tick.way_out() or drive
+        rates = self.scaling.followed(state.rates, drive.rates, drive.scale, tick.room, dt)
+        joints = self.scaling.stepped(state.joints, rates, dt)
+        off_line, driven = tick.missed(rates)
+        if drive.is_sliding:
+            off_line = STRAIGHT
+        is_leaving = drive.is_leaving or (state.is_leaving and tick.is_singular)
+        after = JogState(frozen(joints), frozen(rates), off_line, is_leaving)
+        return JogStep(after, drive.scale, drive.held_by, tick.posture.sigma_min, driven)
 
-    def _room(self, state: JogState) -> tuple[Array, Array]:
-        high, low = self.arm.limits.high - ROUNDING, self.arm.limits.low + ROUNDING
-        return high - state.joints, state.joints - low
-
-    def _scale(
-        self, rates: Array, to_high: Array, to_low: Array, dt: float, slowing: float
-    ) -> tuple[float, str]:
-        """The part of `rates` that every joint can drive, and brake before its stop.
-
-        A joint at rate v with room r can brake when v·dt + v²/(2a) ≤ r.
-        """
-        room = np.where(rates > 0, to_high, to_low)
-        room = np.where(room <= AT_STOP, 0.0, room)
-        a = np.minimum(self._acceleration, slowing * np.abs(rates))
-        braking = np.sqrt((a * dt) ** 2 + 2 * a * room) - a * dt
-        allowed = np.minimum(self._speed, braking)
-        parts = allowed / np.maximum(np.abs(rates), STANDING)
-        parts[np.abs(rates) < STANDING] = 1.0
-        tightest = int(parts.argmin())
-        scale = float(parts[tightest])
-        if scale >= 1.0:
-            return 1.0, ''
-        what = 'stop' if braking[tightest] < self._speed[tightest] else 'speed'
-        return scale, f'{what} of joint {tightest + 1}'
-
-    def _followed(
-        self, before: Array, wanted: Array, to_high: Array, to_low: Array, dt: float
-    ) -> Array:
-        """Rates on the way from `before` to `wanted`, as far as the accelerations allow.
-
-        All joints go the same part of the way, so that the tool's twist does too. Stops outrank
-        accelerations: a step that would pass one is shortened as a whole.
-        """
-        change = wanted - before
-        part = float((self._acceleration * dt / np.maximum(np.abs(change), STANDING)).min())
-        rates = wanted if part >= 1.0 else before + part * change
-        size = np.abs(rates)
-        rates = np.where(size < STANDING, 0.0, rates)
-        room = np.maximum(np.where(rates > 0, to_high, to_low), 0.0)
-        parts = np.where(size < STANDING, 1.0, room / (dt * np.maximum(size, STANDING)))
-        return rates * min(1.0, float(parts.min()))
+    def posture(self, joints: Array) -> Posture:
+        """The Jacobian at joints (6,), its linear velocities in characteristic lengths."""
+        return Posture.of(self.arm.chain.jacobian(joints) * self._unit[:, None])
 
 
-def _without_noise(rates: Array) -> Array:
-    """`rates` with rounding set to zero, or a joint at its stop would hold the arm for nothing."""
-    size = np.abs(rates)
-    return np.where(size < NOISE * size.max(), 0.0, rates)
+class _Tick:
+    """One step's posture and what can be driven from it; `twist` is scaled."""
+
+    def __init__(
+        self, jog: ResolvedRate, state: JogState, twist: Array, dt: float, slowing: float
+    ) -> None:
+        self.room: Room = jog.scaling.room(state.joints)
+        self.posture = jog.posture(state.joints + 0.5 * dt * state.rates)
+        self._jog, self._state, self._twist = jog, state, twist
+        self._dt, self._slowing = dt, slowing
+
+    @property
+    def is_singular(self) -> bool:
+        """Whether a singular posture has not been left yet."""
+        return self.posture.sigma_min < LEFT * self._jog.onset
+
+    def on_line(self) -> _Drive:
+        """The twist with its direction kept, as far as the joints allow."""
+        off_line = self._state.off_line * self._jog._unit
+        line = line_rates(self.posture, self._twist, off_line, self._jog.onset)
+        drive = self._scaled(line)
+        if drive.scale > 0.0 or self.posture.sigma_min >= self._jog.onset:
+            return drive
+        # Nothing but the twist: where it is stopped, its opposite is not.
+        exact = self._scaled(exact_rates(self.posture, self._twist))
+        return exact if exact.scale > 0.0 else drive
+
+    def damped(self) -> _Drive:
+        """The twist with its lost directions damped."""
+        onset = self._jog.onset
+        rates = without_noise(self.posture.damped_rates(self._twist, onset))
+        scale = self._scale(rates, np.zeros(6))
+        if self.posture.sigma_min >= onset:
+            return _Drive(rates, scale.part, str(scale))
+        return _Drive(rates, scale.part, SLIDING + self._place(), is_sliding=True)
+
+    def way_out(self) -> _Drive | None:
+        """Motion off the line where nothing else is left; None where there is a better twist."""
+        sigma = self.posture.sigma_min
+        if self._jog.slides and sigma < self._jog.onset:
+            return self._sliding(self._place())
+        leaving = None
+        if sigma < LOST or (self._state.is_leaving and self.is_singular):
+            leaving = self._leaving()
+        return leaving or (self._sliding(JOINT_CORNER) if self._is_trapped() else None)
+
+    def missed(self, rates: Array) -> tuple[Array, float]:
+        """How far (6,) the tool is off its line with these rates, and the part of the twist."""
+        size = float(self._twist @ self._twist)
+        if size == 0.0:
+            return self._state.off_line, 0.0
+        moving = self.posture.jacobian @ rates
+        part = float(moving @ self._twist) / size
+        away = self._dt * (part * self._twist - moving) / self._jog._unit
+        return frozen(self._state.off_line + away), min(part, 1.0)
+
+    def _scale(self, rates: Array, bend: Array) -> Scale:
+        return self._jog.scaling.scale(rates, bend, self.room, self._dt, self._slowing)
+
+    def _scaled(self, line: LineRates) -> _Drive:
+        scale = self._scale(line.rates, line.bend)
+        if self.posture.sigma_min >= self._jog.onset:
+            return _Drive(line.rates, scale.part, str(scale))
+        if line.is_lost or (scale.limit != 'stop' and self._is_too_near(scale.part, line.growth)):
+            return _Drive(line.rates, 0.0, self._place(line.direction))
+        held_by = self._place(line.direction) if scale.limit == 'acceleration' else str(scale)
+        return _Drive(line.rates, scale.part, held_by)
+
+    def _is_too_near(self, part: float, growth: float) -> bool:
+        """Whether a singular posture ahead leaves only creep, or is about to be stepped over."""
+        return growth > 0.0 and (part < SLOWEST or part * growth * self._dt > MOST_GROWTH)
+
+    def _place(self, direction: int = -1) -> str:
+        return singularity(self._jog.arm.method, self.posture.right[direction])
+
+    def _leaving(self) -> _Drive | None:
+        """Out of a singular posture, on the line if bending a lost joint leads along it."""
+        stops = self.room.to_low <= AT_STOP, self.room.to_high <= AT_STOP
+        to_middle = self.room.to_high - self.room.to_low
+        rates = folding_rates(self.posture, self._twist, to_middle, *stops)
+        if rates.any():
+            fastest = float((self._jog.scaling.speed / np.maximum(np.abs(rates), LOST)).min())
+            return _Drive(rates, fastest, self._place())
+        drive = self._sliding(self._place(), is_leaving=True)
+        gained = self._gained(drive.rates)
+        if gained <= LOST:
+            return None
+        best = max(self._gained(joint) for joint in np.eye(6))
+        return drive if gained >= SHARE * best else None
+
+    def _gained(self, rates: Array) -> float:
+        """By how much the σ below the damping onset rise, all together, over AHEAD of `rates`."""
+        step = AHEAD * rates / max(float(np.abs(rates).max()), LOST)
+        ahead, onset = self._jog.posture(self._state.joints + step).sigma, self._jog.onset
+        risen = np.minimum(ahead, onset) - np.minimum(self.posture.sigma, onset)
+        return float(risen.sum())
+
+    def _sliding(self, place: str, is_leaving: bool = False) -> _Drive:
+        stops = self.room.to_low <= AT_STOP, self.room.to_high <= AT_STOP
+        damping = 0.5 * self._jog.onset
+        rates = sliding_rates(self.posture.jacobian, self._twist, damping, *stops)
+        rates = without_noise(rates)
+        scale = self._scale(rates, np.zeros(6))
+        return _Drive(rates, scale.part, SLIDING + place, True, is_leaving)
+
+    def _is_trapped(self) -> bool:
+        """Whether none of the twelve unit twists can be driven."""
+        near_stops = self.room.to_low <= CORNER, self.room.to_high <= CORNER
+        unit_rates = self.posture.damped_unit_rates(self._jog.onset)
+        free = np.flatnonzero(~blocked(unit_rates, *near_stops))
+        if self._jog.slides or self.posture.sigma_min >= self._jog.onset or free.size in (0, 12):
+            return free.size == 0
+        size = float(np.sqrt(self._twist @ self._twist))
+        units = size * np.concatenate([np.eye(6), -np.eye(6)])[free]
+        return all(self._scaled(exact_rates(self.posture, unit)).scale == 0.0 for unit in units)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from manipulator.arrays import Array
+from manipulator.errors import InvalidInput
 from manipulator.frames import Frames, FramesConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
@@ -15,6 +16,8 @@ from manipulator.limits.limit_of import LimitOf
 from manipulator.motion_limits import MotionConfig, MotionLimits
 from manipulator.sag import Sag
 from manipulator.teleop.jogger import Jogger
+
+JOG_SINGULARITIES = ('stop', 'slide')
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,8 @@ class Machine:
     unless the machine was made by `in_frames`. make_jogger makes what follows twists with this
     machine, or with the same in other frames. sag is what the drives stay behind by, where that is
     to be compensated. park (n,) are the joints at which the servos are switched on and off, None
-    where the file has no usable servos.
+    where the file has no usable servos. jog_singularity: what a jog does where a singular posture
+    does not let it keep its direction.
     """
 
     kinematics: Kinematics
@@ -55,6 +59,13 @@ class Machine:
     frames: Frames = field(default_factory=Frames)
     sag: Sag | None = None
     park: Array | None = None
+    jog_singularity: str = JOG_SINGULARITIES[0]
+
+    def __post_init__(self) -> None:
+        """Raises InvalidInput for an unknown jog_singularity."""
+        if self.jog_singularity not in JOG_SINGULARITIES:
+            known = ' or '.join(map(repr, JOG_SINGULARITIES))
+            raise InvalidInput(f'jog_singularity is {self.jog_singularity!r}, needs {known}')
 
     @property
     def joint_ranges(self) -> tuple[Array, Array]:

@@ -1,7 +1,5 @@
 """How messages write lengths, counts and the reasons of the operating system."""
 
-import numpy as np
-
 MOST_SHOWN = 80
 """Characters of an input that a message repeats."""
 
@@ -12,7 +10,7 @@ METRES_FROM = 0.9999
 def length(metres: float, digits: int = 4) -> str:
     """A length for people, without powers of ten: '22.8 mm', from a metre on '45.2 m'."""
     value, unit = (metres, 'm') if abs(metres) > METRES_FROM else (1e3 * metres, 'mm')
-    written = np.format_float_positional(value, digits, fractional=False, trim='-')
+    written = f'{float(f"{value:.{digits}g}"):.10f}'.rstrip('0').rstrip('.')
     return f'{written} {unit}'
 
 

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PointStamped, PoseStamped
@@ -10,7 +11,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 from manipulator.errors import ManipulatorError, Refused
-from manipulator.machine import Machine
+from manipulator.machine import JOG_SINGULARITIES, Machine
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import (
@@ -25,6 +26,7 @@ from manipulator.nodes.messages import (
 )
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.path_goals import GOAL_PATH, PathGoals
+from manipulator.nodes.planning_thread import PlanningThread
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.teleop_topics import TeleopTopics
@@ -35,9 +37,9 @@ from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.lag import lag_of
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.supervisor import MEASUREMENT_DELAY, Supervisor
-from manipulator.trajectory.worker import InThread
 
 DELAY = 'age in seconds of a measured pose by the time that its correction moves the joints'
+SINGULARITY = 'what a jogged arm does where it cannot keep its direction: stop or slide'
 TOLERANCE = (
     'how far a joint may be from its commands of the last half second (rad or m); '
     '0: 6 % of its range, at most 0.2 rad'
@@ -60,7 +62,9 @@ class TrajectoryNode(Node):
         goal_tolerance = declare(self, 'goal_tolerance', 0.0, GOAL_TOLERANCE, (0.0, 10.0))
         declare(self, 'goal_motion', Motion.LINE.value, GOAL_MOTION, is_read_only=False)
         delay = declare(self, 'measurement_delay', MEASUREMENT_DELAY, DELAY, (0.0, 1.0))
-        dt, machine, self._worker = 1.0 / rate, load(name), InThread()
+        singularity = declare(self, 'jog_singularity', JOG_SINGULARITIES[0], SINGULARITY)
+        dt, self._worker = 1.0 / rate, PlanningThread()
+        machine = replace(load(name), jog_singularity=singularity)
         tolerances = Tolerances.of(machine, tolerance, goal_tolerance)
         self._supervisor = Supervisor(machine, dt, tolerances, self._worker, delay)
         self._connect()

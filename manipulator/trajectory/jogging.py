@@ -42,7 +42,7 @@ class Jogging:
         self._mode: JogMode | None = None
         self._held: Held | None = None
         self._command = STILL
-        self._obstacle_said = ''
+        self._said = ('', False)
         self._ticks_to_silence = 0
 
     def step(self, wish: Wish | None, rate: float, measured: Pose | None) -> None:
@@ -88,7 +88,8 @@ class Jogging:
     def _say(self, obstacle: str, part: float) -> None:
         """What holds the jog back, said when it changes and not more often than people read."""
         self._ticks_to_silence -= 1
-        if obstacle != self._obstacle_said and self._ticks_to_silence <= 0:
-            self._obstacle_said = obstacle
+        news = obstacle, part == 0.0
+        if news != self._said and self._ticks_to_silence <= 0:
+            self._said = news
             self._ticks_to_silence = round(SAY_AGAIN_AFTER / self._dt)
             self.reason = f'scaled to {part:.2g}: {obstacle}' if obstacle else ''

@@ -30,8 +30,9 @@ faster near a singular posture may cost."""
 FORWARD_COST = 10
 """Poses of an inverse that a forward solution costs: no joint move is planned within a tick."""
 
-ROUNDING = 1e-9
-"""rad or m by which an inverse may pass the end of a range that it means to meet."""
+ROUNDING = 1e-6
+"""rad or m by which a joint move stays off the end of a range: ik solves its poses again for the
+joints, and must not find one beyond it."""
 
 SAME_JOINTS = 1e-3
 """rad or m within which joints count as those that were asked for."""
@@ -89,7 +90,8 @@ def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> 
     joints = goal.joints
     if joints is None:
         check_goal(machine, goal.pose, start.joints)
-        joints = _off_the_stops(machine, machine.kinematics.inverse(goal.pose, start.joints))
+        joints = machine.kinematics.inverse(goal.pose, start.joints)
+    joints = _off_the_stops(machine, joints)
 
     def move(limits: MotionLimits, slowness: float) -> Plan:
         return plan_joint_move(machine, start.state.pose, start.joints, joints, slowness)
@@ -137,9 +139,10 @@ def _plan_line(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pl
 
 
 def _off_the_stops(machine: Machine, joints: Array) -> Array:
-    """`joints` (n,) without what rounding makes them pass the end of their ranges by."""
-    inside = np.clip(joints, *machine.joint_ranges)
-    return inside if np.abs(inside - joints).max() < ROUNDING else joints
+    """`joints` (n,), those that stand at the end of their ranges a little inside."""
+    low, high = machine.joint_ranges
+    inside: Array = np.clip(joints, low + ROUNDING, high - ROUNDING)
+    return np.where(np.abs(inside - joints) <= 2 * ROUNDING, inside, joints)
 
 
 def _check_arrival(machine: Machine, goal: Goal, joints: Array, dt: float, effort: Effort) -> None:

@@ -5,24 +5,16 @@ it has none; a tick has ten milliseconds. So the executor submits a task, looks 
 whether it is done, and goes on with what it was doing meanwhile.
 """
 
-import sys
-import threading
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from typing import Generic, Protocol, TypeVar
 
-from manipulator.errors import ManipulatorError, Refused
+from manipulator.errors import ManipulatorError
 
 T = TypeVar('T')
 
 MOST_POSES = 300_000
 """Poses that may be solved for one plan, whatever it is: the bound on its time and memory."""
-
-MOST_WAITING = 8
-"""Jobs that may wait for the one that is being worked on."""
-
-SWITCH_INTERVAL = 0.001
-"""Seconds after which the worker lets the control loop go on (CPython's default: 5 ms)."""
 
 
 class Cancelled(ManipulatorError):
@@ -58,8 +50,9 @@ Task = Callable[[Effort], T]
 class Job(Generic[T]):
     """A task that is being worked out."""
 
-    def __init__(self, future: 'Future[T]', cancelled: threading.Event) -> None:
-        self._future, self._cancelled = future, cancelled
+    def __init__(self, future: 'Future[T]', give_up: Callable[[], object]) -> None:
+        """give_up: has the task's effort end it."""
+        self._future, self._give_up = future, give_up
 
     @property
     def is_done(self) -> bool:
@@ -77,7 +70,7 @@ class Job(Generic[T]):
 
     def cancel(self) -> None:
         """Nobody wants the result any more: the task ends at its next `spend`."""
-        self._cancelled.set()
+        self._give_up()
         self._future.cancel()
 
 
@@ -110,29 +103,4 @@ class InPlace:
             future.set_result(task(Effort(self._most)))
         except ManipulatorError as error:
             future.set_exception(error)
-        return Job(future, threading.Event())
-
-
-class InThread:
-    """Works tasks out one after the other in a thread of its own, beside a control loop."""
-
-    is_beside = True
-
-    def __init__(self) -> None:
-        sys.setswitchinterval(SWITCH_INTERVAL)
-        self._pool = ThreadPoolExecutor(1, thread_name_prefix='planning')
-        self._unfinished: list[Future[object]] = []
-
-    def submit(self, task: Task[T]) -> Job[T]:
-        """See `Worker`."""
-        self._unfinished = [future for future in self._unfinished if not future.done()]
-        if len(self._unfinished) > MOST_WAITING:
-            raise Refused(f'{MOST_WAITING} plans wait already: try again')
-        cancelled = threading.Event()
-        future = self._pool.submit(task, Effort(is_cancelled=cancelled.is_set))
-        self._unfinished.append(future)  # type: ignore[arg-type]
-        return Job(future, cancelled)
-
-    def close(self) -> None:
-        """Gives up what waits; does not wait for what is being worked on."""
-        self._pool.shutdown(wait=False, cancel_futures=True)
+        return Job(future, bool)

@@ -1,6 +1,9 @@
+import itertools
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from arm_control.load import jogging
@@ -83,7 +86,7 @@ def test_rates_near_singular_postures_stay_bounded(jog):
 
 def test_damping_begins_smoothly_at_its_onset(machine_file):
     """The rate of a twist along the weakest direction, over σmin, has no step or kink upwards."""
-    jog = jogging(machine_file('arm_6r'))
+    jog = replace(jogging(machine_file('arm_6r')), slides=True)
     bends = np.linspace(1e-4, 0.6, 400)
     gains, margins = [], []
     for bend in bends:
@@ -159,27 +162,37 @@ def states(jog, seed, count):
     return np.where(zeroed, 0.0, joints)
 
 
+def reached(jog, joints, ticks):
+    """Where each of the twelve leads to, one after the other."""
+    return (drive(jog, joints, twist, ticks)[-1].state.joints for twist in TWELVE)
+
+
 @settings(deadline=None, max_examples=15)
 @given(seed=st.integers(0, 2**32 - 1))
+@example(seed=7833)  # wrist and elbow lost, a joint at its stop: the first deflection ends there
+@example(seed=1048575)
 def test_some_deflection_of_the_stick_always_moves_the_arm(jog, seed):
     (joints,) = states(jog, seed, 1)
-    assert any(
-        np.abs(drive(jog, joints, twist, 75)[-1].state.joints - joints).max() > 0.04
-        for twist in TWELVE
-    )
+    once = list(reached(jog, joints, 75))
+    moved = [np.abs(q - joints).max() for q in once]
+    assert max(moved) > 0.004
+    if max(moved) < 0.04:
+        twice = reached(jog, once[int(np.argmax(moved))], 75)
+        assert any(np.abs(q - joints).max() > 0.04 for q in twice)
 
 
 @pytest.mark.parametrize('elbow', [0.0, 1.0])
 @pytest.mark.parametrize('wrist', [0.0, 1.0])
 @pytest.mark.parametrize('shoulder', ['up', 'out'])
-def test_some_deflection_leads_out_of_every_singular_posture(machine_file, shoulder, elbow, wrist):
+def test_two_deflections_lead_out_of_every_singular_posture(machine_file, shoulder, elbow, wrist):
     jog = jogging(machine_file('arm_6r'))
     lean = -elbow / 2 if shoulder == 'up' else 0.7
     joints = np.array([0.4, lean, elbow, 0.6, wrist, 0.2])
     is_singular = jog.arm.sigma_min(jog.arm.home, joints) < 1e-9
     assert is_singular == (shoulder == 'up' or elbow == 0.0 or wrist == 0.0)
-    reached = [drive(jog, joints, twist, 100)[-1].state.joints for twist in TWELVE]
-    assert max(jog.arm.sigma_min(jog.arm.home, q) for q in reached) > 1e-3
+    once = list(reached(jog, joints, 100))
+    twice = itertools.chain.from_iterable(reached(jog, q, 100) for q in once)
+    assert any(jog.arm.sigma_min(jog.arm.home, q) > 0.02 for q in itertools.chain(once, twice))
 
 
 def test_sliding_out_of_a_corner_is_said_and_goes_with_the_stick(machine_file):
@@ -189,7 +202,7 @@ def test_sliding_out_of_a_corner_is_said_and_goes_with_the_stick(machine_file):
     for joints in states(jog, 11, 40):
         for twist in TWELVE:
             step = jog.step(JogState.at_rest(joints), twist, DT)
-            if step.held_by == 'corner' and step.state.rates.any():
+            if step.held_by.startswith('sliding off the line') and step.state.rates.any():
                 driven = jog.arm.chain.jacobian(joints) @ step.state.rates
                 assert driven @ (metric * twist) > 0
                 slides += 1

@@ -96,3 +96,13 @@ def test_jog_through_a_stretched_elbow_is_followed_on_its_branch(loop_of):
     loop = loop_of('puma560')
     driven(loop, 'free', (([0.2, 0, 0], 260),))
     assert np.abs(loop.sent[-1].joints - loop.pilot.player.joints).max() < 1e-6
+
+
+@pytest.mark.parametrize('name', ['arm_6r', 'ur5', 'puma560'])
+def test_jog_to_the_edge_of_reach_and_back_is_followed(loop_of, name):
+    loop = loop_of(name)
+    for axis in range(3):
+        for size in (0.25, -0.25):
+            out = size * np.eye(6)[axis]
+            driven(loop, 'free', ((out, 200), (-out, 100), (out, 60), (-out, 60)))
+            assert np.abs(loop.sent[-1].joints - loop.pilot.player.joints).max() < 1e-6

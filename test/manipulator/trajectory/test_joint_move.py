@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
+from manipulator.command_check import CommandCheck
 from manipulator.errors import Refused, Unreachable
 from manipulator.pose import Pose
 from manipulator.trajectory.goal import Goal, Motion
@@ -102,3 +103,21 @@ def test_a_joint_move_begins_at_rest():
     goal = Goal(k.home.moved([0.001, 0, 0, 0, 0, 0]), motion=Motion.JOINT)
     with pytest.raises(Refused, match='begins at rest'):
         plan_goal(machine, Start(moving, k.inverse(k.home), DT), goal, Effort())
+
+
+def test_a_joint_move_to_a_stop_passes_the_check_of_ik():
+    """ik solves the poses for the joints: rounding must not put one beyond its stop."""
+    machine = load('arm_6r')
+    k = machine.kinematics
+    begin = np.radians([0.0, 20.0, 80.0, 90.0, 60.0, 0.0])
+    end = begin.copy()
+    end[3] = machine.joint_ranges[1][3]
+    player, check = Player(machine, k.forward(begin).pose, begin, DT), CommandCheck(machine)
+    check.note_joints(begin)
+    player.pursue(Goal(k.forward(end).pose, 1.0, motion=Motion.JOINT, joints=end))
+    now = 100.0
+    while player.status.result != 'reached':
+        now += DT
+        np.testing.assert_allclose(check.admit(player.step(), now), player.joints, atol=1e-6)
+        assert now < 110.0
+    np.testing.assert_allclose(player.joints, end, atol=2e-6)

@@ -1,11 +1,14 @@
 """Goals that take a while to plan: the machine goes on, and answers to what comes meanwhile."""
 
+from concurrent.futures import Future
 from dataclasses import replace
+from threading import Event
 
 import numpy as np
 import pytest
 
 from hexarm.machines import load
+from manipulator.errors import ManipulatorError
 from manipulator.pose import Pose
 from manipulator.teleop.feedback import Feedback
 from manipulator.teleop.modes import jog_mode
@@ -14,10 +17,39 @@ from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.jogging import Wish
 from manipulator.trajectory.planning import LEADS
 from manipulator.trajectory.player import Player
-
-from .later import Later
+from manipulator.trajectory.worker import Effort, Job
 
 DT = 0.01
+
+
+class Later:
+    """Works a task out when its ticks are over; `tick` lets one pass."""
+
+    is_beside = True
+
+    def __init__(self, ticks):
+        self.ticks = ticks
+        self.waiting = []
+        self.cancelled = 0
+
+    def submit(self, task):
+        future, cancelled = Future(), Event()
+        self.waiting.append([self.ticks, task, future, cancelled])
+        return Job(future, cancelled.set)
+
+    def tick(self):
+        for entry in self.waiting:
+            entry[0] -= 1
+        done = [entry for entry in self.waiting if entry[0] < 0]
+        self.waiting = [entry for entry in self.waiting if entry[0] >= 0]
+        for _, task, future, cancelled in done:
+            if cancelled.is_set():
+                self.cancelled += 1
+                continue
+            try:
+                future.set_result(task(Effort()))
+            except ManipulatorError as error:
+                future.set_exception(error)
 
 
 class Costly:

@@ -29,7 +29,7 @@ class Thread:
         self._free_at = max(self._free_at, self._timeline.now) + self.seconds
         wait = self._free_at - self._timeline.now
         self._timeline.after(wait, lambda: self._work_out(task, future, cancelled))
-        return Job(future, cancelled)
+        return Job(future, cancelled.set)
 
     def _work_out(self, task, future, cancelled):
         if future.set_running_or_notify_cancel():

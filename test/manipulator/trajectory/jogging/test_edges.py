@@ -24,6 +24,39 @@ def test_platform_slides_to_a_stop_at_the_edge_and_is_driven_back(platform, at_h
     assert np.abs(way).max() > 0.01
 
 
+def test_platform_keeps_its_direction_to_the_edge(platform, at_home):
+    """Its position stays on the line and it turns about one axis, whatever holds it back."""
+    rng = np.random.default_rng(6)
+    for _ in range(4):
+        motion, size = at_home(platform), platform.motion.linear.speed
+        part = rng.uniform(-1.0, 1.0, 6)
+        twist = motion.full_speed * part / np.abs(part).max()
+        motion.run(250, twist, frame='work')
+        assert np.linalg.norm(motion.twists, axis=1).max() > 0.1 * size
+        away = np.array([motion.poses[0].twist_to(pose) for pose in motion.poses])
+        for way, wanted, bound in (
+            (away[:, :3], twist[:3], 2e-3),
+            (away[:, 3:], twist[3:], np.radians(1.0)),
+        ):
+            axis = wanted / np.linalg.norm(wanted)
+            assert np.linalg.norm(way - np.outer(way @ axis, axis), axis=1).max() < bound
+        progress = away[:, :3] @ twist[:3] / (twist[:3] @ twist[:3])
+        turned = away[:, 3:] @ twist[3:] / (twist[3:] @ twist[3:])
+        assert np.abs(progress - turned).max() < 1e-9
+
+
+def test_arm_at_the_edge_of_its_reach_stops_and_names_the_singularity(standing):
+    machine = load('arm_6r')
+    home = machine.kinematics.home
+    motion = standing(machine, home, machine.kinematics.inverse(home))
+    motion.run(450, [0, 0.2, 0, 0, 0, 0])
+    assert motion.status.reason == 'scaled to 0: elbow singularity (arm stretched or folded)'
+    assert np.abs(motion.poses[-1].twist_to(motion.poses[-2])).max() == 0.0
+    assert np.abs(home.twist_to(motion.poses[-1])[[0, 2, 3, 4, 5]]).max() < 1e-3
+    motion.run(100, [0, -0.2, 0, 0, 0, 0])
+    assert motion.poses[450].position[1] - motion.poses[-1].position[1] > 0.02
+
+
 def test_arm_beyond_its_range_moves_only_towards_it(standing):
     machine = load('arm_6r')
     beyond = np.radians([0.0, 20.0, 80.0, 0.0, 125.0, 0.0])

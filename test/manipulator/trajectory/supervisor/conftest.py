@@ -4,8 +4,8 @@ import pytest
 
 from hexarm.machines import load
 from manipulator.trajectory.supervisor import Supervisor
-
-from ..later import Later
+from world.supervisor import Thread
+from world.timeline import Timeline
 
 DT = 0.01
 
@@ -13,14 +13,19 @@ DT = 0.01
 class Stage:
     """The supervisor (`core`), its bridge and its machine; `setpoints` and `statuses` came out."""
 
-    def __init__(self, machine, worker=None):
-        self.core = Supervisor(machine, DT, worker=worker)
-        self.machine, self.worker = machine, worker
-        self.now = 100.0
+    def __init__(self, machine, planning_s=None):
+        self.timeline = Timeline()
+        self.worker = None if planning_s is None else Thread(self.timeline, planning_s)
+        self.core = Supervisor(machine, DT, worker=self.worker)
+        self.machine = machine
         self.pose = machine.kinematics.home
         self.state, self.is_followed = 'enabled', True
         self.does_bridge_say = self.does_pose_come = True
         self.setpoints, self.statuses, self.refusals = [], [], []
+
+    @property
+    def now(self):
+        return self.timeline.now
 
     @property
     def status(self):
@@ -36,9 +41,7 @@ class Stage:
 
     def tick(self, period=DT, within=0.001):
         """One tick, `period` after the last one, that takes so long (s); the setpoint."""
-        self.now += period
-        if self.worker is not None:
-            self.worker.tick()
+        self.timeline.run(period)
         self.report()
         self.core.begin_tick(self.now)
         pose = self.core.end_tick(self.now + within)
@@ -70,8 +73,8 @@ class Stage:
 def staged():
     """Makes a stage on which the machine of that name holds at home."""
 
-    def make(name='robocake', worker=None):
-        stage = Stage(load(name), worker)
+    def make(name='robocake', planning_s=None):
+        stage = Stage(load(name), planning_s)
         stage.run(3)
         assert stage.setpoints
         return stage
@@ -87,5 +90,5 @@ def stage(staged):
 
 @pytest.fixture
 def slow(staged):
-    """A hexapod's whose plans take 3 ticks."""
-    return staged(worker=Later(3))
+    """A hexapod's whose plans take more than three ticks."""
+    return staged(planning_s=3.5 * DT)

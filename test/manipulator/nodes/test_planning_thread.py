@@ -5,22 +5,15 @@ from threading import Event
 import pytest
 
 from manipulator.errors import Refused
-from manipulator.trajectory.worker import (
-    MOST_POSES,
-    MOST_WAITING,
-    Cancelled,
-    Effort,
-    InPlace,
-    InThread,
-    TooLong,
-)
+from manipulator.nodes.planning_thread import MOST_WAITING, PlanningThread
+from manipulator.trajectory.worker import MOST_POSES, Cancelled, Effort, InPlace, TooLong
 
 LONG = 30.0
 
 
 @pytest.fixture
 def worker():
-    made = InThread()
+    made = PlanningThread()
     yield made
     made.close()
 

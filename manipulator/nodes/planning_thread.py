@@ -1,0 +1,42 @@
+"""Where a node's plans are worked out: a thread beside the control loop."""
+
+import sys
+from concurrent.futures import Future, ThreadPoolExecutor
+from threading import Event
+from typing import TypeVar
+
+from manipulator.errors import Refused
+from manipulator.trajectory.worker import Effort, Job, Task
+
+T = TypeVar('T')
+
+MOST_WAITING = 8
+"""Jobs that may wait for the one that is being worked on."""
+
+SWITCH_INTERVAL = 0.001
+"""Seconds after which the worker lets the control loop go on (CPython's default: 5 ms)."""
+
+
+class PlanningThread:
+    """A `Worker` of one thread beside a control loop: one task after the other."""
+
+    is_beside = True
+
+    def __init__(self) -> None:
+        sys.setswitchinterval(SWITCH_INTERVAL)
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix='planning')
+        self._unfinished: list[Future[object]] = []
+
+    def submit(self, task: Task[T]) -> Job[T]:
+        """See `Worker`."""
+        self._unfinished = [future for future in self._unfinished if not future.done()]
+        if len(self._unfinished) > MOST_WAITING:
+            raise Refused(f'{MOST_WAITING} plans wait already: try again')
+        cancelled = Event()
+        future = self._pool.submit(task, Effort(is_cancelled=cancelled.is_set))
+        self._unfinished.append(future)  # type: ignore[arg-type]
+        return Job(future, cancelled.set)
+
+    def close(self) -> None:
+        """Gives up what waits; does not wait for what is being worked on."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
