@@ -70,7 +70,7 @@ def test_a_path_beyond_the_reach_is_refused_and_nothing_moves(world):
     assert np.nanmax(np.abs(pulses - pulses[0])) <= 2.0
 
 
-@pytest.mark.parametrize('delay', [0.0, 0.02, 0.05, 0.1])
+@pytest.mark.parametrize('delay', [0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.1])
 def test_what_is_asked_right_after_the_clear_is_driven(world, delay):
     world.bridge.ask(Stop())
     world.wait('stop', lambda: world.state == 'stopped')
@@ -78,6 +78,17 @@ def test_what_is_asked_right_after_the_clear_is_driven(world, delay):
     world.run(delay)
     assert world.go_to(HIGHER).result == 'reached'
     assert not world.supervisor.on_goal.refusals
+
+
+def test_a_goal_from_before_the_clear_moves_nothing(world):
+    world.bridge.ask(Stop())
+    world.wait('stop', lambda: world.state == 'stopped')
+    assert 'clear the stop first' in world.go_to(HIGHER).reason
+    since = world.now
+    assert world.clear() == ''
+    world.run(1.0)
+    pulses = world.pulses(since)
+    assert np.nanmax(np.abs(pulses - pulses[0])) <= 2.0
 
 
 def test_a_goal_that_waits_for_the_machine_is_refused_by_the_next_stop(world):
