@@ -6,6 +6,7 @@ from manipulator.arrays import Array
 from manipulator.errors import LimitViolated
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.sag import commanded
 
 FORGET_AFTER = 0.25
 """Seconds after which the last command no longer says where the joints are."""
@@ -46,8 +47,13 @@ class CommandCheck:
         if joints is None:
             self._commanded, self._last_step = None, 0.0
 
+    def command(self, T_base_platform: Pose, now: float) -> Array:
+        """As `admit`, and raised by what the drives stay behind: what goes down to the board."""
+        joints = self.admit(T_base_platform, now)
+        return commanded(self._machine.sag, T_base_platform, joints)
+
     def admit(self, T_base_platform: Pose, now: float) -> Array:
-        """The joints (n,) to command; Unreachable or LimitViolated says why there are none."""
+        """The joints (n,) to be at; Unreachable or LimitViolated says why there are none."""
         age = now - self._commanded_at
         is_fresh = self._commanded is not None and age < FORGET_AFTER
         near = self._commanded if is_fresh else self._measured

@@ -12,10 +12,9 @@ from manipulator.command_check import CommandCheck
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.intake import Intake
-from manipulator.nodes.messages import joint_message, joints_of, pose_of
+from manipulator.nodes.messages import joint_message, known_joints, pose_of
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
-from manipulator.sag import commanded
 
 
 class IkNode(Node):
@@ -27,7 +26,6 @@ class IkNode(Node):
         machine = load(name)
         self._names = machine.kinematics.joint_names
         self._check = CommandCheck(machine)
-        self._sag = machine.sag
         self._setpoint = Intake(self, 'setpoint', self._on_setpoint)
         self._states = Intake(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(JointState, 'joint_command', COMMAND)
@@ -38,13 +36,11 @@ class IkNode(Node):
         )
 
     def _on_setpoint(self, message: PoseStamped) -> None:
-        pose = pose_of(message)
-        joints = commanded(self._sag, pose, self._check.admit(pose, time.monotonic()))
+        joints = self._check.command(pose_of(message), time.monotonic())
         self._publisher.publish(joint_message(joints, self._names, message.header.stamp))
 
     def _on_joint_states(self, message: JointState) -> None:
-        is_whole = set(self._names) <= set(message.name)
-        self._check.note_joints(joints_of(message, self._names) if is_whole else None)
+        self._check.note_joints(known_joints(message, self._names))
 
     def _report(self) -> Report:
         values = {

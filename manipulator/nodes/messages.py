@@ -105,6 +105,11 @@ def joints_of(message: JointState, names: tuple[str, ...]) -> Array:
     return joints
 
 
+def known_joints(message: JointState, names: tuple[str, ...]) -> Array | None:
+    """As `joints_of`; None where the message does not name all of them."""
+    return joints_of(message, names) if set(names) <= set(message.name) else None
+
+
 def joint_message(joints: Array, names: tuple[str, ...], stamp: Time) -> JointState:
     """Joint positions as a message."""
     message = JointState(name=list(names), position=joints.tolist())

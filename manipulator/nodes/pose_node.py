@@ -7,9 +7,7 @@ from geometry_msgs.msg import PointStamped, PoseStamped
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-from manipulator.arrays import Array
-from manipulator.errors import InvalidInput, NoSolution
-from manipulator.kinematics import ForwardSolution
+from manipulator.errors import InvalidInput
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.intake import Intake
@@ -17,14 +15,14 @@ from manipulator.nodes.markers import Markers
 from manipulator.nodes.messages import (
     PLATFORM_FRAME,
     WORK_FRAME,
-    joints_of,
+    known_joints,
     point_of,
     pose_message,
 )
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
 from manipulator.nodes.transforms import Transforms, declare_prefix
-from manipulator.sag import settled
+from manipulator.pose_estimate import PoseEstimate
 
 
 class PoseNode(Node):
@@ -34,9 +32,8 @@ class PoseNode(Node):
         super().__init__('pose')
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         machine = load(name)
-        self._kinematics, self._constraints = machine.kinematics, machine.constraints
-        self._frames, self._sag = machine.frames, machine.sag
-        self._solution: ForwardSolution | None = None
+        self._kinematics, self._frames = machine.kinematics, machine.frames
+        self._estimate = PoseEstimate(machine, self.get_logger().info)
         self._states = Intake(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
         prefix = declare_prefix(self)
@@ -48,20 +45,11 @@ class PoseNode(Node):
         self._diagnostics = Diagnostics(self, self._report, ('joint_states', 'pose'))
 
     def _on_joint_states(self, message: JointState) -> None:
-        if not set(self._kinematics.joint_names) <= set(message.name):
-            self._solution = None
+        joints = known_joints(message, self._kinematics.joint_names)
+        solution = self._estimate.update(joints)
+        if solution is None or joints is None:
             return
-        joints = joints_of(message, self._kinematics.joint_names)
-        near, self._solution = self._solution, None
-        if near is not None:
-            try:
-                self._solution = self._kinematics.forward(joints, near.pose)
-            except NoSolution:
-                self.get_logger().info('the last pose does not lead to the present one: afresh')
-        if self._solution is None:
-            self._solution = self._cold(joints)
-        self._solution = settled(self._sag, self._kinematics, joints, self._solution)
-        pose, stamp = self._solution.pose, message.header.stamp
+        pose, stamp = solution.pose, message.header.stamp
         self._publisher.publish(pose_message(pose, stamp))
         self._markers.show(self._kinematics, pose, joints, stamp)
         self._transforms.show(self._kinematics, self._frames, pose, joints, stamp)
@@ -75,25 +63,16 @@ class PoseNode(Node):
         except InvalidInput as error:
             self.get_logger().warning(f'pivot: {error}', throttle_duration_sec=1.0)
 
-    def _cold(self, joints: Array) -> ForwardSolution:
-        """From home; what lies beyond a limit may be another assembly mode, so it is not used.
-
-        A solution that took no iteration is explicit, and the only one.
-        """
-        solution = self._kinematics.forward(joints)
-        if solution.iterations > 0:
-            self._constraints.check(solution.pose, joints)
-        return solution
-
     def _report(self) -> Report:
         values: dict[str, object] = {
             'last_joint_state_age_s': self._states.age,
             'joint_states_refused': self._states.refused,
             'last_refusal': self._states.last_refusal,
         }
-        if self._solution is None:
+        solution = self._estimate.solution
+        if solution is None:
             return DiagnosticStatus.OK, 'no joint states', values
-        values['singularity_margin'] = self._solution.sigma_min
-        values['residual_mm'] = self._solution.residual * 1e3
-        values['iterations'] = self._solution.iterations
+        values['singularity_margin'] = solution.sigma_min
+        values['residual_mm'] = solution.residual * 1e3
+        values['iterations'] = solution.iterations
         return DiagnosticStatus.OK, 'running', values

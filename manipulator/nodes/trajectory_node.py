@@ -14,11 +14,11 @@ from manipulator.errors import ManipulatorError, Refused
 from manipulator.machine import JOG_SINGULARITIES, Machine
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
 from manipulator.nodes.intake import Intake
-from manipulator.nodes.jitter import Jitter
 from manipulator.nodes.messages import (
+    BASE_FRAME,
     PLATFORM_FRAME,
-    goal_of,
-    joints_of,
+    WORK_FRAME,
+    known_joints,
     point_of,
     pose_message,
     pose_of,
@@ -32,13 +32,11 @@ from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
 from manipulator.teleop.arbiter import PEOPLE
-from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.following import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.lag import lag_of
 from manipulator.trajectory.motion_status import MotionStatus
-from manipulator.trajectory.pilot import Pilot
-from manipulator.trajectory.teleop import Teleop
+from manipulator.trajectory.supervisor import MEASUREMENT_DELAY, Supervisor
 
 DELAY = 'age in seconds of a measured pose by the time that its correction moves the joints'
 SINGULARITY = 'what a jogged arm does where it cannot keep its direction: stop or slide'
@@ -63,34 +61,24 @@ class TrajectoryNode(Node):
         tolerance = declare(self, 'following_tolerance', 0.0, TOLERANCE, (0.0, 10.0))
         goal_tolerance = declare(self, 'goal_tolerance', 0.0, GOAL_TOLERANCE, (0.0, 10.0))
         declare(self, 'goal_motion', Motion.LINE.value, GOAL_MOTION, is_read_only=False)
-        delay = declare(self, 'measurement_delay', 0.06, DELAY, (0.0, 1.0))
+        delay = declare(self, 'measurement_delay', MEASUREMENT_DELAY, DELAY, (0.0, 1.0))
         singularity = declare(self, 'jog_singularity', JOG_SINGULARITIES[0], SINGULARITY)
-        self._dt = 1.0 / rate
+        dt, self._worker = 1.0 / rate, PlanningThread()
         machine = replace(load(name), jog_singularity=singularity)
-        self._worker = PlanningThread()
         tolerances = Tolerances.of(machine, tolerance, goal_tolerance)
-        self._pilot = Pilot(machine, self._dt, tolerances, self._worker)
-        self._teleop = Teleop(self._pilot, delay)
-        self._early = EarlyCommand()
-        self._seen: MotionStatus | None = None
-        self._published: MotionStatus | None = None
-        self._state_heard = float('-inf')
-        self._refusals = 0
-        self._last_refusal = ''
-        self._jitter = Jitter(self._dt)
+        self._supervisor = Supervisor(machine, dt, tolerances, self._worker, delay)
         self._connect()
-        self._paths = PathGoals(self, self._pilot, self._early, self._dt, self._worker, self._say)
-        self._teleop_topics = TeleopTopics(self, self._teleop)
-        self._answers = TrajectoryServices(
-            self, self._pilot, self._teleop, self._early, self._dt, self._worker, self._say
-        )
-        self._timer = SteadyTimer(self, self._dt, self._tick)
+        self._paths = PathGoals(self, self._supervisor)
+        self._teleop_topics = TeleopTopics(self, self._supervisor.teleop)
+        self._answers = TrajectoryServices(self, self._supervisor, dt, self._worker)
+        self._timer = SteadyTimer(self, dt, self._tick)
         self._diagnostics = Diagnostics(
             self, self._report, ('setpoint', 'pose', *PEOPLE), (GOAL_PATH,)
         )
 
     def close(self) -> None:
         """Ends what runs beside this node."""
+        self._supervisor.close()
         self._paths.close()
         self._worker.close()
 
@@ -109,35 +97,29 @@ class TrajectoryNode(Node):
         subscribe(PointStamped, 'pivot', self._on_pivot, COMMAND)
 
     def _on_machine_state(self, message: DiagnosticStatus) -> None:
-        self._state_heard = time.monotonic()
         values = {pair.key: pair.value for pair in message.values}
-        is_followed, is_measured = (
-            values.get('followed') == 'yes',
-            values.get('joints') == 'measured',
+        is_followed = values.get('followed') == 'yes'
+        is_measured = values.get('joints') == 'measured'
+        self._supervisor.note_machine_state(
+            message.message[:80], is_followed, is_measured, time.monotonic()
         )
-        self._pilot.note_machine_state(message.message[:80], is_followed, is_measured)
-        self._early.poll(self._state_heard)
-        self._say_news()
+        self._publish_news()
 
     def _on_joint_states(self, message: JointState) -> None:
-        names = self._pilot.machine.kinematics.joint_names
-        if set(names) <= set(message.name):
-            self._pilot.note_joints(joints_of(message, names))
+        names = self._supervisor.pilot.machine.kinematics.joint_names
+        self._supervisor.note_joints(known_joints(message, names))
 
     def _on_pose(self, message: PoseStamped) -> None:
-        self._pilot.note_pose(pose_of(message))
+        self._supervisor.note_pose(pose_of(message), time.monotonic())
 
     def _on_goal(self, message: PoseStamped) -> None:
-        self._early.take(
-            lambda: self._pursue(message),
+        pose = pose_of(message, (BASE_FRAME, WORK_FRAME))
+        self._supervisor.pursue(
+            Goal(pose, seconds(message.header.stamp), motion=self._goal_motion()),
             lambda error: self._goals.refuse(message, error),
             time.monotonic(),
+            is_of_platform=message.header.frame_id != WORK_FRAME,
         )
-
-    def _pursue(self, message: PoseStamped) -> None:
-        pose = goal_of(message, self._pilot.machine.frames)
-        stamp, motion = seconds(message.header.stamp), self._goal_motion()
-        self._pilot.player.pursue(Goal(pose, stamp, motion=motion))
 
     def _goal_motion(self) -> Motion:
         word = self.get_parameter('goal_motion').value
@@ -148,52 +130,39 @@ class TrajectoryNode(Node):
             raise Refused(f'parameter goal_motion: {word!r} is not one of {known}') from None
 
     def _on_bad_goal(self, message: PoseStamped, error: ManipulatorError) -> None:
-        mode, stamp = self._pilot.status.mode, seconds(message.header.stamp)
-        self._say(MotionStatus(mode, 'refused', stamp, str(error)))
+        self._supervisor.refuse(seconds(message.header.stamp), error)
+        self._publish_news()
 
     def _on_speed_override(self, message: Float64) -> None:
         try:
-            self._pilot.override(message.data)
+            self._supervisor.pilot.override(message.data)
         except ManipulatorError as error:
             self.get_logger().warning(str(error), throttle_duration_sec=1.0)
 
     def _on_pivot(self, message: PointStamped) -> None:
         try:
-            self._pilot.set_pivot(point_of(message, PLATFORM_FRAME))
+            self._supervisor.pilot.set_pivot(point_of(message, PLATFORM_FRAME))
         except ManipulatorError as error:
             self.get_logger().warning(f'pivot: {error}', throttle_duration_sec=1.0)
 
     def _tick(self) -> None:
-        since_last, now = self._jitter.tick(), time.monotonic()
-        self._state_heard += max(since_last - self._dt, 0.0)  # said meanwhile, and not yet heard
-        self._pilot.note_stall(since_last)
-        self._pilot.note_silence(self._poses.age)
-        self._pilot.note_bridge_silence(now - self._state_heard)
-        self._teleop.drive(now)
+        self._supervisor.begin_tick(time.monotonic())
+        stamp = self.get_clock().now().to_msg()
+        pose = self._supervisor.end_tick(time.monotonic())
+        if pose is not None:
+            self._setpoints.publish(pose_message(pose, stamp))
         self._paths.poll()
         self._answers.poll()
-        self._early.poll(now)
-        pose, stamp = self._pilot.step(), self.get_clock().now().to_msg()
-        # Frozen until here, this tick is late; frozen from here on, its stamp tells the others.
-        self._pilot.note_stall(time.monotonic() - now)
-        if pose is not None and self._pilot.is_driving:
-            self._setpoints.publish(pose_message(pose, stamp))
-        self._say_news()
+        self._publish_news()
 
-    def _say_news(self) -> None:
-        if self._pilot.status != self._seen:
-            self._seen = self._pilot.status
-            self._say(self._seen)
+    def _publish_news(self) -> None:
+        for new in self._supervisor.news.take():
+            self._publish(new)
 
-    def _say(self, new: MotionStatus) -> None:
-        """Publishes a status that is new; refusals are counted, stops are logged."""
-        if new == self._published:
-            return
-        self._published = new
+    def _publish(self, new: MotionStatus) -> None:
+        """Publishes a status; refusals and stops are logged."""
         text = f'{new.result}: {new.reason}' if new.reason else new.result
         if new.result == 'refused':
-            self._refusals += 1
-            self._last_refusal = new.reason
             self.get_logger().warning(f'goal {text}', throttle_duration_sec=1.0)
         elif new.result == 'stopped':
             self.get_logger().info(text)
@@ -210,17 +179,18 @@ class TrajectoryNode(Node):
         self._statuses.publish(status(level, name, text, values))
 
     def _report(self) -> Report:
-        now = self._pilot.status
+        pilot, news = self._supervisor.pilot, self._supervisor.news
+        jitter, now = self._supervisor.jitter, pilot.status
         values = {
             'mode': now.mode,
             'result': now.result,
-            'goals_refused': self._refusals,
-            'last_refusal': self._last_refusal,
-            **lag_of(self._pilot),
+            'goals_refused': news.refusals,
+            'last_refusal': news.last_refusal,
+            **lag_of(pilot),
             **self._teleop_topics.report(),
             'last_pose_age_s': self._poses.age,
-            'tick_jitter_p50_ms': self._jitter.quantile(0.5) * 1e3,
-            'tick_jitter_p99_ms': self._jitter.quantile(0.99) * 1e3,
+            'tick_jitter_p50_ms': jitter.quantile(0.5) * 1e3,
+            'tick_jitter_p99_ms': jitter.quantile(0.99) * 1e3,
         }
         trouble = self._teleop_topics.trouble
         if trouble:

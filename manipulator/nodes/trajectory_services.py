@@ -11,21 +11,17 @@ from nav_msgs.srv import GetPlan
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
-from manipulator.arrays import Array
-from manipulator.errors import ManipulatorError, NoSolution, Refused, Unreachable
+from manipulator.errors import ManipulatorError, Unreachable
 from manipulator.machine import Machine
 from manipulator.nodes.cycle_parameters import CycleParameters
 from manipulator.nodes.late_answers import Call, create_late_service
 from manipulator.nodes.messages import goal_of, pose_message, seconds
 from manipulator.pose import Pose
 from manipulator.reach.words import explained
-from manipulator.trajectory.early_command import EarlyCommand
-from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.motion_status import MotionStatus
-from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.planner import Start, plan_goal
-from manipulator.trajectory.teleop import Teleop
+from manipulator.trajectory.supervisor import Supervisor
 from manipulator.trajectory.worker import Job, Worker
 
 
@@ -42,23 +38,11 @@ class _PlanCall:
 class TrajectoryServices:
     """Answers with what will happen, or with why it will not; `poll` is called at every tick."""
 
-    def __init__(
-        self,
-        node: Node,
-        pilot: Pilot,
-        teleop: Teleop,
-        early: EarlyCommand,
-        dt: float,
-        worker: Worker,
-        say: Callable[[MotionStatus], None],
-    ) -> None:
+    def __init__(self, node: Node, supervisor: Supervisor, dt: float, worker: Worker) -> None:
         self._node = node
-        self._pilot = pilot
-        self._teleop = teleop
-        self._early = early
+        self._supervisor = supervisor
         self._dt = dt
         self._worker = worker
-        self._say = say
         self._cycle = CycleParameters(node)
         self._cycles: list[tuple[Call, float]] = []
         self._plans: list[_PlanCall] = []
@@ -70,48 +54,31 @@ class TrajectoryServices:
 
     def poll(self) -> None:
         """Answers what can be answered by now."""
-        for cycle in tuple(self._cycles):
-            if self._answer_cycle(*cycle):
-                self._cycles.remove(cycle)
+        for call, stamp in tuple(self._cycles):
+            answer = self._supervisor.cycle_answer(stamp)
+            if answer is not None:
+                self._cycles.remove((call, stamp))
+                call.response.success, call.response.message = answer.is_obeyed, answer.text
+                call.send()
         for plan in [p for p in self._plans if p.job.is_done]:
             self._plans.remove(plan)
             self._answer_plan(plan)
 
     def _stop(self) -> str:
-        self._early.drop('stopped before it began')
-        self._pilot.player.stop()
-        self._teleop.stop()
+        self._supervisor.stop()
         return 'braking along the way, then holding'
 
     def _home(self) -> str:
-        machine = self._pilot.machine
-        home = machine.kinematics.home
-        self._go(home, machine.kinematics.inverse(home))
+        self._supervisor.home(self._now(), time.monotonic())
         return 'going home'
 
     def _park(self) -> str:
-        machine = self._pilot.machine
-        if machine.park is None:
-            raise Refused('the machine file has no usable park position (section servos)')
-        try:
-            pose = machine.kinematics.forward(machine.park).pose
-        except NoSolution as error:
-            raise Refused(f'the park position is no pose that can be trusted: {error}') from error
-        self._go(pose, machine.park)
+        self._supervisor.park(self._now(), time.monotonic())
         return 'going to park'
-
-    def _go(self, pose: Pose, joints: Array) -> None:
-        """To joints (n,) at a pose, along a line or else by a joint move."""
-        goal = Goal(pose, self._now(), motion=Motion.ANY, joints=joints)
-
-        def refuse(error: ManipulatorError) -> None:
-            self._say(MotionStatus(self._pilot.status.mode, 'refused', goal.stamp, str(error)))
-
-        self._early.take(lambda: self._pilot.player.pursue(goal), refuse, time.monotonic())
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:
-            self._pilot.pause(request.data)
+            self._supervisor.pilot.pause(request.data)
             response.success, response.message = True, 'paused' if request.data else 'going on'
         except ManipulatorError as error:
             response.message = str(error)
@@ -120,37 +87,16 @@ class TrajectoryServices:
     def _on_start_cycle(self, call: Call) -> None:
         stamp = self._now()
         try:
-            player = self._pilot.player
-            player.start_cycle(self._cycle.read(player.state.pose), stamp)
+            self._supervisor.start_cycle(self._cycle.read, stamp)
         except ManipulatorError as error:
             call.response.message = str(error)
             call.send()
         else:
             self._cycles.append((call, stamp))
 
-    def _answer_cycle(self, call: Call, stamp: float) -> bool:
-        """Answers once the cycle is begun or refused, by the motion's status."""
-        status, response = self._pilot.status, call.response
-        if status.goal_stamp == stamp and status.result == 'moving':
-            response.success, response.message = True, 'cycling until stopped'
-        elif status.goal_stamp == stamp and status.result in ('refused', 'stopped'):
-            response.message = status.reason or status.result
-        elif self._is_awaited(stamp):
-            return False
-        else:
-            response.message = 'a newer command came before it began'
-        call.send()
-        return True
-
-    def _is_awaited(self, stamp: float) -> bool:
-        try:
-            return self._pilot.player.newest_stamp == stamp
-        except Refused:
-            return False
-
     def _on_plan(self, call: Call) -> None:
         """The platform's poses on a move from start (from here, when it is all zero) to goal."""
-        machine = self._pilot.machine
+        machine = self._supervisor.pilot.machine
         try:
             goal = goal_of(call.request.goal, machine.frames)
             start = self._start_of(call.request)
@@ -184,9 +130,9 @@ class TrajectoryServices:
             self._node.get_logger().info(f'plan: {said}')
 
     def _start_of(self, request: GetPlan.Request) -> Start:
-        machine = self._pilot.machine
+        machine = self._supervisor.pilot.machine
         if request.start == PoseStamped():
-            player = self._pilot.player
+            player = self._supervisor.pilot.player
             pose, joints = player.state.pose, player.joints
         else:
             pose = goal_of(request.start, machine.frames)

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -166,3 +168,9 @@ def test_arm_that_has_come_to_rest_is_commanded_the_very_same_again():
     for k in range(20, 30):
         again = check.admit(home.moved([1e-3, 0, 0, 0, 0, 0]), 100.0 + 0.01 * k)
         assert np.array_equal(again, first)
+
+
+def test_what_the_drives_stay_behind_by_is_commanded_on_top():
+    sag = np.linspace(0.01, 0.02, 6)
+    check = CommandCheck(replace(MACHINE, sag=lambda pose, joints: sag))
+    np.testing.assert_allclose(check.command(HOME, 0.0), MACHINE.kinematics.inverse(HOME) + sag)

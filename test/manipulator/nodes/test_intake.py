@@ -5,7 +5,8 @@ import pytest
 from geometry_msgs.msg import PoseStamped
 
 from manipulator.errors import InvalidInput
-from manipulator.nodes.intake import LONGEST_REASON, Intake
+from manipulator.message_filter import LONGEST_REASON
+from manipulator.nodes.intake import Intake
 
 
 def stamped(clock):

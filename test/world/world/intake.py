@@ -1,28 +1,32 @@
-"""What every subscription does with a message (manipulator/nodes/intake.py), without ROS."""
+"""A process's end of a link: the message filter with the process's time."""
 
-from manipulator.errors import ManipulatorError
-from manipulator.stamps import StampGate
+from manipulator.message_filter import MessageFilter
+from world.timeline import EPOCH
 
 
 class Intake:
-    """Refuses what is stale; keeps why something was refused, and when the last good one came."""
+    """Keeps every refusal, as (time, reason)."""
 
     def __init__(self, process, accept, refuse=lambda stamp, error: None):
         self.refusals = []
-        self.last_good = float('-inf')
         self._process, self._accept, self._refuse = process, accept, refuse
-        self._gate = StampGate()
+        self._filter = MessageFilter(EPOCH)
 
     def __call__(self, stamp, *value):
-        try:
-            self._gate.admit(stamp, self._process.now)
-            self._accept(stamp, *value)
-        except ManipulatorError as error:
-            self.refusals.append((self._process.now, str(error)))
-            self._refuse(stamp, error)
-        else:
-            self.last_good = self._process.now
+        now = self._process.now
+        error = self._filter.take(stamp, lambda: self._accept(stamp, *value), now)
+        if error is not None:
+            self._report(stamp, error)
+
+    def refuse(self, stamp, error):
+        """What was accepted, but not in the end."""
+        self._filter.refuse(error)
+        self._report(stamp, error)
 
     @property
     def age(self):
-        return self._process.now - self.last_good
+        return self._filter.age(self._process.now)
+
+    def _report(self, stamp, error):
+        self.refusals.append((self._process.now, self._filter.last_refusal))
+        self._refuse(stamp, error)

@@ -1,80 +1,107 @@
-"""What the trajectory node does (manipulator/nodes/trajectory_node.py), without ROS."""
+"""The process of the motion supervisor, with its thread for plans."""
 
+from concurrent.futures import Future
+from threading import Event
+
+from manipulator.errors import ManipulatorError
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.motion_status import MotionStatus
-from manipulator.trajectory.pilot import Pilot
-from manipulator.trajectory.teleop import Teleop
+from manipulator.trajectory.supervisor import Supervisor
+from manipulator.trajectory.worker import Effort, Job
 from world.intake import Intake
 from world.timeline import Process
 
 DT = 0.01
-DELAY = 0.06
+PLANNING_S = 0.02
 
 
-class Supervisor(Process):
-    """Goals, twists, poses and the bridge's word in; setpoints out.
+class Thread:
+    """Works tasks out one after the other, each in `seconds`, also while its process is frozen."""
 
-    ages: of each setpoint when it went out, s.
+    is_beside = True
+
+    def __init__(self, timeline, seconds=PLANNING_S):
+        self.seconds = seconds
+        self._timeline = timeline
+        self._free_at = timeline.now
+
+    def submit(self, task):
+        future, cancelled = Future(), Event()
+        self._free_at = max(self._free_at, self._timeline.now) + self.seconds
+        wait = self._free_at - self._timeline.now
+        self._timeline.after(wait, lambda: self._work_out(task, future, cancelled))
+        return Job(future, cancelled.set)
+
+    def _work_out(self, task, future, cancelled):
+        if future.set_running_or_notify_cancel():
+            try:
+                future.set_result(task(Effort(is_cancelled=cancelled.is_set)))
+            except ManipulatorError as error:
+                future.set_exception(error)
+
+
+class SupervisorProcess(Process):
+    """Goals, paths, twists, poses, joints and the bridge's word in; setpoints and statuses out.
+
+    statuses: as they were published, with their times. ages: of each setpoint when it went out, s.
     """
 
     def __init__(self, timeline, machine, setpoints):
         super().__init__(timeline)
-        self.pilot = Pilot(machine, DT)
-        self.teleop = Teleop(self.pilot, DELAY)
+        self.thread = Thread(timeline)
+        self.core = Supervisor(machine, DT, worker=self.thread)
         self.statuses, self.ages = [], []
-        self._seen = None
         self.pause_in_next_tick = 0.0
         self._setpoints = setpoints
-        self._state_heard, self._ticked_at = float('-inf'), self.now
-        self.on_goal = Intake(self, self._take_goal, self._refuse_goal)
-        self.on_pose = Intake(self, lambda stamp, pose: self.pilot.note_pose(pose))
-        self.on_joints = Intake(self, lambda stamp, joints: self._take_joints(joints))
+        self.on_goal = Intake(self, self._take_goal, self._refuse)
+        self.on_path = Intake(self, self._take_path, self._refuse)
+        self.on_pose = Intake(self, lambda stamp, pose: self.core.note_pose(pose, self.now))
+        self.on_joints = Intake(self, lambda stamp, joints: self.core.note_joints(joints))
         self.on_twist = Intake(self, self._take_twist)
         self.every(DT, self._tick)
 
-    def on_machine_state(self, word, is_followed, is_measured):
-        self._state_heard = self.now
-        self.pilot.note_machine_state(word, is_followed, is_measured)
-        self._note_status()
+    @property
+    def pilot(self):
+        return self.core.pilot
 
-    def _take_joints(self, joints):
-        if joints is not None:
-            self.pilot.note_joints(joints)
+    @property
+    def teleop(self):
+        return self.core.teleop
+
+    def on_machine_state(self, word, is_followed, is_measured):
+        self.core.note_machine_state(word, is_followed, is_measured, self.now)
+        self._publish_news()
 
     def _take_goal(self, stamp, pose):
-        self.pilot.player.pursue(Goal(self.pilot.machine.frames.pivot(pose), stamp))
+        refuse = self._later(self.on_goal, stamp)
+        self.core.pursue(Goal(pose, stamp), refuse, self.now)
 
-    def _refuse_goal(self, stamp, error):
-        self._say(MotionStatus(self.pilot.status.mode, 'refused', stamp, str(error)))
+    def _take_path(self, stamp, path):
+        self.core.follow(path, self._later(self.on_path, stamp), self.now)
+
+    def _later(self, intake, stamp):
+        return lambda error: intake.refuse(stamp, error)
+
+    def _refuse(self, stamp, error):
+        self.core.refuse(stamp, error)
+        self._publish_news()
 
     def _take_twist(self, stamp, source, twist):
         self.teleop.hear(source, twist, '', self.now)
 
     def _tick(self):
-        since_last, self._ticked_at = self.now - self._ticked_at, self.now
-        self._state_heard += max(since_last - DT, 0.0)
-        self.pilot.note_stall(since_last)
-        self.pilot.note_silence(self.on_pose.age)
-        self.pilot.note_bridge_silence(self.now - self._state_heard)
-        self.teleop.drive(self.now)
-        pose, stamp, began = self.pilot.step(), self.stamp, self.now
+        self.core.begin_tick(self.now)
+        stamp = self.stamp
         pause, self.pause_in_next_tick = self.pause_in_next_tick, 0.0
         if pause:
             self.freeze(pause)
-        self.handle(lambda: self._send(pose, stamp, began))
+        self.handle(lambda: self._end_tick(stamp))
 
-    def _send(self, pose, stamp, began):
-        self.pilot.note_stall(self.now - began)
-        if pose is not None and self.pilot.is_driving:
+    def _end_tick(self, stamp):
+        pose = self.core.end_tick(self.now)
+        if pose is not None:
             self.ages.append(self.stamp - stamp)
             self._setpoints.send(stamp, pose)
-        self._note_status()
+        self._publish_news()
 
-    def _note_status(self):
-        if self.pilot.status != self._seen:
-            self._seen = self.pilot.status
-            self._say(self._seen)
-
-    def _say(self, status):
-        if not self.statuses or status != self.statuses[-1][1]:
-            self.statuses.append((self.now, status))
+    def _publish_news(self):
+        self.statuses += [(self.now, status) for status in self.core.news.take()]

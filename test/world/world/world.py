@@ -8,14 +8,18 @@ from bridge.driver import BoardDriver
 from bridge.messages import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
+from manipulator.trajectory.path import Tolerance
+from manipulator.trajectory.path_planning import PathGoal
+from manipulator.trajectory.path_timing import PathRequest
 from world.board import BoardProcess, Cable
 from world.bridge import Bridge
 from world.kinematics import Forward, Inverse
-from world.supervisor import Supervisor
+from world.supervisor import SupervisorProcess
 from world.timeline import Link, Process, Timeline
 
 PATIENCE = 20.0
 TWIST_PERIOD = 1 / 30
+PATH_TOLERANCE = Tolerance(1e-4, np.radians(0.1))
 MEASUREMENTS = 5
 """Depth of the measurements' links; commands have 1 (manipulator/nodes/qos.py)."""
 
@@ -34,7 +38,7 @@ class World:
         self.board = BoardProcess(self.timeline, fake)
         self.cable = self.board.cable = Cable(self.timeline, self.board)
         nobody = self.user
-        names = ('setpoint', 'commands', 'words', 'goals', 'twists')
+        names = ('setpoint', 'commands', 'words', 'goals', 'paths', 'twists')
         self.links = {name: Link(nobody, None) for name in names}
         deep = ('pose', 'joints_ik', 'joints_pose', 'joints')
         self.links |= {name: Link(nobody, None, depth=MEASUREMENTS) for name in deep}
@@ -45,10 +49,12 @@ class World:
     # Processes: each start takes the place of the one before, which is dead
 
     def start_supervisor(self):
-        new = self.supervisor = Supervisor(self.timeline, self.machine, self.links['setpoint'])
+        setpoints = self.links['setpoint']
+        new = self.supervisor = SupervisorProcess(self.timeline, self.machine, setpoints)
         for link, accept in (
             ('words', new.on_machine_state),
             ('goals', new.on_goal),
+            ('paths', new.on_path),
             ('twists', new.on_twist),
             ('pose', new.on_pose),
             ('joints', new.on_joints),
@@ -167,9 +173,19 @@ class World:
         self.links['goals'].send(stamp, pose)
         return stamp
 
+    def send_path(self, poses, speed=0.02):
+        """Poses (n,) of the platform; as `send_goal`."""
+        stamp = self.user.stamp
+        request = PathRequest(poses, speed, PATH_TOLERANCE)
+        self.links['paths'].send(stamp, PathGoal(stamp, lambda: request))
+        return stamp
+
     def go_to(self, pose):
         """Waits until the goal is reached, or anything else came of it; the status then."""
-        stamp = self.send_goal(pose)
+        return self.end_of(self.send_goal(pose))
+
+    def end_of(self, stamp):
+        """Waits until a goal or path is over; the status then."""
         ends = ('reached', 'refused', 'stopped')
         self.wait(
             'end of the goal',

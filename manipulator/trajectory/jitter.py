@@ -1,6 +1,5 @@
 """How late the ticks of a loop come."""
 
-import time
 from collections import deque
 
 
@@ -12,9 +11,8 @@ class Jitter:
         self._last: float | None = None
         self._lateness: deque[float] = deque(maxlen=1000)
 
-    def tick(self) -> float:
+    def tick(self, now: float) -> float:
         """Notes that a tick begins now; returns the seconds since the last one, 0 at first."""
-        now = time.monotonic()
         elapsed = 0.0 if self._last is None else now - self._last
         if self._last is not None:
             self._lateness.append(abs(elapsed - self._period))

@@ -1,0 +1,101 @@
+"""The path that is being worked out, while the machine goes on with what it does.
+
+A path is expected from its arrival until it has been worked out; then it is pursued like a goal.
+Whatever newer command comes meanwhile takes its place.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from manipulator.arrays import Array
+from manipulator.errors import ManipulatorError, Refused
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.motion_status import MotionStatus
+from manipulator.trajectory.path_timing import PathRequest, TimedPath, plan_path
+from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.player import Player
+from manipulator.trajectory.worker import Effort, Job, Worker
+
+OVERTAKEN = 'a newer command came while the path was worked out'
+
+
+@dataclass(frozen=True, eq=False)
+class PathGoal:
+    """A path to drive, known to its sender by the stamp of the message.
+
+    read: what was asked for; called where the path is worked out, because thousands of poses take
+    their time; raises InvalidInput. is_of_platform: the poses are the platform's in the base
+    frame, else the pivot's in the work frame.
+    """
+
+    stamp: float
+    read: Callable[[], PathRequest]
+    is_of_platform: bool = True
+
+    def planned(
+        self, machine: Machine, near: Array, dt: float, effort: Effort
+    ) -> TimedPath | Pose:
+        """See `plan_path`."""
+        request = self.read()
+        if self.is_of_platform:
+            request = replace(request, poses=machine.frames.pivot(request.poses))
+        return plan_path(machine, request, near, dt, effort)
+
+
+class PathPlanning:
+    """The newest path that is expected, if any; `step` is called at every tick."""
+
+    def __init__(self, pilot: Pilot, dt: float, worker: Worker) -> None:
+        self._pilot, self._dt, self._worker = pilot, dt, worker
+        self._stamp = 0.0
+        self._job: Job[TimedPath | Pose] | None = None
+
+    def begin(self, path: PathGoal) -> None:
+        """Has it worked out, instead of the one before; Refused as `Player.expect`."""
+        player, machine = self._pilot.player, self._pilot.machine
+        near, dt = player.joints, self._dt
+        player.expect(path.stamp)
+        self.cancel()
+        try:
+            self._job = self._worker.submit(lambda e: path.planned(machine, near, dt, e))
+            self._stamp = path.stamp
+        except Refused as error:
+            player.refuse(path.stamp, str(error))
+
+    def step(self) -> MotionStatus | None:
+        """Pursues the path once it is worked out; what became of one that was overtaken."""
+        if self._job is None:
+            return None
+        if not self._is_expected:
+            self.cancel()
+            return MotionStatus(self._pilot.status.mode, 'stopped', self._stamp, OVERTAKEN)
+        if self._job.is_done:
+            job, self._job = self._job, None
+            self._pursue(job, self._pilot.player)
+        return None
+
+    def cancel(self) -> None:
+        """Nobody waits for it any more."""
+        if self._job is not None:
+            self._job.cancel()
+            self._job = None
+
+    def _pursue(self, job: 'Job[TimedPath | Pose]', player: Player) -> None:
+        try:
+            outcome = job.result()
+        except ManipulatorError as error:
+            player.refuse(self._stamp, str(error))
+            return
+        if isinstance(outcome, Pose):
+            player.pursue(Goal(outcome, self._stamp))
+        else:
+            player.pursue(Goal(outcome.at(0.0).pose, self._stamp, then=outcome))
+
+    @property
+    def _is_expected(self) -> bool:
+        try:
+            return self._pilot.player.expected == self._stamp
+        except Refused:
+            return False

@@ -1,0 +1,185 @@
+"""The motion supervisor: commands, measurements and the bridge's word in, one setpoint a tick out.
+
+It joins who may drive (pilot.py), who jogs (teleop.py), paths that are being worked out and
+commands that came too early, in the order that a tick has.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from manipulator.arrays import Array
+from manipulator.errors import ManipulatorError, NoSolution, Refused
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.early_command import EarlyCommand
+from manipulator.trajectory.following import Tolerances
+from manipulator.trajectory.goal import Goal, Motion
+from manipulator.trajectory.jitter import Jitter
+from manipulator.trajectory.motion_status import MotionNews, MotionStatus
+from manipulator.trajectory.path_planning import PathGoal, PathPlanning
+from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.teleop import Teleop
+from manipulator.trajectory.worker import InPlace, Worker
+
+MEASUREMENT_DELAY = 0.06
+"""Seconds from a measured pose to the moment that its correction moves the joints, by default."""
+
+Refuse = Callable[[ManipulatorError], object]
+"""Is told why a command that was taken came to nothing before it began."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """To a request: whether it is obeyed, and in words what will happen, or why it will not."""
+
+    is_obeyed: bool
+    text: str
+
+
+class Supervisor:
+    """One machine's; poses are the platform's in the base frame, unless it says otherwise.
+
+    Times are monotonic, in seconds; stamps are those of the messages, and name their commands. It
+    is called from one thread. Commands raise Refused where nobody may drive; what comes while the
+    machine is about to be taken over waits for that (early_command.py).
+    """
+
+    def __init__(
+        self,
+        machine: Machine,
+        dt: float,
+        tolerances: Tolerances | None = None,
+        worker: Worker | None = None,
+        delay: float = MEASUREMENT_DELAY,
+    ) -> None:
+        """tolerances, worker: see `Pilot`; delay: see `Teleop`."""
+        self.pilot = Pilot(machine, dt, tolerances, worker)
+        self.teleop = Teleop(self.pilot, delay)
+        self.jitter = Jitter(dt)
+        self.news = MotionNews()
+        self._dt = dt
+        self._paths = PathPlanning(self.pilot, dt, worker or InPlace())
+        self._early = EarlyCommand()
+        self._state_at = self._pose_at = self._tick_at = float('-inf')
+        self._pose: Pose | None = None
+
+    # What is reported
+
+    def note_machine_state(
+        self, state: str, is_followed: bool, is_measured: bool, now: float
+    ) -> None:
+        """What the bridge says: see `Pilot`. A stop ends what waits."""
+        self._state_at = now
+        self.pilot.note_machine_state(state, is_followed, is_measured)
+        self._early.poll(now)
+        self.news.look(self.pilot.status)
+
+    def note_joints(self, joints: Array | None) -> None:
+        """Where the joints (n,) are; None, not known of all of them, changes nothing."""
+        if joints is not None:
+            self.pilot.note_joints(joints)
+
+    def note_pose(self, T_base_platform: Pose, now: float) -> None:
+        """Where the platform is."""
+        self.pilot.note_pose(T_base_platform)
+        self._pose_at = now
+
+    # What is asked for
+
+    def pursue(self, goal: Goal, refuse: Refuse, now: float, is_of_platform: bool = True) -> None:
+        """A goal: the platform's pose in the base frame, or the pivot's in the work frame."""
+
+        def act() -> None:
+            frames = self.pilot.machine.frames
+            pose = frames.pivot(goal.pose) if is_of_platform else goal.pose
+            self.pilot.player.pursue(replace(goal, pose=pose))
+
+        self._early.take(act, refuse, now)
+
+    def follow(self, path: PathGoal, refuse: Refuse, now: float) -> None:
+        """A path: it is worked out, then driven like a goal, unless a newer command comes."""
+        self._early.take(lambda: self._paths.begin(path), refuse, now)
+
+    def home(self, stamp: float, now: float) -> None:
+        """A goal at home, along a line or else by a joint move."""
+        kinematics = self.pilot.machine.kinematics
+        self._go(kinematics.home, kinematics.inverse(kinematics.home), stamp, now)
+
+    def park(self, stamp: float, now: float) -> None:
+        """As `home`, to where the servos are switched on and off."""
+        machine = self.pilot.machine
+        if machine.park is None:
+            raise Refused('the machine file has no usable park position (section servos)')
+        try:
+            pose = machine.kinematics.forward(machine.park).pose
+        except NoSolution as error:
+            raise Refused(f'the park position is no pose that can be trusted: {error}') from error
+        self._go(pose, machine.park, stamp, now)
+
+    def stop(self) -> None:
+        """Brakes along the way, then holds; whoever jogs is not heard until he lets go."""
+        self._early.drop('stopped before it began')
+        self.pilot.player.stop()
+        self.teleop.stop()
+
+    def start_cycle(self, made: Callable[[Pose], Cycle], stamp: float) -> None:
+        """The cycle that is made about the present pose; `cycle_answer` says what comes of it."""
+        player = self.pilot.player
+        player.start_cycle(made(player.state.pose), stamp)
+
+    def cycle_answer(self, stamp: float) -> Answer | None:
+        """Whether the cycle of that stamp has begun, or why not; None while it is on its way."""
+        status = self.pilot.status
+        if status.goal_stamp == stamp and status.result == 'moving':
+            return Answer(True, 'cycling until stopped')
+        if status.goal_stamp == stamp and status.result in ('refused', 'stopped'):
+            return Answer(False, status.reason or status.result)
+        if self._is_newest(stamp):
+            return None
+        return Answer(False, 'a newer command came before it began')
+
+    def refuse(self, stamp: float, error: ManipulatorError) -> None:
+        """Makes it news that the goal or path of that stamp came to nothing."""
+        self.news.add(MotionStatus(self.pilot.status.mode, 'refused', stamp, str(error)))
+
+    # The tick
+
+    def begin_tick(self, now: float) -> None:
+        """Advances by one tick; take the setpoint's stamp before `end_tick`."""
+        since_last, self._tick_at = self.jitter.tick(now), now
+        # What the bridge said while this process stood still is not heard yet.
+        self._state_at += max(since_last - self._dt, 0.0)
+        self.pilot.note_stall(since_last)
+        self.pilot.note_silence(now - self._pose_at)
+        self.pilot.note_bridge_silence(now - self._state_at)
+        self.teleop.drive(now)
+        overtaken = self._paths.step()
+        if overtaken is not None:
+            self.news.add(overtaken)
+        self._early.poll(now)
+        self._pose = self.pilot.step()
+
+    def end_tick(self, now: float) -> Pose | None:
+        """The setpoint, None while nobody drives or where the tick took too long.
+
+        Frozen before its stamp was taken, it is late; frozen from then on, its stamp tells.
+        """
+        self.pilot.note_stall(now - self._tick_at)
+        self.news.look(self.pilot.status)
+        return self._pose if self.pilot.is_driving else None
+
+    def close(self) -> None:
+        """Gives up the path that is being worked out."""
+        self._paths.cancel()
+
+    def _go(self, pose: Pose, joints: Array, stamp: float, now: float) -> None:
+        """To joints (n,) at a pose of the pivot in the work frame."""
+        goal = Goal(pose, stamp, motion=Motion.ANY, joints=joints)
+        self.pursue(goal, lambda error: self.refuse(stamp, error), now, is_of_platform=False)
+
+    def _is_newest(self, stamp: float) -> bool:
+        try:
+            return self.pilot.player.newest_stamp == stamp
+        except Refused:
+            return False
