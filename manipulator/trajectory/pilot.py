@@ -5,6 +5,7 @@ ends that drops every goal; what comes after begins where the joints then are.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -45,6 +46,9 @@ PRESENT = 0.1
 
 MISFITS = 50
 """Poses in a row that do not fit the joints before that is said: some are only late."""
+
+RESULTS = ('reached', 'refused', 'stopped')
+"""What became of a goal: reported until the next, also once the machine is taken over again."""
 
 DISABLED = MotionStatus('disabled', 'idle', 0.0, 'the servos are not enabled')
 CONNECTING = MotionStatus('disabled', 'idle', 0.0, 'the board does not follow setpoints yet')
@@ -193,7 +197,7 @@ class Pilot:
 
     def step(self) -> Pose | None:
         """Advances by one tick: the pose to command, None while nobody drives."""
-        if self._next_frames is not None and (self._player is None or self._player.is_at_rest):
+        if self._next_frames is not None and self._is_settled:
             self._take_frames(self._next_frames)
         if self._following is not None and self._following.trouble:
             self.release(self._following.trouble)
@@ -206,6 +210,15 @@ class Pilot:
             words = f'{missing}{self._distance_words()}' if missing else ''
             self.status = self._arrival.judged(self._player.status, words) or self.status
         return self.machine.frames.platform(pose)
+
+    @property
+    def _is_settled(self) -> bool:
+        """Whether nothing moves, and what became of the last goal has been reported."""
+        if self._player is None:
+            return True
+        status = self._player.status
+        is_awaited = self._is_followed and status.result == 'reached'
+        return self._player.is_at_rest and (self._arrival.has_judged(status) or not is_awaited)
 
     def _distance_words(self) -> str:
         """How far the measured platform or tool is from the commanded pose."""
@@ -225,6 +238,8 @@ class Pilot:
         player = self._player = Player(self.machine, pose, joints, self._dt, self._worker)
         player.override(self._override)
         player.pause(self._is_paused)
+        if self.status.result in RESULTS:
+            player.status = replace(self.status, mode=player.status.mode)
         kinematics = self.machine.kinematics
         self._following = Following(
             kinematics.joint_names, kinematics.joint_unit, self._tolerances, self._dt
