@@ -48,7 +48,7 @@ MISFITS = 50
 """Poses in a row that do not fit the joints before that is said: some are only late."""
 
 RESULTS = ('reached', 'refused', 'stopped')
-"""What became of a goal: reported until the next, also once the machine is taken over again."""
+"""What became of a goal: still reported where a machine that held is taken over again at once."""
 
 DISABLED = MotionStatus('disabled', 'idle', 0.0, 'the servos are not enabled')
 CONNECTING = MotionStatus('disabled', 'idle', 0.0, 'the board does not follow setpoints yet')
@@ -120,10 +120,13 @@ class Pilot:
         """What the bridge says: its word, whether the board follows setpoints and measures."""
         self._is_measured = is_measured
         is_lost = state not in DRIVABLE or (state == HOLDING and state != self._state)
+        is_new = state in DRIVABLE and self._state not in DRIVABLE
         was_followed, self._state, self._is_followed = self._is_followed, state, is_followed
         if is_lost:
             self._forget_misfit()
             self.release(f'the machine is {state}')
+        elif self._player is None and is_new:
+            self.status = DISABLED
         elif self._player is not None and is_followed and not was_followed:
             self.status = self._player.status
 

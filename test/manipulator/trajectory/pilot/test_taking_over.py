@@ -97,6 +97,15 @@ def test_what_became_of_a_goal_is_still_said_once_the_machine_is_taken_over_agai
     assert (moving.status.result, moving.status.goal_stamp) == ('reached', 8.0)
 
 
+def test_a_machine_that_is_enabled_anew_is_idle(moving):
+    moving.note_machine_state('disarmed', is_followed=False)
+    moving.note_machine_state('arming', is_followed=False)
+    assert moving.status.result == 'stopped'
+    moving.enable_at(ELSEWHERE)
+    moving.run(20)
+    assert (moving.status.mode, moving.status.result) == ('hold', 'idle')
+
+
 @pytest.mark.parametrize(
     ('state', 'way_out'),
     [
