@@ -168,4 +168,6 @@ class Planning:
         if own is not None:
             return own
         times = np.linspace(playing.time, begin, LEADS[self._attempts] + 1)
-        return self._machine.kinematics.inverse_along(playing.plan.at(times).pose, joints)[-1]
+        poses = playing.plan.at(times).pose
+        ahead: Array = self._machine.kinematics.inverse_along(poses, joints)[-1]
+        return ahead
