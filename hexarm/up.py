@@ -187,7 +187,7 @@ def _go_to_park(client: 'Client') -> None:
 def _may_let_go(client: 'Client', stop: StopSignal) -> bool:
     """Whether somebody at a terminal confirms that the servos may be switched off here."""
     if not sys.stdin.isatty():
-        print('the servos stay on, where they are: hexarm disable switches them off', flush=True)
+        print('the servos stay on: the board does what on_link_loss says', flush=True)
         return False
     print('The servos hold. Ctrl-C switches them off here: an arm may fall.', flush=True)
     stop.is_set = False

@@ -116,6 +116,10 @@ class Arrival:
         self._judged: MotionStatus | None = None
         self._waited = 0
 
+    def has_judged(self, status: MotionStatus) -> bool:
+        """Whether what is to be reported of a status has been."""
+        return status is self._judged
+
     def judged(self, status: MotionStatus, missing: str) -> MotionStatus | None:
         """What is to be reported of a status that may be new, once a tick; None for nothing new.
 

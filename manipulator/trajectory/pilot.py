@@ -5,6 +5,7 @@ ends that drops every goal; what comes after begins where the joints then are.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -45,6 +46,9 @@ PRESENT = 0.1
 
 MISFITS = 50
 """Poses in a row that do not fit the joints before that is said: some are only late."""
+
+RESULTS = ('reached', 'refused', 'stopped')
+"""What became of a goal: still reported where a machine that held is taken over again at once."""
 
 DISABLED = MotionStatus('disabled', 'idle', 0.0, 'the servos are not enabled')
 CONNECTING = MotionStatus('disabled', 'idle', 0.0, 'the board does not follow setpoints yet')
@@ -116,10 +120,13 @@ class Pilot:
         """What the bridge says: its word, whether the board follows setpoints and measures."""
         self._is_measured = is_measured
         is_lost = state not in DRIVABLE or (state == HOLDING and state != self._state)
+        is_new = state in DRIVABLE and self._state not in DRIVABLE
         was_followed, self._state, self._is_followed = self._is_followed, state, is_followed
         if is_lost:
             self._forget_misfit()
             self.release(f'the machine is {state}')
+        elif self._player is None and is_new:
+            self.status = DISABLED
         elif self._player is not None and is_followed and not was_followed:
             self.status = self._player.status
 
@@ -193,7 +200,7 @@ class Pilot:
 
     def step(self) -> Pose | None:
         """Advances by one tick: the pose to command, None while nobody drives."""
-        if self._next_frames is not None and (self._player is None or self._player.is_at_rest):
+        if self._next_frames is not None and self._is_settled:
             self._take_frames(self._next_frames)
         if self._following is not None and self._following.trouble:
             self.release(self._following.trouble)
@@ -206,6 +213,15 @@ class Pilot:
             words = f'{missing}{self._distance_words()}' if missing else ''
             self.status = self._arrival.judged(self._player.status, words) or self.status
         return self.machine.frames.platform(pose)
+
+    @property
+    def _is_settled(self) -> bool:
+        """Whether nothing moves, and what became of the last goal has been reported."""
+        if self._player is None:
+            return True
+        status = self._player.status
+        is_awaited = self._is_followed and status.result == 'reached'
+        return self._player.is_at_rest and (self._arrival.has_judged(status) or not is_awaited)
 
     def _distance_words(self) -> str:
         """How far the measured platform or tool is from the commanded pose."""
@@ -225,6 +241,8 @@ class Pilot:
         player = self._player = Player(self.machine, pose, joints, self._dt, self._worker)
         player.override(self._override)
         player.pause(self._is_paused)
+        if self.status.result in RESULTS:
+            player.status = replace(self.status, mode=player.status.mode)
         kinematics = self.machine.kinematics
         self._following = Following(
             kinematics.joint_names, kinematics.joint_unit, self._tolerances, self._dt

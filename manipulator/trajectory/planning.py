@@ -113,7 +113,9 @@ class Planning:
         if self._newest is not None and self._request is None and self.ready is None:
             goal, self._newest = self._newest, None
             self._attempts = self._ticks = 0
-            self._begin(goal, playing, joints)
+            failed = self._begun(goal, playing, joints)
+            if failed is not None:
+                return failed
         self._ticks += 1
         request = self._request
         if request is None or not request.job.is_done:
@@ -131,12 +133,19 @@ class Planning:
         if self._attempts == len(LEADS):
             late = Refused('its plan came too late to be joined in motion')
             return Failed(request.goal, late, is_final=False)
-        self._request = self._submitted(self._worker, request.goal, playing, joints)
+        return self._begun(request.goal, playing, joints)
+
+    def _begun(self, goal: Goal, playing: Playing, joints: Array) -> Failed | None:
+        """Begins to plan; what the worker does not take is refused."""
+        try:
+            self._begin(goal, playing, joints)
+        except Refused as error:
+            return Failed(goal, error, is_final=True)
         return None
 
     def _begin(self, goal: Goal, playing: Playing, joints: Array) -> None:
         """Plans within this tick where that is cheap enough, else beside it."""
-        if self._quick is not None and self._worker.is_beside:
+        if self._quick is not None and self._worker.is_beside and self._attempts == 0:
             quick = self._submitted(self._quick, goal, playing, joints)
             if not quick.is_too_long:
                 self._request = quick
@@ -148,10 +157,17 @@ class Planning:
         lead = LEADS[self._attempts] if worker.is_beside and not playing.is_hold else 0
         begin = min(playing.time + lead * self._dt, playing.plan.duration)
         if lead:
-            times = np.linspace(playing.time, begin, lead + 1)
-            joints = self._machine.kinematics.inverse_along(playing.plan.at(times).pose, joints)[
-                -1
-            ]
+            joints = self._joints_ahead(playing, begin, joints)
         start = Start(playing.plan.at(begin), joints, self._dt)
         job = worker.submit(partial(plan_goal, self._machine, start, goal))
         return Planned(goal, start, playing, begin, job)
+
+    def _joints_ahead(self, playing: Playing, begin: float, joints: Array) -> Array:
+        """The joints (n,) at time `begin` of what is played, where `joints` are those of now."""
+        own = playing.plan.joints_at(begin)
+        if own is not None:
+            return own
+        times = np.linspace(playing.time, begin, LEADS[self._attempts] + 1)
+        poses = playing.plan.at(times).pose
+        ahead: Array = self._machine.kinematics.inverse_along(poses, joints)[-1]
+        return ahead

@@ -8,15 +8,17 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
-from manipulator.errors import ManipulatorError
+from manipulator.errors import ManipulatorError, Refused
 from manipulator.pose import Pose
 from manipulator.teleop.feedback import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.jogging import Wish
-from manipulator.trajectory.planning import LEADS
+from manipulator.trajectory.joint_move import plan_joint_move
+from manipulator.trajectory.planning import LEADS, Planning
 from manipulator.trajectory.player import Player
+from manipulator.trajectory.playing import Playing
 from manipulator.trajectory.worker import Effort, Job
 
 DT = 0.01
@@ -270,3 +272,41 @@ def test_a_machine_that_is_let_go_waits_for_no_plan():
     slow.run(60)
     assert slow.worker.cancelled == 1
     assert slow.steps.max() == 0.0
+
+
+@pytest.mark.parametrize('accepted', [0, 1])
+def test_a_goal_that_the_worker_does_not_take_is_refused_and_the_machine_goes_on(accepted):
+    slow = Slow(2)
+    slow.player.pursue(Goal(pose(x=0.012), 1.0))
+    slow.run(12)
+    submit, submitted = slow.worker.submit, []
+
+    def full(task):
+        submitted.append(task)
+        if len(submitted) > accepted:
+            raise Refused('8 plans wait already')
+        return submit(task)
+
+    slow.worker.submit, slow.worker.ticks = full, LEADS[0] + 2  # the first plan comes too late
+    slow.player.pursue(Goal(pose(y=0.006), 2.0))
+    slow.run(150)
+    assert len(submitted) == accepted + 1
+    assert ('refused', 2.0) in slow.reports
+    assert slow.reports[-1] == ('reached', 1.0)
+
+
+def test_a_goal_during_a_joint_move_is_planned_from_the_joints_that_the_move_has():
+    """Beside singular postures, which it passes, the poses alone do not tell them."""
+    arm = load('arm_6r')
+    begin = np.array([0.2, 0.6, -0.9, -1.0, 0.5, 2.0])
+    end = np.array([-0.2, 0.5, 0.6, 1.0, -0.5, 1.0])
+    move = plan_joint_move(arm, arm.kinematics.forward(begin).pose, begin, end)
+    playing, worker = Playing(move), Later(1)
+    for time in np.arange(DT, move.duration - LEADS[0] * DT, DT):
+        playing.time = time
+        planning = Planning(replace(arm, kinematics=Costly(arm.kinematics)), DT, worker)
+        planning.ask(Goal(arm.kinematics.home, 1.0))
+        planning.step(playing, move.joints_at(time))
+        _, task, *_ = worker.waiting[-1]
+        _, start, _ = task.args
+        assert start.joints == pytest.approx(move.joints_at(time + LEADS[0] * DT), abs=1e-6)

@@ -106,6 +106,19 @@ def test_joints_that_come_within_the_patience_reach_the_goal():
     assert arm.pilot.status.result == 'reached'
 
 
+def test_a_pivot_that_is_set_meanwhile_waits_for_what_becomes_of_the_goal():
+    arm = Machine('arm_6r_stepper', np.radians([0, 2.0, 0, 0, 0, 0]))
+    arm.pilot.set_pivot((0.0, 0.0, 0.1))
+    results, status = arm.go(arm.kinematics.home.moved([0.05, 0, 0, 0, 0, 0]))
+    assert results == ['moving', 'stopped']
+    assert status.goal_stamp == 1.0
+    arm.play[:] = 0.0
+    arm.pilot.set_pivot((0.0, 0.0, 0.2))
+    results, status = arm.go(arm.pilot.machine.kinematics.home)
+    assert results == ['moving', 'reached']
+    assert arm.pilot.machine.frames.T_platform_pivot.position[2] == pytest.approx(0.2)
+
+
 @pytest.mark.parametrize('name', ['robocake', 'stewart_6_6', 'arm_6r', 'ur5'])
 def test_default_tolerances_follow_from_unit_and_range(name):
     machine = load(name)

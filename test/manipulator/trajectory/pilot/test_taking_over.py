@@ -84,6 +84,28 @@ def test_goal_that_still_waited_when_the_machine_was_lost_is_named(driving):
     assert (driving.status.result, driving.status.goal_stamp) == ('stopped', 9.0)
 
 
+def test_what_became_of_a_goal_is_still_said_once_the_machine_is_taken_over_again(moving):
+    moving.note_machine_state('holding', is_followed=False)
+    moving.see(ELSEWHERE)
+    moving.note_machine_state('enabled', is_followed=True)
+    moving.run(20)
+    said = moving.status
+    assert (said.mode, said.result, said.goal_stamp) == ('hold', 'stopped', 7.0)
+    assert 'holding' in said.reason
+    moving.player.pursue(Goal(HOME, 8.0))
+    moving.run(200)
+    assert (moving.status.result, moving.status.goal_stamp) == ('reached', 8.0)
+
+
+def test_a_machine_that_is_enabled_anew_is_idle(moving):
+    moving.note_machine_state('disarmed', is_followed=False)
+    moving.note_machine_state('arming', is_followed=False)
+    assert moving.status.result == 'stopped'
+    moving.enable_at(ELSEWHERE)
+    moving.run(20)
+    assert (moving.status.mode, moving.status.result) == ('hold', 'idle')
+
+
 @pytest.mark.parametrize(
     ('state', 'way_out'),
     [
