@@ -105,8 +105,10 @@ def test_home_is_the_platforms_whatever_the_pivot(stage):
     stage.core.pilot.set_pivot([0.0, 0.0, 0.01])
     stage.run(2)
     stage.core.home(2.0, stage.now)
+    home = stage.machine.kinematics.home
+    assert at(stage.core.pilot.machine.frames.platform(stage.player.pursued), home)
     stage.run(200)
-    assert at(stage.pose, stage.machine.kinematics.home)
+    assert at(stage.pose, home)
 
 
 def test_home_that_waits_and_comes_to_nothing_is_news(stage):
