@@ -32,7 +32,7 @@ class PathGoal:
 
     stamp: float
     read: Callable[[], PathRequest]
-    is_of_platform: bool = True
+    is_of_platform: bool
 
     def planned(
         self, machine: Machine, near: Array, dt: float, effort: Effort

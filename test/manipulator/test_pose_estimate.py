@@ -77,3 +77,10 @@ def test_what_the_drives_stay_behind_by_is_taken_out():
     machine = replace(MACHINE, sag=lambda pose, joints: sag)
     solution = PoseEstimate(machine).update(JOINTS + sag)
     assert_same(solution.pose, HOME)
+
+
+def test_an_arm_beyond_its_range_is_where_its_joints_say():
+    arm = load('arm_6r')
+    joints = arm.joint_ranges[1] + 0.1
+    solution = PoseEstimate(arm).update(joints)
+    assert_same(solution.pose, arm.kinematics.forward(joints).pose)

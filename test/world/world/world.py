@@ -177,7 +177,7 @@ class World:
         """Poses (n,) of the platform; as `send_goal`."""
         stamp = self.user.stamp
         request = PathRequest(poses, speed, PATH_TOLERANCE)
-        self.links['paths'].send(stamp, PathGoal(stamp, lambda: request))
+        self.links['paths'].send(stamp, PathGoal(stamp, lambda: request, is_of_platform=True))
         return stamp
 
     def go_to(self, pose):

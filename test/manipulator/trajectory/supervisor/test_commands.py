@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
-from manipulator.errors import Refused
+from manipulator.errors import NoSolution, Refused
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.early_command import PATIENCE
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.supervisor import Supervisor
 
+MACHINE = load('robocake')
 HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))
 
 
@@ -47,6 +48,18 @@ def test_a_goal_that_comes_too_early_is_driven_once_the_machine_is_taken_over(st
     stage.is_followed = True
     stage.run(200)
     assert (stage.status.result, stage.refusals) == ('reached', [])
+
+
+def test_a_goal_that_waits_is_driven_also_where_the_bridge_has_nothing_new_to_say(stage):
+    stage.state = 'disarmed'
+    stage.tick()
+    stage.state, stage.does_pose_come = 'enabled', False
+    stage.tick()
+    stage.pursue(Goal(HIGHER, 1.0))
+    stage.tick()
+    stage.does_bridge_say, stage.does_pose_come = False, True
+    stage.run(100)
+    assert at(stage.pose, HIGHER)
 
 
 def test_a_goal_does_not_wait_for_longer_than_the_patience(stage):
@@ -86,6 +99,18 @@ def test_home_and_park_arrive_with_their_own_joints(staged, name):
     np.testing.assert_allclose(stage.player.joints, kinematics.inverse(kinematics.home), atol=1e-6)
 
 
+def test_home_is_the_platforms_whatever_the_pivot(stage):
+    stage.pursue(Goal(HIGHER, 1.0))
+    stage.run(200)
+    stage.core.pilot.set_pivot([0.0, 0.0, 0.01])
+    stage.run(2)
+    stage.core.home(2.0, stage.now)
+    home = stage.machine.kinematics.home
+    assert at(stage.core.pilot.machine.frames.platform(stage.player.pursued), home)
+    stage.run(200)
+    assert at(stage.pose, home)
+
+
 def test_home_that_waits_and_comes_to_nothing_is_news(stage):
     stage.is_followed = False
     stage.tick()
@@ -95,9 +120,20 @@ def test_home_that_waits_and_comes_to_nothing_is_news(stage):
 
 
 def test_park_of_a_machine_without_servos_is_refused():
-    machine = replace(load('robocake'), park=None)
     with pytest.raises(Refused, match='no usable park position'):
-        Supervisor(machine, 0.01).park(1.0, 0.0)
+        Supervisor(replace(MACHINE, park=None), 0.01).park(1.0, 0.0)
+
+
+def test_park_of_a_machine_whose_pose_there_is_unknown_is_refused():
+    class Lost:
+        def __getattr__(self, name):
+            return getattr(MACHINE.kinematics, name)
+
+        def forward(self, joints, near=None):
+            raise NoSolution('two assembly modes fit')
+
+    with pytest.raises(Refused, match='no pose that can be trusted: two assembly modes fit'):
+        Supervisor(replace(MACHINE, kinematics=Lost()), 0.01).park(1.0, 0.0)
 
 
 def test_stop_brakes_drops_what_waits_and_silences_the_stick(stage):
@@ -128,6 +164,17 @@ def test_a_cycle_is_answered_once_it_has_begun(slow):
     answer = slow.core.cycle_answer(5.0)
     assert answer.is_obeyed
     assert answer.text == 'cycling until stopped'
+
+
+@pytest.mark.parametrize('result', ['refused', 'reached'])
+def test_what_became_of_another_goal_is_no_answer_to_a_cycle(slow, result):
+    slow.pursue(Goal(HIGHER if result == 'reached' else HIGHER.moved(np.full(6, 0.1)), 4.0))
+    slow.run(200)
+    assert (slow.status.result, slow.status.goal_stamp) == (result, 4.0)
+    slow.core.start_cycle(small_cycle(0.001), 5.0)
+    assert slow.core.cycle_answer(5.0) is None
+    slow.run(1)
+    assert slow.core.cycle_answer(5.0) is None
 
 
 def test_a_cycle_beyond_the_reach_is_answered_with_the_reason(slow):

@@ -79,7 +79,7 @@ def test_a_path_that_cannot_be_driven_is_refused_and_nothing_moves(slow, poses, 
             raise InvalidInput('pose 2: y is nan')
         return PathRequest(poses, 0.02, TOLERANCE)
 
-    slow.follow(PathGoal(3.0, read))
+    slow.follow(PathGoal(3.0, read, is_of_platform=True))
     slow.run(30)
     (refused,) = [s for s in slow.statuses if s.result == 'refused']
     assert refused.goal_stamp == 3.0
@@ -121,7 +121,7 @@ def test_what_ends_the_motion_ends_the_path_before_it_began(slow, end):
         slow.state = 'fault'
     else:
         slow.core.teleop.hear('cmd_vel/joy', np.zeros(6) + 1e-4, '', slow.now)
-    slow.run(2)
+    slow.run(10)
     slow.state = 'enabled'
     slow.run(300)
     results = [s.result for s in slow.statuses if s.goal_stamp == 3.0]

@@ -98,6 +98,7 @@ def test_a_stop_of_the_machine_is_news_before_the_next_tick(moving):
 
 def test_refusals_are_news_and_counted_but_do_not_end_the_motion(moving):
     news = moving.core.news
+    assert (news.refusals, news.last_refusal) == (0, '')
     moving.core.refuse(8.0, InvalidInput('x is nan'))
     moving.core.refuse(8.0, InvalidInput('x is nan'))
     moving.core.refuse(9.0, InvalidInput('y is nan'))
