@@ -166,8 +166,15 @@ class BoardDriver:
             self.gate.restart()
             self._gripper.restart()
         if not is_enabled:
-            current = self.monitor.status
-            raise Refused(f'{current.word}{f" ({current.reason})" if current.reason else ""}')
+            raise Refused(self._why_not_enabled())
+
+    def _why_not_enabled(self) -> str:
+        current = self.monitor.status
+        if current.word == 'enabled':
+            is_stopping = self.session.is_stop_wanted
+            return 'a STOP is under way' if is_stopping else 'the board takes no setpoints now'
+        reason = f' ({current.reason})' if current.reason else ''
+        return f'{current.word}{reason}'
 
     # From the board
 

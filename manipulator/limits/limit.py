@@ -9,6 +9,8 @@ import numpy as np
 from manipulator.arrays import Array, Mask
 from manipulator.pose import Pose
 
+FEWEST_DIGITS, MOST_DIGITS = 4, 12
+
 
 class Limit(Protocol):
     """k values computed from a pose and its joints, each with its own range.
@@ -78,12 +80,20 @@ class Violation:
         """As 'leg 3: crank angle 3.92 rad outside [0.52, 3.67]'."""
         owner = f'{self.owner}: ' if self.owner else ''
         unit = f' {self.unit}' if self.unit else ''
-        return f'{owner}{self.quantity} {self.value:.4g}{unit} {_range_text(self.low, self.high)}'
+        digits = self._digits
+        return f'{owner}{self.quantity} {self.value:.{digits}g}{unit} {self._range_text(digits)}'
 
+    @property
+    def _digits(self) -> int:
+        """Four, or as many as tell the value from the bounds that it is beyond."""
+        for digits in range(FEWEST_DIGITS, MOST_DIGITS):
+            value, low, high = (f'{x:.{digits}g}' for x in (self.value, self.low, self.high))
+            if value not in (low, high):
+                return digits
+        return MOST_DIGITS
 
-def _range_text(low: float, high: float) -> str:
-    if not np.isfinite(high):
-        return f'below {low:.4g}'
-    if not np.isfinite(low):
-        return f'above {high:.4g}'
-    return f'outside [{low:.4g}, {high:.4g}]'
+    def _range_text(self, digits: int) -> str:
+        low, high = (f'{bound:.{digits}g}' for bound in (self.low, self.high))
+        if not np.isfinite(self.high):
+            return f'below {low}'
+        return f'outside [{low}, {high}]' if np.isfinite(self.low) else f'above {high}'

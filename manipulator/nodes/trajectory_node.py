@@ -1,12 +1,14 @@
 """The owner of the Cartesian state: goals in, one setpoint a tick out while enabled."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PointStamped, PoseStamped
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
@@ -51,6 +53,26 @@ GOAL_TOLERANCE = (
 GOAL_MOTION = 'how a machine at rest goes to goal_pose: line, joint, or any (a line where it can)'
 
 
+def motion_of(word: object) -> Motion:
+    """The way to a goal that the parameter names; Refused for another word."""
+    try:
+        return Motion(word)
+    except ValueError:
+        known = ', '.join(motion.value for motion in Motion)
+        raise Refused(f'parameter goal_motion: {word!r} is not one of {known}') from None
+
+
+def checked_parameters(parameters: Sequence[Parameter]) -> SetParametersResult:
+    """What the node answers to new values: those that it would refuse later are not taken."""
+    try:
+        for parameter in parameters:
+            if parameter.name == 'goal_motion':
+                motion_of(parameter.value)
+    except Refused as error:
+        return SetParametersResult(successful=False, reason=str(error))
+    return SetParametersResult(successful=True)
+
+
 class TrajectoryNode(Node):
     """goal_pose, pose, machine_state in; setpoint, motion_status out; see docs/interfaces.md."""
 
@@ -60,9 +82,10 @@ class TrajectoryNode(Node):
         rate = declare(self, 'rate', 100.0, 'setpoints per second (Hz)', (10.0, 500.0))
         tolerance = declare(self, 'following_tolerance', 0.0, TOLERANCE, (0.0, 10.0))
         goal_tolerance = declare(self, 'goal_tolerance', 0.0, GOAL_TOLERANCE, (0.0, 10.0))
-        declare(self, 'goal_motion', Motion.LINE.value, GOAL_MOTION, is_read_only=False)
+        motion_of(declare(self, 'goal_motion', Motion.LINE.value, GOAL_MOTION, is_read_only=False))
         delay = declare(self, 'measurement_delay', MEASUREMENT_DELAY, DELAY, (0.0, 1.0))
         singularity = declare(self, 'jog_singularity', JOG_SINGULARITIES[0], SINGULARITY)
+        self.add_on_set_parameters_callback(checked_parameters)
         dt, self._worker = 1.0 / rate, PlanningThread()
         machine = replace(load(name), jog_singularity=singularity)
         tolerances = Tolerances.of(machine, tolerance, goal_tolerance)
@@ -114,20 +137,17 @@ class TrajectoryNode(Node):
 
     def _on_goal(self, message: PoseStamped) -> None:
         pose = pose_of(message, (BASE_FRAME, WORK_FRAME))
+        motion = motion_of(self.get_parameter('goal_motion').value)
         self._supervisor.pursue(
-            Goal(pose, seconds(message.header.stamp), motion=self._goal_motion()),
+            Goal(
+                pose,
+                seconds(message.header.stamp),
+                motion=motion,
+            ),
             lambda error: self._goals.refuse(message, error),
             time.monotonic(),
             is_of_platform=message.header.frame_id != WORK_FRAME,
         )
-
-    def _goal_motion(self) -> Motion:
-        word = self.get_parameter('goal_motion').value
-        try:
-            return Motion(word)
-        except ValueError:
-            known = ', '.join(motion.value for motion in Motion)
-            raise Refused(f'parameter goal_motion: {word!r} is not one of {known}') from None
 
     def _on_bad_goal(self, message: PoseStamped, error: ManipulatorError) -> None:
         self._supervisor.refuse(seconds(message.header.stamp), error)

@@ -1,6 +1,7 @@
 """The services of the trajectory node: stop, home, park, pause, start_cycle, plan."""
 
 import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Thread
@@ -45,12 +46,13 @@ class TrajectoryServices:
         self._worker = worker
         self._cycle = CycleParameters(node)
         self._cycles: list[tuple[Call, float]] = []
-        self._plans: list[_PlanCall] = []
+        self._plan: _PlanCall | None = None
+        self._waiting: deque[Call] = deque()
         for name, act in (('stop', self._stop), ('home', self._home), ('park', self._park)):
             node.create_service(Trigger, f'~/{name}', _trigger(act))
         node.create_service(SetBool, '~/pause', self._on_pause)
         create_late_service(node, Trigger, '~/start_cycle', self._on_start_cycle)
-        create_late_service(node, GetPlan, '~/plan', self._on_plan)
+        create_late_service(node, GetPlan, '~/plan', self._waiting.append)
 
     def poll(self) -> None:
         """Answers what can be answered by now."""
@@ -60,9 +62,11 @@ class TrajectoryServices:
                 self._cycles.remove((call, stamp))
                 call.response.success, call.response.message = answer.is_obeyed, answer.text
                 call.send()
-        for plan in [p for p in self._plans if p.job.is_done]:
-            self._plans.remove(plan)
+        if self._plan is not None and self._plan.job.is_done:
+            plan, self._plan = self._plan, None
             self._answer_plan(plan)
+        if self._plan is None and self._waiting:
+            self._begin_plan(self._waiting.popleft())
 
     def _stop(self) -> str:
         self._supervisor.stop()
@@ -94,8 +98,11 @@ class TrajectoryServices:
         else:
             self._cycles.append((call, stamp))
 
-    def _on_plan(self, call: Call) -> None:
-        """The platform's poses on a move from start (from here, when it is all zero) to goal."""
+    def _begin_plan(self, call: Call) -> None:
+        """The platform's poses on a move from start (from here, when it is all zero) to goal.
+
+        One at a time: goals to drive to wait for no more than one such question.
+        """
         machine = self._supervisor.pilot.machine
         try:
             goal = goal_of(call.request.goal, machine.frames)
@@ -105,7 +112,7 @@ class TrajectoryServices:
             self._node.get_logger().warning(f'plan: {error}')
             call.send()
         else:
-            self._plans.append(_PlanCall(call, machine, goal, job))
+            self._plan = _PlanCall(call, machine, goal, job)
 
     def _answer_plan(self, plan: _PlanCall) -> None:
         machine, response = plan.machine, plan.call.response

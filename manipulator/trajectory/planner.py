@@ -18,7 +18,7 @@ from manipulator.trajectory.move import plan_move
 from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.straight import plan_straight
-from manipulator.trajectory.worker import Effort
+from manipulator.trajectory.worker import Effort, TooLong
 from manipulator.unit_hints import hint_at_metres
 
 ATTEMPTS = 8
@@ -189,4 +189,8 @@ def _way_out(machine: Machine, start: Start, goal: Goal, effort: Effort) -> str:
         move = _plan_joints(machine, start, goal, effort)
     except (Refused, Unreachable):
         return ''
+    except TooLong:
+        if effort.is_whole:
+            return ''
+        raise
     return f'; a joint move gets there in {move.duration:.1f} s (parameter goal_motion: joint)'

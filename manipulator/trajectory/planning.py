@@ -15,10 +15,10 @@ from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.plan import Plan
+from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.planner import Start, plan_goal
 from manipulator.trajectory.playing import Playing
-from manipulator.trajectory.worker import InPlace, Job, TooLong, Worker
+from manipulator.trajectory.worker import Effort, InPlace, Job, TooLong, Worker
 
 LEADS = (3, 12, 50)
 """Ticks after which a plan is to be joined in motion, at the first, second and third attempt."""
@@ -38,7 +38,7 @@ class Planned:
     """A plan for a goal, that begins at time `begin` of the plan `source`."""
 
     goal: Goal
-    start: Start
+    start: MotionState
     source: Playing
     begin: float
     job: Job[Plan]
@@ -46,7 +46,7 @@ class Planned:
     @property
     def is_from_rest(self) -> bool:
         """Whether it begins at rest."""
-        return self.start.state.is_at_rest
+        return self.start.is_at_rest
 
     @property
     def is_too_long(self) -> bool:
@@ -56,7 +56,7 @@ class Planned:
     def fits(self, playing: Playing) -> bool:
         """Whether it can still be begun from what is played now."""
         if playing.is_hold:
-            away = playing.state.pose.twist_to(self.start.state.pose)
+            away = playing.state.pose.twist_to(self.start.pose)
             return self.is_from_rest and float(np.abs(away).max()) < SAME_POSE
         return playing is self.source and playing.time <= self.begin
 
@@ -156,18 +156,33 @@ class Planning:
         """A plan under way that begins in a moment; joints (n,) are those of now."""
         lead = LEADS[self._attempts] if worker.is_beside and not playing.is_hold else 0
         begin = min(playing.time + lead * self._dt, playing.plan.duration)
-        if lead:
-            joints = self._joints_ahead(playing, begin, joints)
-        start = Start(playing.plan.at(begin), joints, self._dt)
-        job = worker.submit(partial(plan_goal, self._machine, start, goal))
-        return Planned(goal, start, playing, begin, job)
+        times = np.linspace(playing.time, begin, lead + 1)
+        ahead = _Ahead(playing.plan, times, playing.plan.at(begin), joints)
+        job = worker.submit(partial(self._plan, goal, ahead))
+        return Planned(goal, ahead.state, playing, begin, job)
 
-    def _joints_ahead(self, playing: Playing, begin: float, joints: Array) -> Array:
-        """The joints (n,) at time `begin` of what is played, where `joints` are those of now."""
-        own = playing.plan.joints_at(begin)
-        if own is not None:
-            return own
-        times = np.linspace(playing.time, begin, LEADS[self._attempts] + 1)
-        poses = playing.plan.at(times).pose
-        ahead: Array = self._machine.kinematics.inverse_along(poses, joints)[-1]
-        return ahead
+    def _plan(self, goal: Goal, ahead: '_Ahead', effort: Effort) -> Plan:
+        """What the worker does: no tick waits for the joints where the plan begins, either."""
+        effort.spend(len(ahead.times))
+        start = Start(ahead.state, ahead.joints_at_end(self._machine), self._dt)
+        return plan_goal(self._machine, start, goal, effort)
+
+
+@dataclass(frozen=True, eq=False)
+class _Ahead:
+    """Some moments (k,) of a plan, with the state at the last and the joints (n,) at the first."""
+
+    plan: Plan
+    times: Array
+    state: MotionState
+    joints: Array
+
+    def joints_at_end(self, machine: Machine) -> Array:
+        """The joints (n,) at the last of the moments."""
+        if len(self.times) == 1:
+            return self.joints
+        rows = self.plan.joints_at(self.times)
+        if rows is None:
+            rows = machine.kinematics.inverse_along(self.plan.at(self.times).pose, self.joints)
+        last: Array = rows[-1]
+        return last

@@ -33,6 +33,11 @@ class Effort:
         self._most = most
         self._is_cancelled = is_cancelled
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is all that a plan may cost, and not what a tick has room for."""
+        return self._most >= MOST_POSES
+
     def spend(self, poses: int) -> None:
         """Call before solving `poses`: TooLong above the limit, Cancelled after `cancel`."""
         self.poses += poses

@@ -130,6 +130,12 @@ def test_what_is_not_enabled_says_why_it_takes_no_command(rig):
         rig.command(rig.park)
 
 
+def test_a_command_while_a_stop_is_under_way_says_so(enabled):
+    enabled.driver.session.is_stop_wanted = True
+    with pytest.raises(Refused, match=r'^a STOP is under way$'):
+        enabled.command(enabled.park)
+
+
 def test_from_the_moment_a_stop_is_asked_for_no_command_is_admitted(enabled):
     enabled.driver.stop()
     with pytest.raises(Refused):

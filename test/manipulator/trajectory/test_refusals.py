@@ -62,7 +62,7 @@ def test_a_way_on_which_an_arm_would_have_to_turn_round_is_refused_before_it_tak
     motion = Player(arm, right, rest - turn, DT)
     drive(motion, Goal(left, 7.0))
     assert (motion.status.result, motion.status.goal_stamp) == ('refused', 7.0)
-    pattern = r'at 46 % of the line: joint 1: joint angle -2\.967 rad outside .*; a joint move .*'
+    pattern = r'at 46 % of the line: joint 1: joint angle -2\.9672 rad outside .*; a joint move .*'
     assert re.fullmatch(pattern, motion.status.reason)
 
 
