@@ -51,11 +51,42 @@ def test_a_frozen_process_breaks_no_limit(world, name, seconds):
     assert world.go_to(HIGHER).result == 'reached'
 
 
-def test_the_clock_of_one_computer_is_set_and_the_motion_goes_on(world):
-    world.send_goal(FAR)
-    world.run(0.2)
-    world.supervisor.clock_offset = 3600.0
-    world.wait('goal', lambda: world.status.result == 'reached')
+@pytest.mark.parametrize('name', PROCESSES)
+@pytest.mark.parametrize('step', [-3600.0, 3600.0])
+def test_the_clock_of_one_computer_is_set_and_the_motion_goes_on(world, ask, name, step):
+    ask.cycle()
+    world.wait('cycle', lambda: world.status.mode == 'cycle')
+    for offset in (step, 0.0):
+        getattr(world, name).clock_offset = offset
+        words, since = len(world.bridge.states), world.now
+        world.run(1.5)
+        assert world.status.mode == 'cycle'
+        assert len(world.bridge.states) == words
+        assert np.ptp(world.pulses(since), axis=0).max() > 20.0
+
+
+@pytest.mark.parametrize('name', PROCESSES)
+def test_a_process_that_ends_for_good_stops_the_machine(world, ask, name):
+    ask.cycle()
+    world.wait('cycle', lambda: world.status.mode == 'cycle')
+    getattr(world, name).kill()
+    world.run(1.5)
+    since = world.now
+    world.run(1.0)
+    pulses = world.pulses(since)
+    assert np.nanmax(np.abs(pulses - pulses[0])) <= 2.0
+
+
+@pytest.mark.parametrize('name', PROCESSES)
+def test_a_frozen_process_stops_the_machine_and_nothing_jumps_when_it_goes_on(world, ask, name):
+    ask.cycle()
+    world.wait('cycle', lambda: world.status.mode == 'cycle')
+    getattr(world, name).freeze(3.0)
+    world.run(1.5)
+    since = world.now
+    world.run(3.0)
+    pulses = world.pulses(since)
+    assert np.nanmax(np.abs(pulses - pulses[0])) <= 2.0
 
 
 def test_cable_pulled_and_put_back_needs_enable_and_nothing_resumes(world):
