@@ -18,6 +18,7 @@ MARK = f'HEXARM_TEST_RUN={os.getpid()}'
 os.environ['HEXARM_TEST_RUN'] = str(os.getpid())
 ROOT = Path(__file__).resolve().parents[2]
 
+
 @pytest.fixture(scope='session', autouse=True)
 def ports_of_their_own(worker):
     """Panels of tests that run at the same time do not look for a port in the same place."""
