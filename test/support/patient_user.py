@@ -15,9 +15,10 @@ class PatientUser(Client):
     """
 
     losses = 0
+    patience = PATIENCE
 
     def wait(self, what, is_so, seconds=PATIENCE, progress=lambda: None):
-        super().wait(what, is_so, max(seconds, PATIENCE), progress)
+        super().wait(what, is_so, max(seconds, self.patience), progress)
 
     def persist(self, ask):
         """What `ask` returns; asked again where it failed and the machine was lost."""

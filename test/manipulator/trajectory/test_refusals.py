@@ -157,6 +157,6 @@ def test_a_goal_farther_away_than_any_machine_is_refused_at_rest_and_in_motion(
     motion.pursue(Goal(home.moved([0.0, 0.0, 0.004, 0.0, 0.0, 0.0]), 1.0))
     for _ in range(ticks):
         motion.step()
-    drive(motion, Goal(Pose(home.position + [0.0, 0.0, metres], home.rotation), 2.0))
+    drive(motion, Goal(Pose(home.position + metres * np.eye(3)[2], home.rotation), 2.0))
     assert (motion.status.result, motion.status.goal_stamp) == ('refused', 2.0)
     assert 'm from home, needs at most' in motion.status.reason
