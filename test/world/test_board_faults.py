@@ -19,7 +19,7 @@ def line(world):
     """On its way, with a line that fails on request."""
     line = FaultyLine(world, seed=0, per_minute=0.0)
     world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     return line
 
 

@@ -20,6 +20,11 @@ def steps(world, since):
     return [np.abs(b - a).max() for a, b in itertools.pairwise(world.setpoints(since))]
 
 
+def changes(world, since):
+    """The largest change of such a step to the next one."""
+    return np.abs(np.diff(world.setpoints(since), 2, axis=0)).max(axis=1)
+
+
 def moved(world, since):
     pulses = world.pulses(since)
     return np.nanmax(np.abs(pulses - pulses[0]))
@@ -61,6 +66,7 @@ def test_pause_and_speed_override_change_nothing_suddenly(circling, ask):
         ask.pause(is_paused)
         circling.run(0.4)
     assert max(steps(circling, since)) <= 1.2 * usual + QUIET
+    assert max(changes(circling, since)) <= 0.5 * usual + QUIET
     assert circling.status.mode == 'cycle'
 
 

@@ -98,8 +98,8 @@ def test_a_stick_overrides_a_goal_in_motion_smoothly_and_the_goal_does_not_resum
     since = arm.now
     home = arm.machine.kinematics.home
     stamp = arm.send_goal(home.moved([0.25, 0, 0, 0, 0, 0]))
-    arm.wait('move', lambda: arm.status.mode == 'move')
-    arm.run(0.5)
+    arm.wait('5 cm', lambda: arm.pose.position[0] > home.position[0] + 0.05)
+    assert arm.status.mode == 'move'
     hold(arm, UP, 1.0)
     told = [(s.goal_stamp, s.result, s.mode) for _, s in arm.supervisor.statuses]
     assert (stamp, 'moving', 'move') in told
@@ -117,6 +117,7 @@ def test_a_stick_overrides_a_goal_in_motion_smoothly_and_the_goal_does_not_resum
     assert moved(arm, rest) <= QUIET
     assert arm.status.mode == 'hold'
     assert arm.pose.position[2] > home.position[2] + 0.03
+    assert arm.pose.position[0] < home.position[0] + 0.2
     assert_smooth(arm, since)
 
 

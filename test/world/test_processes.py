@@ -28,7 +28,7 @@ def test_a_tick_that_was_frozen_for_too_long_says_no_setpoint(world):
 @pytest.mark.parametrize('name', PROCESSES)
 def test_a_process_that_is_started_again_moves_nothing_and_takes_goals(world, name):
     world.send_goal(FAR)
-    world.run(0.4)
+    world.run(0.12)
     world.restart(name)
     world.run(3.0)
     since = world.now
@@ -43,7 +43,7 @@ def test_a_process_that_is_started_again_moves_nothing_and_takes_goals(world, na
 @pytest.mark.parametrize('seconds', [0.1, 0.3, 1.0, 3.0])
 def test_a_frozen_process_breaks_no_limit(world, name, seconds):
     world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     getattr(world, name).freeze(seconds)
     world.run(seconds + 3.0)
     assert_within_limits(world)
@@ -91,7 +91,7 @@ def test_a_frozen_process_stops_the_machine_and_nothing_jumps_when_it_goes_on(wo
 
 def test_cable_pulled_and_put_back_needs_enable_and_nothing_resumes(world):
     world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     world.cable.pull()
     world.wait('word', lambda: world.state == 'disconnected')
     world.run(1.0)

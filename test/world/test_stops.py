@@ -20,7 +20,7 @@ def steps(world, since):
 
 def test_after_stop_and_clear_nothing_moves_until_a_new_command(world):
     world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     stopped = world.now
     answer = world.emergency_stop()
     world.wait('stop', lambda: world.state == 'stopped')
@@ -41,7 +41,7 @@ def test_after_stop_and_clear_nothing_moves_until_a_new_command(world):
 
 def test_a_stop_stands_within_a_tenth_of_a_second(world):
     world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     asked = world.now
     world.emergency_stop()
     world.run(1.0)
@@ -54,7 +54,7 @@ def test_a_stop_whose_frames_are_lost_is_said_again(world, lost):
     down, _ = world.cable.links
     left = iter([True] * lost)
     world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     down.loses = lambda: next(left, False)
     world.emergency_stop()
     world.wait('stop', lambda: world.state == 'stopped', 2.0)
@@ -118,9 +118,11 @@ def test_a_goal_from_before_the_clear_is_refused_and_moves_nothing_afterwards(wo
 
 def test_a_stop_along_the_way_brakes_and_the_next_goal_is_driven(world, ask):
     stamp = world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     ask.stop()
+    assert world.status.result == 'moving'
     world.wait('rest', lambda: world.status.result == 'stopped')
     assert world.status.goal_stamp == stamp
+    assert 0.001 < world.pose.position[0] < 0.009
     assert world.state == 'enabled'
     assert world.go_to(FAR).result == 'reached'
