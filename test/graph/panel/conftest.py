@@ -171,16 +171,18 @@ class Seen:
 
     def seconds_to_rest(self, since):
         """From a moment (time.time) until the joints stand still for good; waits for that."""
+        self.client.wait('rest', lambda: self._rests(since))
         times, steps = self._steps()
         before = (times < since) & (times > since - 1.0)
-        assert steps[before].max() > MOVING, 'it did not move before'
-        self.client.wait('rest', self._is_at_rest)
-        times, steps = self._steps()
+        assert steps[before].max(initial=0.0) > MOVING, 'it did not move before'
         return times[steps > MOVING][-1] - since
 
-    def _is_at_rest(self):
+    def _rests(self, since):
+        """Whether nothing has moved in the last half second, all of it after that moment."""
+        self.client.spin(0.2)
         times, steps = self._steps()
-        return times[steps > MOVING][-1] < times[-1] - 0.5
+        is_late = times[-1] > since + 0.5
+        return is_late and steps[times > times[-1] - 0.5].max(initial=0.0) <= MOVING
 
     def _steps(self):
         """When the joints were told, and how far one had moved since they were told before."""
@@ -196,6 +198,16 @@ class Seen:
         page.let_go()
         self.client.spin(0.3)  # the release says STOP once more
         return taken
+
+    def asked_until(self, ask, is_so):
+        """Asks the page again every few seconds: one that is behind takes it back."""
+        end = time.monotonic() + 120.0
+        while not is_so():
+            assert time.monotonic() < end, self.client.summary
+            ask()
+            until = time.monotonic() + 5.0
+            while not is_so() and time.monotonic() < until:
+                self.client.spin(0.1)
 
     def _cycle(self):
         self.begin()

@@ -58,8 +58,8 @@ def arm(user, page, seen):
 
 
 def test_a_number_beside_a_slider_moves_the_arm(page, arm):
-    page.type(Z, f'{1e3 * arm.start.position[2] - 20:.1f}')
-    arm.client.wait('20 mm down', lambda: arm.has_moved(2, -0.019), 20.0)
+    height = f'{1e3 * arm.start.position[2] - 20:.1f}'
+    arm.asked_until(lambda: page.type(Z, height), lambda: arm.has_moved(2, -0.019))
 
 
 def test_the_joystick_moves_the_arm_while_it_is_held(page, arm):
@@ -74,8 +74,7 @@ def test_stop_stops_the_arm_and_nothing_resumes(page, arm):
 
 def test_the_gripper_opens_by_its_slider_and_the_slider_follows_others(page, arm):
     closed = opening(arm)
-    page.type(GRIPPER, '100')
-    arm.client.wait('an open gripper', lambda: opening(arm) > closed + 0.5, 20.0)
+    arm.asked_until(lambda: page.type(GRIPPER, '100'), lambda: opening(arm) > closed + 0.5)
     others = arm.client.node.create_publisher(Float64, 'gripper', LATCHED)
     others.publish(Float64(data=0.0))
     arm.client.wait('the slider', lambda: page.values()[GRIPPER] == '0', 20.0)
