@@ -23,7 +23,7 @@ bench: $(ENV)/peers   # a quiet computer, please: some ten minutes
 	@$(BIN)/python -m bench $(if $(WRITE),--write $(WRITE))
 
 soak: $(ENV)/ready
-	@SOAK_SECONDS=600 $(BIN)/python -m pytest -s test/graph/test_soak.py
+	@SOAK_SECONDS=600 $(PYTEST) -n auto -s test/world/test_soak.py && $(BIN)/python -m bench.soak
 
 # The libraries that the bench compares with; without them their rows say so.
 $(ENV)/peers: $(ENV)/ready

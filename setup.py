@@ -50,7 +50,6 @@ setup(
             'pytest-xdist>=3.6',
             'coverage>=7.4',  # which tests run which line: bench/mutants.py
             'pytest-cov>=5',
-            'pytest-rerunfailures>=16.1',  # only where the computer itself stood still
             'hypothesis>=6.100',
             'mypy>=1.11',
             'playwright>=1.45',  # drives the system's Chromium, for the panel's page

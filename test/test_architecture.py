@@ -62,12 +62,8 @@ def test_core_opens_no_files(room):
         assert not opened or path.name in CLOCKED, f'{path.relative_to(ROOT)} opens a file'
 
 
-SHARED_FOR_NOW = {'test/graph/conftest.py'}
-"""The stall watch goes from the tests with the world in simulated time."""
-
-
 def test_tests_know_nothing_of_the_bench_but_those_of_the_bench_itself():
     for path in sorted((ROOT / 'test').rglob('*.py')):
         name = path.relative_to(ROOT).as_posix()
-        if not name.startswith('test/bench/') and name not in SHARED_FOR_NOW:
+        if not name.startswith('test/bench/'):
             assert 'bench' not in imports(path), name

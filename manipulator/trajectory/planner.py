@@ -27,6 +27,9 @@ MOST_STRETCH = 30.0
 """Times that a move may take of what platform or tool alone would need: what joints that must turn
 faster near a singular posture may cost."""
 
+FARTHEST = 1e5
+"""Characteristic lengths from home beyond which nothing is worked out: numbers would overflow."""
+
 FORWARD_COST = 10
 """Poses of an inverse that a forward solution costs: no joint move is planned within a tick."""
 
@@ -53,6 +56,7 @@ def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pla
     Raises Unreachable when the goal itself is out of reach, and Refused when the path there is,
     cannot be slowed down enough, or costs more `effort` than a plan may.
     """
+    _refuse_absurd(machine, goal.pose)
     if goal.motion is Motion.JOINT:
         return _plan_joints(machine, start, goal, effort)
     try:
@@ -61,6 +65,15 @@ def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pla
         if goal.motion is Motion.LINE or not start.state.is_at_rest:
             raise Refused(f'{refusal}{_way_out(machine, start, goal, effort)}') from refusal
     return _plan_joints(machine, start, goal, effort)
+
+
+def _refuse_absurd(machine: Machine, pose: Pose) -> None:
+    """Refused for a pose, finite as it is, that is farther away than any machine is large."""
+    kinematics = machine.kinematics
+    away = float(np.abs(pose.position - kinematics.home.position).max())
+    most = FARTHEST * kinematics.characteristic_length
+    if away > most:
+        raise Refused(f'the goal is {away:.3g} m from home, needs at most {most:.3g} m')
 
 
 def plan_to(machine: Machine, start: Start, pose: Pose, effort: Effort | None = None) -> Plan:

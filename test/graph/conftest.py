@@ -4,59 +4,25 @@ import os
 import re
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
-from bench.stall_watch import StallWatch
 from hexarm import panel_process
-from hexarm.client import Client
 from hexarm.graph import Graph, machine_graph
 from hexarm.up import check_alive
+from patient_user import PatientUser
 
 MARK = f'HEXARM_TEST_RUN={os.getpid()}'
 os.environ['HEXARM_TEST_RUN'] = str(os.getpid())
 ROOT = Path(__file__).resolve().parents[2]
-STALLS = StallWatch()
-
-_attempt = {'began': 0.0}
-
-
-@pytest.fixture(scope='session', autouse=True)
-def stall_watch():
-    """What the host of this computer did to it, while there are tests."""
-    with STALLS:
-        yield
 
 
 @pytest.fixture(scope='session', autouse=True)
 def ports_of_their_own(worker):
     """Panels of tests that run at the same time do not look for a port in the same place."""
     panel_process.FIRST_PORT += panel_process.PORTS * worker
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_setup():
-    _attempt['began'] = time.monotonic() - 1.0  # what it begins with may still be in the air
-
-
-def pytest_collection_modifyitems(items):
-    """Claims of `real_time` cannot be tried while the host takes the cores away: later, then."""
-    once_more = pytest.mark.flaky(reruns=2, condition=lambda: stood_still() > 0.0)
-    for item in items:
-        if item.get_closest_marker('real_time'):
-            item.add_marker(once_more)
-
-
-def stood_still():
-    """Seconds for which a core was away since the present test began; a board waits for 0.2."""
-    return STALLS.longest(_attempt['began'])
-
-
-def pytest_terminal_summary(terminalreporter):
-    terminalreporter.write_line(f'The host took a core away for at most: {STALLS.summary}.')
 
 
 @pytest.fixture
@@ -129,15 +95,14 @@ def hexapod_graph(patient_robocake, tmp_path_factory):
 @pytest.fixture(scope='module')
 def user(hexapod_graph):
     """A user's node in the hexapod's namespace."""
-    with Client('hexapod', lambda: check_alive(hexapod_graph)) as client:
+    with PatientUser('hexapod', lambda: check_alive(hexapod_graph)) as client:
         yield client
 
 
 @pytest.fixture
 def enabled(user):
     """The same, with the servos on and the platform at home."""
-    if user.machine_state.message != 'enabled':
-        user.enable()
+    user.make_ready()
     return user
 
 

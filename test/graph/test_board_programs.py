@@ -9,10 +9,10 @@ from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from hexarm import firmware_build
-from hexarm.client import Client
 from hexarm.graph import Executable, Graph
 from manipulator.errors import Refused
 from manipulator.nodes.qos import COMMAND, LATCHED
+from patient_user import PatientUser
 
 pytestmark = pytest.mark.graph
 
@@ -20,7 +20,7 @@ NAMES = [f'crank_{i}' for i in (2, 1, 3, 4, 5, 6)]
 SPACE = 'programs_rig'
 
 
-class Rig(Client):
+class Rig(PatientUser):
     """A user of the bridge alone."""
 
     def __init__(self):
@@ -28,7 +28,7 @@ class Rig(Client):
         self.said = []
         self._tables = self.node.create_publisher(JointTrajectory, 'joint_table', COMMAND)
         self.node.create_subscription(String, 'program_status', self._hear, LATCHED)
-        self.wait('the bridge', lambda: self._tables.get_subscription_count() == 1, 10.0)
+        self.wait('the bridge', lambda: self._tables.get_subscription_count() == 1)
 
     def _hear(self, message):
         self.said.append(message.data)
@@ -36,13 +36,13 @@ class Rig(Client):
     def upload(self, table, words):
         self.said.clear()
         self._tables.publish(table)
-        self.wait(words, lambda: any(words in text for text in self.said), 10.0)
+        self.wait(words, lambda: any(words in text for text in self.said))
 
     def ask(self, service, is_true):
         return self._call(SetBool, service, SetBool.Request(data=is_true))
 
     def wait_for_state(self, word):
-        self.wait(word, lambda: self.machine_state.message == word, 10.0)
+        self.wait(word, lambda: self.machine_state.message == word)
 
 
 def swing(rows=20, step_ms=100):
@@ -80,17 +80,12 @@ def enabled(rig):
     return rig
 
 
-@pytest.mark.real_time
-def test_a_table_is_uploaded_played_in_a_loop_and_ended(enabled):
+def test_a_table_and_a_cycle_are_played_and_end_enabled(enabled):
     enabled.upload(swing(), 'table of 20 rows, 100 ms apart, is on board')
     enabled.ask('serial_bridge/play_table', True)
     enabled.wait_for_state('playing')
     enabled.trigger('serial_bridge/finish_program')
     enabled.wait_for_state('enabled')
-
-
-@pytest.mark.real_time
-def test_a_cycle_is_played_once_and_ends_enabled(enabled):
     enabled.ask('serial_bridge/play_cycle', False)
     enabled.wait_for_state('playing')
     enabled.wait_for_state('enabled')

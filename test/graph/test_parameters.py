@@ -10,7 +10,7 @@ import pytest
 from rcl_interfaces.msg import ParameterType
 from rcl_interfaces.srv import DescribeParameters, ListParameters
 
-from hexarm.client import Client
+from patient_user import PatientUser
 
 pytestmark = pytest.mark.graph
 ROOT = Path(__file__).resolve().parents[2]
@@ -25,7 +25,7 @@ COMPANIONS = ('path_listener', 'serial_bridge_stop', 'serial_bridge_programs')
 
 @pytest.fixture(scope='module')
 def client():
-    with Client(NAMESPACE) as client:
+    with PatientUser(NAMESPACE) as client:
         yield client
 
 
@@ -44,7 +44,7 @@ def descriptors(client, tmp_path_factory):
     finally:
         for process in started:
             process.terminate()
-        assert [process.wait(10) for process in started] == [0] * len(started)
+        assert [process.wait(60) for process in started] == [0] * len(started)
 
 
 def describe(client, executable):

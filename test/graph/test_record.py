@@ -24,7 +24,7 @@ from manipulator.nodes.messages import seconds
 from manipulator.nodes.qos import LATCHED as LATCHED_QUALITIES
 from manipulator.pose import Pose
 
-pytestmark = [pytest.mark.graph, pytest.mark.real_time]
+pytestmark = pytest.mark.graph
 
 ROOT = Path(__file__).resolve().parents[2]
 STREAMS = ('setpoint', 'joint_command', 'joint_states', 'pose')
@@ -32,7 +32,7 @@ LATCHED = ('machine_state', 'motion_status')
 
 
 def ends_with(process, status):
-    said = process.communicate(timeout=30)[0]
+    said = process.communicate(timeout=120)[0]
     assert process.returncode == status, said
     return said
 
@@ -50,16 +50,16 @@ def messages_before_the_tear(path):
 def recording(hexapod_graph, user, hexarm, tmp_path_factory):
     """Two moves, recorded: the file, what the recorder said, the stamps that we heard."""
     path = tmp_path_factory.mktemp('recording') / 'move.mcap'
-    user.enable()
+    user.make_ready()
     stamps = []
     user.node.create_subscription(
         PoseStamped, 'setpoint', lambda m: stamps.append(seconds(m.header.stamp)), 500
     )
     recorder = hexarm('record', 'hexapod', '-o', str(path))
-    user.wait('the recorder', lambda: user.node.count_subscribers('setpoint') > 2, 15.0)
-    user.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.047)))
+    user.wait('the recorder', lambda: user.node.count_subscribers('setpoint') > 2)
+    user.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.047)))
     user.spin(6.0)  # until a publisher of goals has been there long enough
-    user.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.044)))
+    user.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.044)))
     user.spin(1.0)
     recorder.send_signal(signal.SIGINT)
     return path, ends_with(recorder, 0), stamps
@@ -123,7 +123,7 @@ def test_killed_recorder_loses_at_most_the_last_second(user, hexarm, tmp_path):
     recorder = hexarm('record', 'hexapod', '-o', str(path))
     user.wait('a first chunk', lambda: path.exists() and path.stat().st_size > 20_000, 20.0)
     recorder.kill()
-    recorder.wait(10)
+    recorder.wait(60)
     assert messages_before_the_tear(path) > 100
 
 
@@ -139,7 +139,7 @@ def test_full_disk_ends_it_with_one_line_and_a_readable_file(user, tmp_path):
         preexec_fn=small_files_only,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=120,
         check=False,
     )
     assert done.returncode == 1
@@ -194,23 +194,25 @@ def test_misspelt_topic_alone_is_not_blamed_on_the_graph(user, hexarm, tmp_path)
 
 
 def test_listener_that_no_goal_can_reach_keeps_nobody_waiting(user):
-    user.enable()
+    user.make_ready()
     odd = user.node.create_subscription(PoseStamped, 'goal_pose', print, LATCHED_QUALITIES)
     user.spin(1.0)
-    user.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.046)))
+    user.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.046)))
     user.node.destroy_subscription(odd)
+    # An executor that is not spun before more comes for what was destroyed ends the process.
+    user.wait('its end', lambda: user.spin(0.1) or user.node.count_subscribers('goal_pose') == 1)
 
 
 def test_recorder_of_commands_is_not_taken_for_the_machine(user, hexarm, tmp_path):
     path = tmp_path / 'commands.mcap'
-    user.enable()
+    user.make_ready()
     recorder = hexarm('record', 'hexapod', '--commands', '-o', str(path))
-    user.wait('the recorder', lambda: user.node.count_subscribers('goal_pose') > 1, 15.0)
+    user.wait('the recorder', lambda: user.node.count_subscribers('goal_pose') > 1)
     for z in ('0.043', '0.045', '0.047'):
         example = [sys.executable, 'examples/publish_pose.py', '0', '0', z]
-        assert subprocess.run(example, cwd=ROOT, timeout=30, check=False).returncode == 0
+        assert subprocess.run(example, cwd=ROOT, timeout=120, check=False).returncode == 0
     stop = [sys.executable, 'examples/stop.py', '--emergency']
-    assert subprocess.run(stop, cwd=ROOT, timeout=30, check=False).returncode == 0
+    assert subprocess.run(stop, cwd=ROOT, timeout=120, check=False).returncode == 0
     recorder.send_signal(signal.SIGINT)
     ends_with(recorder, 0)
     user.trigger('serial_bridge/clear_fault')

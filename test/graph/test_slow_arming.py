@@ -11,7 +11,7 @@ from hexarm.machines import find
 from hexarm.up import check_alive
 from manipulator.errors import Refused
 
-pytestmark = [pytest.mark.graph, pytest.mark.real_time]
+pytestmark = pytest.mark.graph
 
 SPACE = 'slow_arming'
 PATIENCE = 3.0
@@ -33,10 +33,10 @@ def module_user(tmp_path_factory):
 def disarmed(module_user, monkeypatch):
     """A user of a machine whose servos are off."""
     away = ('not heard of', 'disconnected', 'booting')
-    module_user.wait('a board', lambda: module_user.machine_state.message not in away, 15.0)
+    module_user.wait('a board', lambda: module_user.machine_state.message not in away, 60.0)
     module_user.trigger('serial_bridge/clear_fault')
     module_user.disable()
-    module_user.wait('it', lambda: module_user.machine_state.message == 'disarmed', 10.0)
+    module_user.wait('it', lambda: module_user.machine_state.message == 'disarmed', 60.0)
     monkeypatch.setattr(client, 'DRIVEN_WITHIN', PATIENCE)
     return module_user
 

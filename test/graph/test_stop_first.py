@@ -1,13 +1,9 @@
 """A STOP waits for nothing: not for a program that is being sent over a bad line, nor a table."""
 
 import random
-import statistics
 import time
 
 import pytest
-from diagnostic_msgs.msg import DiagnosticStatus
-from rclpy.serialization import serialize_message
-from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -19,31 +15,29 @@ from bridge.program_messages import CycleAxis, Play, TableRow
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board_solver import board_solver
-from hexarm.client import Client
 from hexarm.graph import Executable, Graph
 from hexarm.tapped_line import Tap, TappedLine
 from manipulator.nodes.qos import EVERY_WORD, LATCHED
+from patient_user import PatientUser
 
 pytestmark = pytest.mark.graph
 
 SPACE = 'stop_first'
 NAMES = [f'crank_{i}' for i in range(1, 7)]
-LOSS = 0.5
-STOPS = 10
 
 
 class BadLine(TappedLine):
-    """Of what the host says while `is_bad`, the board hears every other piece."""
+    """Of what the host says while `is_bad`, the board does not hear a share."""
 
-    is_bad = False
+    is_bad, loss = False, 0.5
 
     def read(self):
         received = super().read()
-        is_lost = BadLine.is_bad and random.random() < LOSS
+        is_lost = BadLine.is_bad and random.random() < BadLine.loss
         return b'' if is_lost else received
 
 
-class User(Client):
+class User(PatientUser):
     """Publishes stops, and calls services without waiting for their answers."""
 
     def __init__(self):
@@ -51,30 +45,24 @@ class User(Client):
         self.said = []
         self.stops = self.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         self.tables = self.node.create_publisher(JointTrajectory, 'joint_table', 1)
-        self.commands = self.node.create_publisher(JointState, 'joint_command', 1)
         self.node.create_subscription(String, 'program_status', self._hear, LATCHED)
         self.plays = self.node.create_client(SetBool, 'serial_bridge/play_cycle')
-        self.wait('the bridge', self._is_heard, 10.0)
-        self.wait('the board', lambda: self.machine_state.message == 'disarmed', 10.0)
+        self.wait('the bridge', self._is_heard)
+        self.wait('the board', lambda: self.machine_state.message == 'disarmed')
 
     def _is_heard(self):
-        publishers = (self.stops, self.tables, self.commands)
+        publishers = (self.stops, self.tables)
         is_heard = all(publisher.get_subscription_count() == 1 for publisher in publishers)
         return is_heard and self.plays.service_is_ready()
 
     def _hear(self, message):
         self.said.append(message.data)
 
-    @property
-    def last_refusal(self):
-        values = self.diagnostics.get(f'{SPACE}/serial_bridge', DiagnosticStatus()).values
-        return next((v.value for v in values if v.key == 'last_refusal'), '')
-
     def play_cycle(self):
         return self.plays.call_async(SetBool.Request(data=True))
 
     def wait_for_state(self, word):
-        self.wait(word, lambda: self.machine_state.message == word, 10.0)
+        self.wait(word, lambda: self.machine_state.message == word)
 
 
 @pytest.fixture(scope='module')
@@ -101,42 +89,35 @@ def user(tap, tmp_path_factory):
 @pytest.fixture
 def calm(user):
     """A board that hears everything and is not stopped."""
-    BadLine.is_bad = False
+    BadLine.is_bad, BadLine.loss = False, 0.5
     user.trigger('serial_bridge/clear_fault')
     user.wait_for_state('disarmed')
     yield user
     BadLine.is_bad = False
 
 
-def stop_time(user, tap, seconds):
-    """From the message to the frame, asked for so long after the cycle was begun to be sent."""
+def test_a_stop_does_not_wait_for_a_program_on_a_dead_line(calm, tap):
+    """Nothing of the program gets through: it would keep the line for a second and more."""
+    BadLine.loss = 1.0
     BadLine.is_bad = True
     began = time.monotonic()
-    answer = user.play_cycle()
-    user.wait('the cycle', lambda: tap.heard(CycleAxis, began), 5.0)
-    user.spin(seconds)
-    before = time.monotonic()
-    user.stops.publish(Bool(data=True))
-    user.wait('STOP', lambda: tap.heard(Stop, before), 10.0)
+    answer = calm.play_cycle()
+    calm.wait('the cycle', lambda: tap.heard(CycleAxis, began))
+    calm.stops.publish(Bool(data=True))
+    calm.wait('STOP', lambda: tap.heard(Stop, began))
     BadLine.is_bad = False
-    user.wait('an answer', answer.done, 10.0)
-    user.wait_for_state('stopped')
-    user.trigger('serial_bridge/clear_fault')
-    user.wait_for_state('disarmed')
-    return tap.heard(Stop, before)[0][0] - before
-
-
-def test_a_stop_does_not_wait_for_a_program_on_a_bad_line(calm, tap):
-    times = [stop_time(calm, tap, random.uniform(0.0, 0.3)) for _ in range(STOPS)]
-    print(f'median {1e3 * statistics.median(times):.1f} ms, worst {1e3 * max(times):.1f} ms')
-    assert statistics.median(times) <= 0.05
+    stopped = tap.heard(Stop, began)[0][0]
+    assert not [m for t, m in tap.heard((CycleAxis, Play), stopped)]
+    calm.wait('an answer', answer.done)
+    assert not answer.result().success
+    calm.wait_for_state('stopped')
 
 
 def test_what_a_stop_interrupted_is_not_taken_up_again(calm, tap):
     BadLine.is_bad = True
     answer = calm.play_cycle()
     calm.stops.publish(Bool(data=True))
-    calm.wait('an answer', answer.done, 10.0)
+    calm.wait('an answer', answer.done)
     BadLine.is_bad = False
     calm.wait_for_state('stopped')
     stopped = time.monotonic()
@@ -159,9 +140,9 @@ def test_a_program_does_not_spoil_an_upload(calm, tap):
         row.time_from_start.sec = k // 10
     began = time.monotonic()
     calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
-    calm.wait('rows', lambda: tap.heard(TableRow, began), 5.0)
+    calm.wait('rows', lambda: tap.heard(TableRow, began))
     answer = calm.play_cycle()
-    calm.wait('an answer', answer.done, 10.0)
+    calm.wait('an answer', answer.done)
     assert answer.result().message == 'another upload is under way'
     calm.wait(
         'the upload', lambda: 'table of 100 rows, 100 ms apart, is on board' in calm.said, 20.0
@@ -171,21 +152,9 @@ def test_a_program_does_not_spoil_an_upload(calm, tap):
 def test_a_table_of_megabytes_is_not_even_decoded(calm):
     rows = [JointTrajectoryPoint(positions=[2.1] * 6)] * 20_000
     calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
-    calm.wait('a refusal', lambda: any('at most 1000000' in text for text in calm.said), 10.0)
-
-
-@pytest.mark.parametrize(
-    ('bad', 'reason'),
-    [
-        (serialize_message(JointState(name=['crank_1'] * 100_000)), 'at most 10000'),
-        (b'\0\1\0\0\xff', 'no JointState'),
-    ],
-)
-def test_a_joint_command_of_megabytes_or_of_no_sense_is_not_decoded(calm, bad, reason):
-    calm.commands.publish(bad)
-    calm.wait('a refusal', lambda: reason in calm.last_refusal, 10.0)
+    calm.wait('a refusal', lambda: any('at most 1000000' in text for text in calm.said))
 
 
 def test_bytes_that_are_no_table_are_refused(calm):
     calm.tables.publish(b'\0\1\0\0\xff')
-    calm.wait('a refusal', lambda: any('no JointTrajectory' in text for text in calm.said), 10.0)
+    calm.wait('a refusal', lambda: any('no JointTrajectory' in text for text in calm.said))

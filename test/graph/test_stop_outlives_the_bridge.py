@@ -10,9 +10,9 @@ from bridge.fake_line import FakeLine
 from bridge.messages import Mode
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.client import Client
 from hexarm.graph import Executable, Graph
 from manipulator.nodes.qos import EVERY_WORD
+from patient_user import PatientUser
 
 pytestmark = pytest.mark.graph
 
@@ -36,19 +36,19 @@ def bridge(tmp_path):
 
 
 def wait_for_state(user, word):
-    user.wait(word, lambda: user.machine_state.message == word, 10.0)
+    user.wait(word, lambda: user.machine_state.message == word)
 
 
 def test_a_stop_that_no_board_heard_is_said_by_the_next_bridge(board, tmp_path):
-    with Client(SPACE) as user:
+    with PatientUser(SPACE) as user:
         stops = user.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         with bridge(tmp_path):
             wait_for_state(user, 'disarmed')
             board.do(lambda: board.plug(None))
             wait_for_state(user, 'disconnected')
-            user.wait('the bridge', lambda: stops.get_subscription_count() == 1, 10.0)
+            user.wait('the bridge', lambda: stops.get_subscription_count() == 1)
             stops.publish(Bool(data=True))
-            user.wait('the memory', (tmp_path / 'board.stop').exists, 5.0)
+            user.wait('the memory', (tmp_path / 'board.stop').exists)
         line = FakeLine(tmp_path / 'board')
         board.do(lambda: board.plug(line))
         with bridge(tmp_path):
@@ -66,9 +66,9 @@ def test_up_waits_until_a_stop_from_before_is_cleared(hexarm, tmp_path):
     with Graph([Executable('bridge', 'fake_hardware', fake)], SPACE):
         process = hexarm('up', 'hexapod', '--port', str(port), '--namespace', SPACE)
         assert any('clear_fault std_srvs' in line for line in process.stdout)
-        with Client(SPACE) as user:
+        with PatientUser(SPACE) as user:
             user.trigger('serial_bridge/clear_fault')
         assert any('and enabled' in line for line in process.stdout)
         process.send_signal(signal.SIGINT)
         assert 'parking' in process.stdout.read()
-        assert process.wait(20) == 0
+        assert process.wait(60) == 0

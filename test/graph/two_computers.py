@@ -22,14 +22,17 @@ from bridge.framing import FrameReader
 from bridge.messages import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.client import Client
 from hexarm.graph import Graph, machine_graph
 from hexarm.up import check_alive
-from manipulator.errors import ManipulatorError
 from manipulator.pose import Pose
+
+sys.path.insert(0, str(Path(__file__).parents[1] / 'support'))
+from patient_user import PatientUser
 
 MACHINE = 'robocake'
 SPACE = 'split'
+STILL = 0.1
+"""Seconds between two changes of the pulses while the platform moves, at most."""
 HOME = machines.load(MACHINE).kinematics.home
 GOAL = Pose.from_xyz_rpy((0.006, 0.0, 0.045), (0.0, 0.05, 0.0))
 
@@ -58,6 +61,11 @@ class Pulses(threading.Thread):
         self.now = board.pulses
         self.changed_at = time.monotonic()
 
+    @property
+    def still_for(self):
+        """Seconds since they changed for the last time."""
+        return time.monotonic() - self.changed_at
+
     def run(self):
         while True:
             if self._board.pulses != self.now:
@@ -69,40 +77,16 @@ def ip(*words):
     subprocess.run(['ip', *words], check=True, timeout=5)
 
 
-def ready(user):
-    """Waits until the machine takes goals; enables it where a stall of this computer lost it."""
-    for _ in range(3):
-        try:
-            if user.machine_state.message not in ('enabled', 'holding'):
-                user.enable()
-            user.wait('a machine', lambda: user.motion('mode') == 'hold', 10.0)
-        except ManipulatorError:
-            user.spin(1.0)
-        else:
-            return
-
-
-def reach(user, goal):
-    """Goes there; a computer that stalls for longer than the deadlines gets another try."""
-    for _ in range(3):
-        ready(user)
-        try:
-            user.go_to(goal)
-        except ManipulatorError:
-            user.spin(1.0)
-        else:
-            return
-
-
 def set_moving(user, pulses):
-    """Starts a motion without an end, and says whether it is under way."""
-    for _ in range(3):
-        reach(user, HOME)
+    """Starts a motion without an end, and waits until it is under way."""
+
+    def start():
+        user.go_to(HOME)
         user.trigger('trajectory/start_cycle')
         user.spin(1.0)
-        if time.monotonic() - pulses.changed_at < 0.1:
-            return True
-    return False
+        assert pulses.still_for < STILL
+
+    user.persist(start)
 
 
 def cut_and_mend(user, line, pulses, namespace, interface):
@@ -112,16 +96,14 @@ def cut_and_mend(user, line, pulses, namespace, interface):
     def link(state):
         ip('-n', namespace, 'link', 'set', interface, state)
 
-    told['is_moving'] = set_moving(user, pulses)
-    cut_at = time.monotonic()
+    set_moving(user, pulses)
     link('down')
-    user.spin(2.0)
-    told['stopped_after_s'] = pulses.changed_at - cut_at
+    user.wait('rest', lambda: pulses.still_for > 10 * STILL)
     told['mode_while_cut'] = user.motion('mode')
     before, count = np.array(pulses.now), len(line.setpoints)
     link('up')
     ip('-n', namespace, 'route', 'add', '224.0.0.0/4', 'dev', interface)  # went with the link
-    user.wait('setpoints', lambda: len(line.setpoints) > count + 20, 30.0)
+    user.wait('setpoints', lambda: len(line.setpoints) > count + 20)
     again = np.array(line.setpoints[count:])
     told['jump_in_counts'] = float(np.abs(again[:20] - before).max())
     return told
@@ -139,7 +121,7 @@ def main(namespace, interface, *prefix):
         bridge, *nodes = machine_graph('hexapod', MACHINE, str(line.path), line.path)
         far = dataclasses.replace(bridge, prefix=prefix)
         graph = Graph([*nodes, far], SPACE)
-        with graph, Client(SPACE, lambda: check_alive(graph)) as user:
+        with graph, PatientUser(SPACE, lambda: check_alive(graph)) as user:
             told = drive(user, line, pulses, namespace, interface, config)
         board.close()
     print(json.dumps(told))
@@ -147,9 +129,11 @@ def main(namespace, interface, *prefix):
 
 def drive(user, line, pulses, namespace, interface, config):
     """All that the test wants to know."""
-    reach(user, GOAL)
+    user.make_ready()
+    user.reach(GOAL)
     told = cut_and_mend(user, line, pulses, namespace, interface)
-    reach(user, GOAL)
+    user.make_ready()
+    user.reach(GOAL)
     user.spin(0.3)
     joints = machines.load(MACHINE).kinematics.inverse(GOAL)
     wanted = Calibration.from_config(config.servos).counts(joints)

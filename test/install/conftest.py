@@ -28,7 +28,7 @@ def run():
     def start(*command, **options):
         pipes = {'stdout': subprocess.PIPE, 'stderr': subprocess.STDOUT, 'text': True}
         done = subprocess.run(
-            [str(w) for w in command], check=False, timeout=120, **(pipes | options)
+            [str(w) for w in command], check=False, timeout=600, **(pipes | options)
         )
         assert done.returncode == 0, done.stdout
         return done.stdout

@@ -9,13 +9,13 @@ import pytest
 from ament_index_python.packages import get_package_prefix, get_package_share_directory
 from geometry_msgs.msg import PoseStamped
 
-from hexarm.client import Client
 from manipulator.nodes.messages import pose_of
 from manipulator.nodes.qos import MEASUREMENT
 from manipulator.pose import Pose
+from patient_user import PatientUser
 
 NAMESPACE = 'installed'
-PATIENCE = 10.0
+PATIENCE = 60.0
 
 
 @pytest.fixture
@@ -79,10 +79,10 @@ def test_goal_moves_the_graph_that_was_started_from_the_workspace(ros2_run, tmp_
     ros2_run('serial_bridge', port=port)
 
     poses = []
-    with Client(NAMESPACE) as client:
+    with PatientUser(NAMESPACE) as client:
         client.node.create_subscription(PoseStamped, 'pose', poses.append, MEASUREMENT)
-        client.enable()
-        client.go_to(Pose.from_xyz_rpy((0.004, 0.0, 0.045)))
+        client.make_ready()
+        client.reach(Pose.from_xyz_rpy((0.004, 0.0, 0.045)))
         client.wait(
             'the platform at x = 4 mm',
             lambda: poses and abs(pose_of(poses[-1]).position[0] - 0.004) < 0.0005,

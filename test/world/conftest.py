@@ -2,6 +2,7 @@
 
 import pytest
 
+from world.requests import Requests
 from world.world import World
 
 
@@ -21,3 +22,9 @@ def make_world():
 def world(make_world):
     """The hexapod's, enabled."""
     return make_world()
+
+
+@pytest.fixture
+def ask(world):
+    """What else its user may ask of the hexapod."""
+    return Requests(world)

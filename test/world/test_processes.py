@@ -28,7 +28,7 @@ def test_a_tick_that_was_frozen_for_too_long_says_no_setpoint(world):
 @pytest.mark.parametrize('name', PROCESSES)
 def test_a_process_that_is_started_again_moves_nothing_and_takes_goals(world, name):
     world.send_goal(FAR)
-    world.run(0.4)
+    world.run(0.12)
     world.restart(name)
     world.run(3.0)
     since = world.now
@@ -43,7 +43,7 @@ def test_a_process_that_is_started_again_moves_nothing_and_takes_goals(world, na
 @pytest.mark.parametrize('seconds', [0.1, 0.3, 1.0, 3.0])
 def test_a_frozen_process_breaks_no_limit(world, name, seconds):
     world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     getattr(world, name).freeze(seconds)
     world.run(seconds + 3.0)
     assert_within_limits(world)
@@ -51,16 +51,47 @@ def test_a_frozen_process_breaks_no_limit(world, name, seconds):
     assert world.go_to(HIGHER).result == 'reached'
 
 
-def test_the_clock_of_one_computer_is_set_and_the_motion_goes_on(world):
-    world.send_goal(FAR)
-    world.run(0.2)
-    world.supervisor.clock_offset = 3600.0
-    world.wait('goal', lambda: world.status.result == 'reached')
+@pytest.mark.parametrize('name', PROCESSES)
+@pytest.mark.parametrize('step', [-3600.0, 3600.0])
+def test_the_clock_of_one_computer_is_set_and_the_motion_goes_on(world, ask, name, step):
+    ask.cycle()
+    world.wait('cycle', lambda: world.status.mode == 'cycle')
+    for offset in (step, 0.0):
+        getattr(world, name).clock_offset = offset
+        words, since = len(world.bridge.states), world.now
+        world.run(1.5)
+        assert world.status.mode == 'cycle'
+        assert len(world.bridge.states) == words
+        assert np.ptp(world.pulses(since), axis=0).max() > 20.0
+
+
+@pytest.mark.parametrize('name', PROCESSES)
+def test_a_process_that_ends_for_good_stops_the_machine(world, ask, name):
+    ask.cycle()
+    world.wait('cycle', lambda: world.status.mode == 'cycle')
+    getattr(world, name).kill()
+    world.run(1.5)
+    since = world.now
+    world.run(1.0)
+    pulses = world.pulses(since)
+    assert np.nanmax(np.abs(pulses - pulses[0])) <= 2.0
+
+
+@pytest.mark.parametrize('name', PROCESSES)
+def test_a_frozen_process_stops_the_machine_and_nothing_jumps_when_it_goes_on(world, ask, name):
+    ask.cycle()
+    world.wait('cycle', lambda: world.status.mode == 'cycle')
+    getattr(world, name).freeze(3.0)
+    world.run(1.5)
+    since = world.now
+    world.run(3.0)
+    pulses = world.pulses(since)
+    assert np.nanmax(np.abs(pulses - pulses[0])) <= 2.0
 
 
 def test_cable_pulled_and_put_back_needs_enable_and_nothing_resumes(world):
     world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     world.cable.pull()
     world.wait('word', lambda: world.state == 'disconnected')
     world.run(1.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bridge.driver import BoardDriver
-from bridge.messages import Setpoint, Stop
+from bridge.messages import Clear, Setpoint, Stop
 from manipulator.pose import Pose
 
 FAR = Pose.from_xyz_rpy((0.010, 0.0, 0.0412))
@@ -21,7 +21,7 @@ def steps(world, since):
 
 def test_after_stop_and_clear_nothing_moves_until_a_new_command(world):
     world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     stopped = world.now
     answer = world.emergency_stop()
     world.wait('stop', lambda: world.state == 'stopped')
@@ -42,7 +42,7 @@ def test_after_stop_and_clear_nothing_moves_until_a_new_command(world):
 
 def test_a_stop_stands_within_a_tenth_of_a_second(world):
     world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     asked = world.now
     world.emergency_stop()
     world.run(1.0)
@@ -55,7 +55,7 @@ def test_a_stop_whose_frames_are_lost_is_said_again(world, lost):
     down, _ = world.cable.links
     left = iter([True] * lost)
     world.send_goal(FAR)
-    world.run(0.3)
+    world.run(0.12)
     down.loses = lambda: next(left, False)
     world.emergency_stop()
     world.wait('stop', lambda: world.state == 'stopped', 2.0)
@@ -68,3 +68,62 @@ def test_a_stop_while_the_cable_is_out_is_obeyed_by_the_board_that_comes_back(wo
     world.cable.plug()
     world.wait('stop', lambda: world.state == 'stopped')
     assert not world.frames(Setpoint, since=world.now - 1.0)
+
+
+def test_a_hammered_stop_holds_and_only_a_clear_ends_it(world, ask):
+    ask.cycle()
+    world.run(1.0)
+    for _ in range(200):
+        world.emergency_stop()
+        world.run(0.002)
+    world.wait('stop', lambda: world.state == 'stopped')
+    since = world.now
+    arming = world.ask_to_arm()
+    world.run(1.0)
+    assert 'clear the stop first' in arming.said
+    pulses = world.pulses(since)
+    assert np.nanmax(np.abs(pulses - pulses[0])) <= QUIET
+    assert not world.frames((Clear, Setpoint), since)
+    assert world.state == 'stopped'
+    assert world.clear() == ''
+    world.wait('hold', lambda: world.status.mode == 'hold')
+    assert world.go_to(FAR).result == 'reached'
+
+
+def test_hammering_stop_and_clear_leaves_a_machine_that_works(world):
+    for k in range(100):
+        world.send_goal(FAR)
+        if k % 2:
+            world.emergency_stop()
+        else:
+            world.bridge.ask(BoardDriver.clear_fault)
+        world.run(0.013)
+    world.wait('stop', lambda: world.state == 'stopped')
+    assert world.clear() == ''
+    world.wait('hold', lambda: world.status.mode == 'hold')
+    assert world.go_to(FAR).result == 'reached'
+
+
+def test_a_goal_from_before_the_clear_is_refused_and_moves_nothing_afterwards(world):
+    world.emergency_stop()
+    world.wait('stop', lambda: world.state == 'stopped')
+    refused = world.go_to(FAR)
+    assert (refused.result, 'clear the stop first' in refused.reason) == ('refused', True)
+    assert world.clear() == ''
+    world.wait('hold', lambda: world.status.mode == 'hold')
+    since = world.now
+    world.run(1.0)
+    pulses = world.pulses(since)
+    assert np.nanmax(np.abs(pulses - pulses[0])) <= QUIET
+
+
+def test_a_stop_along_the_way_brakes_and_the_next_goal_is_driven(world, ask):
+    stamp = world.send_goal(FAR)
+    world.run(0.12)
+    ask.stop()
+    assert world.status.result == 'moving'
+    world.wait('rest', lambda: world.status.result == 'stopped')
+    assert world.status.goal_stamp == stamp
+    assert 0.001 < world.pose.position[0] < 0.009
+    assert world.state == 'enabled'
+    assert world.go_to(FAR).result == 'reached'

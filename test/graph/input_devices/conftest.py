@@ -11,8 +11,8 @@ from geometry_msgs.msg import TwistStamped
 from std_msgs.msg import Float64, String
 from std_srvs.srv import Trigger
 
-from hexarm.client import Client
 from manipulator.nodes.qos import COMMAND, LATCHED
+from patient_user import PatientUser
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -44,7 +44,7 @@ def running(words):
         finally:
             if process.poll() is None:
                 process.terminate()
-            process.wait(10)
+            process.wait(60)
 
     return run
 
@@ -61,7 +61,7 @@ def refusal(words):
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
-            timeout=30,
+            timeout=120,
             check=False,
         )
         return done.returncode, done.stderr.strip()
@@ -75,7 +75,7 @@ def listening():
     return Listener
 
 
-class Listener(Client):
+class Listener(PatientUser):
     """Hears what an input device sends, and answers as the trajectory node would."""
 
     def __init__(self, namespace, source):
@@ -93,7 +93,7 @@ class Listener(Client):
     def joy_publisher(self, message_type, topic):
         """A publisher that somebody listens to."""
         publisher = self.node.create_publisher(message_type, topic, COMMAND)
-        self.wait('a listener', lambda: publisher.get_subscription_count() > 0, 20.0)
+        self.wait('a listener', lambda: publisher.get_subscription_count() > 0)
         return publisher
 
     def _on_twist(self, message):

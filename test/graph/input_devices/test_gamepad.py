@@ -2,7 +2,7 @@
 
 import pytest
 
-pytestmark = [pytest.mark.graph, pytest.mark.real_time]
+pytestmark = pytest.mark.graph
 
 
 def test_missing_library_is_one_line_and_status_1(refusal, tmp_path, monkeypatch):
@@ -25,7 +25,7 @@ def test_machine_without_the_pad_says_so_and_goes_on_looking(
         listening('padless', 'joy') as listener,
     ):
         name = 'padless/gamepad'
-        listener.wait('diagnostics', lambda: name in listener.diagnostics, 20.0)
+        listener.wait('diagnostics', lambda: name in listener.diagnostics)
         assert 'no gamepad found' in listener.diagnostics[name].message
         process.terminate()
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0

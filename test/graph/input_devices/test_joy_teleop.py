@@ -1,16 +1,18 @@
-"""The shipped joy_teleop process between Joy messages and twists."""
+"""The shipped joy_teleop process between Joy messages and twists.
 
-import math
+What every trouble of a pad does, test/manipulator/teleop tries; here each way out of the node.
+"""
+
 import signal
 import time
 
 import pytest
 from sensor_msgs.msg import Joy
 
-pytestmark = [pytest.mark.graph, pytest.mark.real_time]
+pytestmark = pytest.mark.graph
 NAMESPACE = 'joysticks'
 LB, STOP, HOME, CLOSE = 4, 1, 7, 0
-PATIENCE = 10.0
+PATIENCE = 60.0
 LONG_ENOUGH = 0.5
 """Seconds in which a node that still sent twists would have sent a score of them."""
 
@@ -117,12 +119,6 @@ def is_zero(pad):
     return pad.last == (0.0,) * 6
 
 
-def test_nothing_is_sent_without_the_deadman(pad):
-    pad.axes[1] = 1.0
-    pad.send_for(LONG_ENOUGH)
-    assert pad.listener.twists == []
-
-
 def test_release_sends_one_zero_and_then_nothing(pad):
     pad.drive()
     pad.buttons[LB] = 0
@@ -132,41 +128,22 @@ def test_release_sends_one_zero_and_then_nothing(pad):
 
 def test_zero_follows_when_messages_cease(pad):
     pad.drive()
-    pad.listener.wait('the zero', lambda: is_zero(pad), 1.0)
+    pad.listener.wait('the zero', lambda: is_zero(pad))
     before = len(pad.listener.twists)
     pad.listener.spin(LONG_ENOUGH)
     assert len(pad.listener.twists) == before
     pad.send_for(LONG_ENOUGH)
     assert len(pad.listener.twists) == before
+    name = f'{NAMESPACE}/joy_teleop'
+    pad.listener.wait(
+        'a warning',
+        lambda: (
+            'no message for' in pad.listener.diagnostics[name].message
+            if name in pad.listener.diagnostics
+            else False
+        ),
+    )
     pad.rest()
-    pad.drive()
-
-
-def test_zero_follows_when_a_frozen_pad_sends_on(pad):
-    pad.drive()
-    pad.send_until('the zero', lambda: is_zero(pad), tremor=False)
-    assert_one_zero_then_silence(pad)
-
-
-@pytest.mark.parametrize(
-    ('axes', 'buttons'),
-    [
-        ([], []),
-        ([0.0, 1.0], [0] * 11),
-        ([0.0, math.nan, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]),
-        ([0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0] * 4),
-    ],
-)
-def test_bad_messages_stop_the_motion_and_good_ones_go_on(pad, axes, buttons):
-    pad.drive()
-    end = time.monotonic() + PATIENCE
-    while not is_zero(pad) and time.monotonic() < end:
-        pad.publish(axes, buttons)
-    before = len(pad.listener.twists)
-    for _ in range(20):
-        pad.publish(axes, buttons)
-    assert len(pad.listener.twists) == before
-    assert is_zero(pad)
     pad.drive()
 
 
@@ -197,31 +174,10 @@ def test_home_is_asked_while_held_and_stopped_at_release(pad):
     assert pad.listener.asked == ['home', 'stop']
 
 
-def test_home_stops_when_the_pad_is_lost(pad):
-    pad.listener.asked.clear()
-    pad.buttons[HOME] = 1
-    pad.send_until('home', lambda: pad.listener.asked)
-    pad.listener.wait('stop', lambda: pad.listener.asked == ['home', 'stop'], PATIENCE)
-
-
 def test_gripper_closes_while_button_and_deadman_are_held(pad):
     pad.hold_until(lambda: len(pad.listener.openings) > 3, LB, CLOSE)
     assert pad.listener.openings == sorted(pad.listener.openings, reverse=True)
     assert 0.0 <= pad.listener.openings[-1] < 0.5
-
-
-def test_diagnostics_tell_why_the_deadman_does_not_count(pad):
-    pad.drive()
-    name = f'{NAMESPACE}/joy_teleop'
-    pad.listener.wait(
-        'a warning',
-        lambda: (
-            'no message for' in pad.listener.diagnostics[name].message
-            if name in pad.listener.diagnostics
-            else False
-        ),
-        PATIENCE,
-    )
 
 
 def test_zero_is_the_last_word_of_a_node_that_is_ended(running, listening):
@@ -237,7 +193,7 @@ def test_zero_is_the_last_word_of_a_node_that_is_ended(running, listening):
         pad.drive()
         process.send_signal(signal.SIGINT)
         pad.send_until('the zero', lambda: is_zero(pad))
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
 
 
 def test_unknown_gamepad_is_one_line_and_status_1(refusal):

@@ -12,10 +12,10 @@ from contextlib import contextmanager
 
 import pytest
 
-pytestmark = [pytest.mark.graph, pytest.mark.real_time]
+pytestmark = pytest.mark.graph
 NAMESPACE = 'keyboards'
 ZERO = (0.0,) * 6
-PATIENCE = 10.0
+PATIENCE = 60.0
 
 
 def own_terminal():
@@ -42,7 +42,7 @@ class Typist:
         self.is_leaving = False
         self._reading = threading.Thread(target=self._read, daemon=True)
         self._reading.start()
-        listener.wait('the help', lambda: b'SPACE' in self.seen, 20.0)
+        listener.wait('the help', lambda: b'SPACE' in self.seen)
         self.type_until(b' ', lambda: 'stop' in listener.asked)
         self.type_until(b'w', lambda: listener.twists)
         self.await_last(ZERO)
@@ -80,7 +80,7 @@ class Typist:
     def close(self):
         if self.process.poll() is None:
             self.process.kill()
-        self.process.wait(10)
+        self.process.wait(60)
         if not self.is_leaving:
             self.leave(lambda: os.write(self.screen, b'the end'))
 
@@ -157,7 +157,7 @@ def test_mode_frame_gripper_and_home_reach_their_topics(typist):
 
 
 def test_the_terminal_says_who_listens(typist):
-    typist.listener.wait('a line', lambda: b'a machine listens in /keyboards' in typist.seen, 10.0)
+    typist.listener.wait('a line', lambda: b'a machine listens in /keyboards' in typist.seen)
     assert b'nobody listens' not in typist.seen.split(b'a machine listens')[-1]
 
 
@@ -171,10 +171,10 @@ def test_a_keyboard_that_nobody_hears_says_so(words, request):
     seen = b''
     try:
         while b'nobody listens in /lonely on ROS domain' not in seen:
-            assert select.select([keys], [], [], 30.0)[0], seen
+            assert select.select([keys], [], [], PATIENCE)[0], seen
             seen += os.read(keys, 4096)
         os.write(keys, b'q')
-        assert process.wait(20) == 0
+        assert process.wait(60) == 0
     finally:
         process.kill()
         process.wait()
@@ -225,7 +225,7 @@ def test_bad_parameter_is_said_and_the_terminal_is_as_before(words, request):
         stdin=screen,
         capture_output=True,
         text=True,
-        timeout=30,
+        timeout=120,
         check=False,
     )
     assert done.returncode == 1

@@ -3,11 +3,11 @@
 import pytest
 from sensor_msgs.msg import Joy
 
-pytestmark = [pytest.mark.graph, pytest.mark.real_time]
+pytestmark = pytest.mark.graph
 NAMESPACE = 'two_pads'
 LB = 4
 AXES = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]
-PATIENCE = 20.0
+PATIENCE = 60.0
 
 
 class Pads:

@@ -137,21 +137,13 @@ class Seen:
 
     def begin(self):
         """Home again; what was heard before is forgotten."""
-        self.make_ready()
-        self.client.wait('rest', lambda: self.client.motion('mode') == 'hold', 10.0)
-        self.client.home()
+        self.client.make_ready()
+        self.client.wait('rest', lambda: self.client.motion('mode') == 'hold')
+        self.client.reach_home()
         self.client.spin(0.3)
         self.twists.clear()
         self.client.wait('poses', lambda: self.poses, 10.0)
         self.start = self.poses[-1]
-
-    def make_ready(self):
-        """Enabled, whatever a test, or a computer that was too busy for the line, left."""
-        if self.client.machine_state.message == 'stopped':
-            self.client.trigger('serial_bridge/clear_fault')
-            self.client.spin(0.3)
-        if self.client.machine_state.message != 'enabled':
-            self.client.enable()
 
     def way(self):
         """How far it has come since it began, in x, y, z."""
@@ -165,9 +157,9 @@ class Seen:
 
         A computer that is too busy to draw the page loses the press, as it should: then again.
         """
-        give_up = time.monotonic() + 40.0
+        give_up = time.monotonic() + 120.0
         while time.monotonic() < give_up:
-            self.make_ready()
+            self.client.make_ready()
             page.hold(pad, *push)
             self.client.spin(0.3)
             while not self.has_moved(axis, metres) and page.said == HELD:
@@ -179,26 +171,49 @@ class Seen:
 
     def seconds_to_rest(self, since):
         """From a moment (time.time) until the joints stand still for good; waits for that."""
-        self.client.spin(1.2)
+        self.client.wait('rest', lambda: self._rests(since))
+        times, steps = self._steps()
+        before = (times < since) & (times > since - 1.0)
+        assert steps[before].max(initial=0.0) > MOVING, 'it did not move before'
+        return times[steps > MOVING][-1] - since
+
+    def _rests(self, since):
+        """Whether nothing has moved in the last half second, all of it after that moment."""
+        self.client.spin(0.2)
+        times, steps = self._steps()
+        is_late = times[-1] > since + 0.5
+        return is_late and steps[times > times[-1] - 0.5].max(initial=0.0) <= MOVING
+
+    def _steps(self):
+        """When the joints were told, and how far one had moved since they were told before."""
         times = np.array([seconds(m.header.stamp) for m in self.joints])
         joints = np.array([m.position for m in self.joints])
-        steps = np.abs(np.diff(joints, axis=0)).max(axis=1)
-        before = (times[1:] < since) & (times[1:] > since - 1.0)
-        assert steps[before].max() > MOVING, 'it did not move before'
-        moving = times[1:][steps > MOVING]
-        assert moving[-1] < times[-1] - 0.5, 'it never stood still'
-        return moving[-1] - since
+        return times[1:], np.abs(np.diff(joints, axis=0)).max(axis=1)
 
     def seconds_to_stop(self, page):
         """From a press on STOP of the page until a machine on its cycle stands still."""
-        self.begin()
-        self.client.trigger('trajectory/start_cycle')
-        self.client.spin(1.0)
+        self.client.persist(self._cycle)
         taken = self.seconds_to_rest(page.press_stop())
         assert self.client.machine_state.message == 'stopped'
         page.let_go()
         self.client.spin(0.3)  # the release says STOP once more
         return taken
+
+    def asked_until(self, ask, is_so):
+        """Asks the page again every few seconds: one that is behind takes it back."""
+        end = time.monotonic() + 120.0
+        while not is_so():
+            assert time.monotonic() < end, self.client.summary
+            ask()
+            until = time.monotonic() + 5.0
+            while not is_so() and time.monotonic() < until:
+                self.client.spin(0.1)
+
+    def _cycle(self):
+        self.begin()
+        self.client.trigger('trajectory/start_cycle')
+        self.client.spin(1.0)
+        assert self.client.motion('mode') == 'cycle'
 
     def stays(self, seconds):
         """Asserts that the machine stands still for a while."""

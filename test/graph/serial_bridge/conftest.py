@@ -1,5 +1,6 @@
 """serial_bridge and fake_hardware as processes, driven over topics and services."""
 
+import re
 import time
 
 import pytest
@@ -9,16 +10,16 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
-from hexarm.client import Client
 from hexarm.graph import Executable, Graph
 from hexarm.machines import find
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
+from patient_user import PatientUser
 
 NAMES = [f'crank_{i}' for i in range(1, 7)]
 SPACE = 'bridge_rig'
 
 
-class Rig(Client):
+class Rig(PatientUser):
     """A user of the bridge's own topics and services."""
 
     def __init__(self):
@@ -40,8 +41,8 @@ class Rig(Client):
     def switch(self, service, is_true=True):
         return self._call(SetBool, service, SetBool.Request(data=is_true))
 
-    def wait_for_state(self, word, seconds=10.0):
-        self.wait(word, lambda: self.machine_state.message == word, seconds)
+    def wait_for_state(self, word):
+        self.wait(word, lambda: self.machine_state.message == word)
 
     def enable(self):
         self.switch('serial_bridge/enable')
@@ -65,38 +66,64 @@ class Rig(Client):
         message.header.stamp.sec, message.header.stamp.nanosec = int(now), int(now % 1 * 1e9)
         self._commands.publish(message)
 
-    def stream(self, angle, seconds=0.5):
-        """Commands all joints to `angle`, at 50 Hz, from where they are."""
+    def stream(self, angle):
+        """Commands all joints to `angle`, at 50 Hz, from where they are, until they are there.
+
+        From where they are once more, where this computer stood still and the board holds.
+        """
+        self.persist(lambda: self._stream(angle))
+
+    def _stream(self, angle):
+        self.joints.clear()
+        self.wait('the joints', lambda: self.joints)
         start = self.joints[-1].position[0]
-        ticks = round(seconds / 0.02)
-        for k in range(1, ticks + 1):
-            self.command([start + (angle - start) * min(2 * k / ticks, 1.0)] * 6)
+        for k in range(1, 26):
+            self.command([start + (angle - start) * min(k / 12, 1.0)] * 6)
             self.spin(0.02)
+        assert abs(self.true_angle() - angle) < 0.02
+
+    def make_ready(self):
+        """There is no trajectory node here that would say so."""
 
     def true_angle(self):
         self.true_joints.clear()
-        self.wait('true joints', lambda: len(self.true_joints) > 2, 5.0)
+        self.wait('true joints', lambda: len(self.true_joints) > 2)
         return self.true_joints[-1].position[0]
+
+    def publish_command(self, serialized):
+        self._commands.publish(serialized)
 
     def report(self):
         """The bridge's next diagnostics, by key."""
         self.diagnostics.clear()
         name = f'{SPACE}/serial_bridge'
-        self.wait('diagnostics', lambda: name in self.diagnostics, 5.0)
+        self.wait('diagnostics', lambda: name in self.diagnostics)
         status = self.diagnostics[name]
         return {value.key: value.value for value in status.values} | {'message': status.message}
 
     def refuses(self, said, **command):
-        """Waits until the bridge says so of a command that it must not follow."""
-        self.command(**command)
-        self.wait(said, lambda: said in self.report()['last_refusal'], 5.0)
+        """Asks for what the bridge must not follow until it says why not."""
+
+        def is_refused():
+            self.command(**command)
+            return said in self.report()['last_refusal']
+
+        self.wait(said, is_refused)
 
     def set_battery(self, volts):
         value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=volts)
-        request = SetParameters.Request(parameters=[Parameter(name='battery_v', value=value)])
+        assert self._set('battery_v', value).successful
+
+    def inject(self, fault):
+        """What the fake board answers to being asked for one."""
+        value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=fault)
+        return self._set('fault', value)
+
+    def _set(self, name, value):
+        request = SetParameters.Request(parameters=[Parameter(name=name, value=value)])
         client = self.node.create_client(SetParameters, 'fake_hardware/set_parameters')
-        self.wait('parameters', client.service_is_ready, 10.0)
-        assert self.answer_of(client, request, 'the battery').results[0].successful
+        self.wait('parameters', client.service_is_ready)
+        return self.answer_of(client, request, 'the parameter').results[0]
 
 
 @pytest.fixture(scope='module')
@@ -107,6 +134,7 @@ def port(tmp_path_factory):
 @pytest.fixture(scope='module')
 def processes(port, tmp_path_factory):
     hasty = find('robocake').read_text().replace('arm_interval_ms: 150', 'arm_interval_ms: 40')
+    hasty = re.sub('setpoint_deadline_ms: .*', 'setpoint_deadline_ms: 1000', hasty)
     machine = tmp_path_factory.mktemp('machine') / 'hasty.yaml'
     machine.write_text(hasty)
     nodes = [

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.graph
 def state_in(space, word):
     """The machine state of another namespace, once it is `word`."""
     with Client(space) as client:
-        client.wait(word, lambda: client.machine_state.message == word, 10.0)
+        client.wait(word, lambda: client.machine_state.message == word, 60.0)
         return client.summary
 
 
@@ -51,7 +51,7 @@ def test_a_board_with_another_joint_count_is_a_fault(tmp_path):
 )
 def test_what_is_wrong_at_the_start_is_one_line_and_status_1(entry, parameter, said):
     command = [sys.executable, '-m', 'bridge', entry, '--ros-args', '-p', parameter]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=20, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 1
     assert said in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1

@@ -68,6 +68,33 @@ def test_number_that_is_none_is_refused_by_name_and_pose(name):
         read_poses(serialize_message(message), 'base')
 
 
+@pytest.mark.parametrize(('w', 'length'), [(0.0, '0'), (2.0, '2')])
+def test_quaternion_that_is_no_rotation_is_refused_by_its_pose(w, length):
+    message = written()
+    q = message.poses[2].pose.orientation
+    q.x, q.y, q.z, q.w = 0.0, 0.0, 0.0, w
+    with pytest.raises(InvalidInput, match=f'pose 3: quaternion has length {length}, a rotation'):
+        read_poses(serialize_message(message), 'base')
+
+
+@pytest.mark.parametrize('frame', ['moon', 'x' * 200])
+def test_pose_in_another_frame_than_its_path_is_refused_by_its_number(frame):
+    message = written()
+    message.poses[4].header.frame_id = frame
+    with pytest.raises(InvalidInput, match=r'pose 5: frame_id .*, the path is in .base.'):
+        read_poses(serialize_message(message), 'base')
+
+
+def test_frame_that_is_no_name_is_refused_by_its_length():
+    with pytest.raises(InvalidInput, match='a frame_id of 50001 characters'):
+        read_head(serialize_message(written(frame='x' * 50_000)))
+
+
+def test_path_without_poses_is_refused():
+    with pytest.raises(InvalidInput, match='0 poses in'):
+        read_poses(serialize_message(written(0)), 'base')
+
+
 def test_count_of_a_huge_message_is_read_at_once():
     serialized = serialize_message(written(7)) + bytes(100_000_000)
 

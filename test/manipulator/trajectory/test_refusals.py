@@ -143,3 +143,20 @@ def test_nothing_came_of_a_path_is_said_with_its_stamp_and_reason():
     said = motion.status
     assert (said.result, said.goal_stamp, said.reason) == ('refused', 8.0, 'the path has a corner')
     assert motion.expected is None
+
+
+@pytest.mark.parametrize('metres', [1e7, -1e14, 1e160, -1e308])
+@pytest.mark.parametrize('ticks', [0, 10])
+@pytest.mark.parametrize('name', ['robocake', 'arm_6r'])
+def test_a_goal_farther_away_than_any_machine_is_refused_at_rest_and_in_motion(
+    name, ticks, metres
+):
+    machine = load(name)
+    home = machine.kinematics.home
+    motion = player(machine, home)
+    motion.pursue(Goal(home.moved([0.0, 0.0, 0.004, 0.0, 0.0, 0.0]), 1.0))
+    for _ in range(ticks):
+        motion.step()
+    drive(motion, Goal(Pose(home.position + metres * np.eye(3)[2], home.rotation), 2.0))
+    assert (motion.status.result, motion.status.goal_stamp) == ('refused', 2.0)
+    assert 'm from home, needs at most' in motion.status.reason

@@ -151,6 +151,10 @@ class World:
         self.wait('answer', lambda: answer.said is not None)
         return answer.said
 
+    def ask_to_arm(self):
+        """The answer that is to come."""
+        return self.bridge.ask(lambda driver: driver.enable(True))
+
     def enable(self):
         self.wait('board', lambda: self.state not in ('disconnected', 'booting'))
         assert self.ask(lambda driver: driver.enable(True)) == ''

@@ -1,14 +1,20 @@
-"""Both machines moved through hundreds of faults: most of a minute here, ten in `make soak`."""
+"""Both machines as real processes moved through faults for ten minutes: `python -m bench.soak`.
 
+What the faults must not do, test/world/test_soak.py tries in simulated time; here no process ends
+or grows, and the link is there again at the board's first word. Status 1 where that is not so.
+"""
+
+import argparse
 import contextlib
 import itertools
 import os
+import sys
+import tempfile
 import time
 from pathlib import Path
 from random import Random
 
 import numpy as np
-import pytest
 from std_msgs.msg import Bool, Float64
 from std_srvs.srv import SetBool
 
@@ -20,10 +26,6 @@ from manipulator.errors import ManipulatorError
 from manipulator.nodes.qos import COMMAND
 from manipulator.pose import Pose
 
-pytestmark = pytest.mark.graph
-
-SECONDS = float(os.environ.get('SOAK_SECONDS', '50')) / 2
-"""For each machine."""
 FAULTS_PER_MINUTE = 150.0
 BOOT = 2.0
 MACHINES = {'hexapod': ('robocake', 0.004), 'arm': ('arm_6r', 0.03)}
@@ -31,6 +33,8 @@ MACHINES = {'hexapod': ('robocake', 0.004), 'arm': ('arm_6r', 0.03)}
 WARMING, WARMING_UP, LEVEL = 150.0, 20.0, 1.5
 """Until all kinds of motion were driven (s) a process may take 20 MB more; later 1.5 MB."""
 DEADLINE, PERIOD = 0.2, 0.02
+AGAIN_WITHIN = 3.0
+"""Seconds from a board's boot to its bridge."""
 
 
 class Soak:
@@ -56,7 +60,8 @@ class Soak:
             with contextlib.suppress(ManipulatorError):
                 self.act()
             self.user.spin(0.1)
-            assert not self.rig.dead()
+            if self.rig.dead():
+                raise SystemExit(f'a process ended: {self.rig.dead()}')
             if time.monotonic() > begin + seconds / 2:
                 least = np.minimum(least, memory(self.rig))
         return least
@@ -97,26 +102,22 @@ def memory(rig):
     return np.array([resident(rig.pid(name)) for name in rig.names])
 
 
-def check_frames(rig):
-    """Every frame in its range; each near the last one, or near where the servos are."""
+def bad_frames(rig):
+    """How many frames are out of range, or far from the one before."""
     ranges = np.array(rig.calibration.count_ranges)
     speeds = np.array(rig.calibration.count_speeds)
     frames = rig.tap.heard((Setpoint, Arm, Disarm))
     setpoints = [(t, np.array(m.counts)) for t, m in frames if isinstance(m, Setpoint)]
-    assert len(setpoints) > 100
-    for _, counts in setpoints:
-        assert (ranges[:, 0] <= counts).all()
-        assert (counts <= ranges[:, 1]).all()
+    bad = sum(bool((c < ranges[:, 0]).any() or (c > ranges[:, 1]).any()) for _, c in setpoints)
     for (before, a), (now, b) in itertools.pairwise(setpoints):
-        if now - before < DEADLINE / 2:
-            # The bridge's clock and ours, on a busy computer, differ by two periods at most.
-            assert (np.abs(b - a) <= speeds * (now - before + 3 * PERIOD) + 1).all()
-    steps = [
-        (later[0] - earlier[0], np.abs(np.subtract(later[1], earlier[1])))
-        for earlier, later in itertools.pairwise(rig.recorder.changes())
-        if None not in (*earlier[1], *later[1])
-    ]
-    assert all((way <= speeds * (dt + 3 * PERIOD) + 1).all() for dt, way in steps)
+        # The bridge's clock and ours, on a busy computer, differ by two periods at most.
+        is_far = (np.abs(b - a) > speeds * (now - before + 3 * PERIOD) + 1).any()
+        bad += bool(now - before < DEADLINE / 2 and is_far)
+    for (before, old), (now, new) in itertools.pairwise(rig.recorder.changes()):
+        if None not in (*old, *new):
+            way = np.abs(np.subtract(new, old))
+            bad += bool((way > speeds * (now - before + 3 * PERIOD) + 1).any())
+    return bad
 
 
 def reconnections(rig, count):
@@ -126,22 +127,19 @@ def reconnections(rig, count):
         rig.board.do(lambda: rig.recorder.board.reset(ResetCause.WATCHDOG))
         begun = time.monotonic()
         rig.user.spin(1.0)
-        assert rig.user.machine_state.message in ('disconnected', 'booting')
         rig.user.wait('disarmed', lambda: rig.user.machine_state.message == 'disarmed', 10.0)
         times.append(time.monotonic() - begun - BOOT)
     return times
 
 
-@pytest.mark.parametrize('kind', MACHINES)
-def test_hundreds_of_faults_crash_nothing_and_move_nothing_beyond_its_limits(kind, tmp_path):
+def soaked(kind, seconds, folder):
+    """Drives one machine through faults; whether all was as it should be."""
     machine, reach = MACHINES[kind]
     faults = Faults(seed=1, per_minute=FAULTS_PER_MINUTE)
-    with Rig(tmp_path, f'soak_{kind}', kind, machine, BOOT, faults) as rig:
+    with Rig(folder, f'soak_{kind}', kind, machine, BOOT, faults) as rig:
         soak = Soak(rig, machine, reach, seed=2)
         soak.user.wait('motion', lambda: soak.user.motion('mode') != '', 15.0)
-        taken = []
-        for _ in range(3):
-            taken.append(soak.go_on(SECONDS / 3))
+        taken = [soak.go_on(seconds / 3) for _ in range(3)]
         faults.calm()
         soak.is_calm = True
         soak.overrides.publish(Float64(data=1.0))
@@ -149,14 +147,29 @@ def test_hundreds_of_faults_crash_nothing_and_move_nothing_beyond_its_limits(kin
         soak.go_on(4.0)
         rig.user.go_to(soak.home)
         times = reconnections(rig, 2)
+        bad = bad_frames(rig)
     told = f'{faults.counts.total()} faults, {soak.moves} goals, {soak.enablings} enablings'
+    print(f'{kind}: {told}; {bad} bad frames; again after boot: {np.round(times, 2)} s')
     grown = np.diff(taken, axis=0)
-    print(f'\n{kind}: {told}; again after boot: {np.round(times, 2)} s')
     for name, *more in zip(rig.names, *grown, strict=True):
         print(f'  {name}: {more[0]:+.2f}, {more[1]:+.2f} MB in the second and the last third')
-    assert faults.counts.total() > FAULTS_PER_MINUTE / 60 * SECONDS / 2
-    assert soak.moves > SECONDS / 5
-    assert grown.sum(axis=0).max() < WARMING_UP
-    assert grown[1].max() < (LEVEL if 2 / 3 * SECONDS > WARMING else WARMING_UP)
-    assert max(times) < 3.0
-    check_frames(rig)
+    most = LEVEL if 2 / 3 * seconds > WARMING else WARMING_UP
+    is_level = grown.sum(axis=0).max() < WARMING_UP and grown[1].max() < most
+    return not bad and is_level and max(times) < AGAIN_WITHIN
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(prog='python -m bench.soak', description=__doc__)
+    parser.add_argument('--seconds', type=float, default=600.0, help='of both machines together')
+    seconds = parser.parse_args(arguments).seconds / len(MACHINES)
+    os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
+    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    results = []
+    for kind in MACHINES:
+        with tempfile.TemporaryDirectory() as folder:
+            results.append(soaked(kind, seconds, Path(folder)))
+    return 0 if all(results) else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main(sys.argv[1:]))

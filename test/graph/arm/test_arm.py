@@ -1,0 +1,133 @@
+"""The whole graph of an arm with encoders: one of each thing that can be asked of it.
+
+What jogs and goals do in time, test/world tries; what jog modes hold, test/streams.
+"""
+
+import subprocess
+import sys
+import textwrap
+
+import numpy as np
+import pytest
+from std_msgs.msg import Bool, Float64
+
+from hexarm.machines import load
+from manipulator.nodes.messages import joints_of
+from manipulator.nodes.qos import COMMAND
+from manipulator.trajectory.shapes import arc
+
+pytestmark = pytest.mark.graph
+
+HOME = load('arm_6r_stepper').kinematics.home
+
+
+def test_goal_is_reached_and_the_encoders_say_so(arm, listen):
+    goal = HOME.moved([0.1, -0.05, 0.05, 0.0, 0.2, 0.1])
+    arm.reach(goal)
+    heard = listen()
+
+    def is_there():
+        error = heard.poses[-1].twist_to(goal) if heard.messages else np.ones(6)
+        return np.abs(error[:3]).max() < 5e-4 and np.abs(error[3:]).max() < np.radians(0.05)
+
+    arm.wait('the joints', is_there)
+
+
+def test_path_is_driven_within_a_millimetre(arm, listen):
+    x, y, z = HOME.position
+    ring = arc(HOME, (x, y - 0.05, z), (1.0, 0.0, 0.0), 2 * np.pi)
+    heard = listen()
+
+    def drive():
+        heard.messages.clear()
+        arm.follow(ring)
+
+    arm.persist(drive)
+    y_of, z_of = np.array([pose.position[1:] for pose in heard.poses]).T
+    assert np.abs(np.hypot(y_of - y + 0.05, z_of - z) - 0.05).max() < 1e-3
+    assert np.ptp(z_of) > 0.09
+
+
+def test_jog_is_smooth_and_ends_in_a_hold_when_the_stick_is_let_go(arm, joystick, listen):
+    commands = listen('joint_command')
+    arm.wait('80 mm', lambda: joystick.has_pushed([0.2, 0, 0, 0, 0, 0], commands, 0.08))
+    joystick.send()
+    arm.wait('rest', lambda: (arm.motion('mode'), arm.motion('result')) == ('hold', 'idle'))
+    commands.check_smooth()
+
+
+def test_killed_source_stops_the_arm(arm):
+    script = textwrap.dedent(
+        """
+        import time, rclpy
+        from geometry_msgs.msg import TwistStamped
+        rclpy.init()
+        node = rclpy.create_node('doomed')
+        publisher = node.create_publisher(TwistStamped, '/arm/cmd_vel/panel', 1)
+        message = TwistStamped()
+        message.twist.linear.x = 0.01
+        while True:
+            message.header.stamp = node.get_clock().now().to_msg()
+            publisher.publish(message)
+            time.sleep(0.02)
+        """
+    )
+    source = subprocess.Popen([sys.executable, '-c', script])
+    try:
+        arm.wait('jogging', lambda: arm.motion('mode') == 'jog')
+    finally:
+        source.kill()
+        source.wait()
+    arm.wait('standing still', lambda: arm.motion('mode') == 'hold')
+
+
+def test_bad_twists_modes_and_frames_are_refused_and_the_arm_stays(arm, joystick, listen):
+    heard = listen('joint_command')
+    joystick.mode('upside_down')
+
+    def told():
+        status = arm.diagnostics.get('arm/trajectory')
+        return {v.key: v.value for v in status.values} if status else {}
+
+    def is_refused(twist, frame, words):
+        joystick.send(twist, frame)
+        arm.spin(0.02)
+        return words in told().get('last_twist_refusal', '')
+
+    for twist, frame, words in (
+        ([np.nan, 0, 0, 0, 0, 0], '', 'is not finite'),
+        ([0.1, 0, 0, 0, 0, 0], 'moon', "'moon' is not one of"),
+    ):
+        arm.wait(words, lambda t=twist, f=frame, w=words: is_refused(t, f, w))
+    assert np.ptp(heard.joints, axis=0).max() < 1e-3
+    assert told()['jog_mode'] == 'free'
+    assert arm.motion('mode') == 'hold'
+
+
+def test_gripper_opens_while_the_arm_stands(arm, listen):
+    gripper = arm.node.create_publisher(Float64, 'gripper', COMMAND)
+    arm.wait('a listener', lambda: gripper.get_subscription_count() > 0)
+    heard = listen()
+
+    def is_open():
+        gripper.publish(Float64(data=1.0))
+        arm.spin(0.1)
+        last = heard.messages[-1:]
+        return any(joints_of(m, ('gripper',))[0] > np.radians(49.0) for m in last)
+
+    arm.wait('the gripper', is_open)
+    assert np.ptp(heard.joints, axis=0).max() < 1e-3
+
+
+def test_emergency_stop_ends_a_motion_and_nothing_resumes_after_the_clear(arm, listen):
+    stops = arm.node.create_publisher(Bool, 'emergency_stop', COMMAND)
+    arm.wait('a listener', lambda: stops.get_subscription_count() > 0)
+    arm.publish_goal(HOME.moved([0.25, 0, 0, 0, 0, 0]))
+    arm.wait('moving', lambda: arm.motion('mode') == 'move')
+    stops.publish(Bool(data=True))
+    arm.wait('the stop', lambda: arm.machine_state.message == 'stopped')
+    arm.trigger('serial_bridge/clear_fault')
+    arm.wait('goals', lambda: arm.motion('mode') == 'hold')
+    heard = listen('joint_command')
+    arm.wait('commands', lambda: len(heard.messages) > 50)
+    assert np.ptp(heard.joints, axis=0).max() < 1e-6
