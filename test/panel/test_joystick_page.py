@@ -205,6 +205,7 @@ def test_two_pages_do_not_fight(panel, hand, pages):
     second.says(TAKEN)
     assert panel.is_held(X, 1)
     hand.let_go()
+    assert panel.is_let_go()
     assert panel.stays_let_go()
     second.let_go()
     push(second, '#move', BACKWARD, X)
