@@ -26,7 +26,7 @@ from hexarm import machines
 from hexarm.client import Client, NotReady
 from hexarm.graph import Graph, machine_graph
 from hexarm.tapped_line import Tap, TappedLine
-from manipulator.errors import ManipulatorError
+from manipulator.errors import ManipulatorError, Refused
 
 Pulses = tuple[float | None, ...]
 
@@ -190,9 +190,9 @@ class Rig:
         self.board.do(lambda: self.board.plug(line))
 
     def enable(self) -> None:
-        """Asks again where the question went to a bridge that is no more."""
+        """Asks again where the bridge is no more, or lost its board on a computer that stalls."""
         for _ in range(TRIES):
-            with contextlib.suppress(NotReady):
+            with contextlib.suppress(NotReady, Refused):
                 self.user.enable()
                 return
         raise NotReady(f'not enabled in {TRIES} tries: {self.user.summary}')

@@ -17,8 +17,8 @@ from manipulator.unit_hints import hint_at_metres
 
 TOLERANCE = 1.005
 
-AT_ONCE = 1024
-"""Ticks that are solved together: it bounds the memory that a long plan needs."""
+AT_ONCE = 256
+"""Ticks solved together: bounds the memory of a long plan, and how late it is given up."""
 
 ROUNDING = 1e-9
 """Of a tick, by which a duration that is a whole number of them may be off."""

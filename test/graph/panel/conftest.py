@@ -212,8 +212,8 @@ class Seen:
     def _cycle(self):
         self.begin()
         self.client.trigger('trajectory/start_cycle')
+        self.client.wait('the cycle', lambda: self.client.motion('mode') == 'cycle', 20.0)
         self.client.spin(1.0)
-        assert self.client.motion('mode') == 'cycle'
 
     def stays(self, seconds):
         """Asserts that the machine stands still for a while."""
