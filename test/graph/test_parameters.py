@@ -64,10 +64,9 @@ def describe(client, executable):
 def call(client, kind, name, **fields):
     service = client.node.create_client(kind, name)
     client.wait(f'service {name}', service.service_is_ready, 10.0)
-    future = service.call_async(kind.Request(**fields))
-    client.wait(f'an answer of {name}', future.done, 10.0)
+    answer = client.answer_of(service, kind.Request(**fields), f'an answer of {name}')
     client.node.destroy_client(service)
-    return future.result()
+    return answer
 
 
 @pytest.mark.parametrize('executable', [executable for executable, _, _ in NODES])

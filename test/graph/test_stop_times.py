@@ -90,6 +90,6 @@ def test_after_stop_and_clear_nothing_moves_until_a_new_command(circling):
     rig.user.wait('goals', lambda: rig.user.motion('mode') == 'hold', PATIENCE)
     rig.user.spin(0.5)
     assert rig.recorder.way(still + 0.05) <= QUIET
-    counts = np.array([m.counts for _, m in rig.tap.heard(Setpoint, stopped)])
+    counts = np.array([m.counts for _, m in rig.tap.heard(Setpoint, still)])
     assert np.ptp(counts, axis=0).max() <= QUIET
     check_that_it_drives_again(rig)

@@ -20,6 +20,18 @@ class PatientUser(Client):
     def wait(self, what, is_so, seconds=PATIENCE, progress=lambda: None):
         super().wait(what, is_so, max(seconds, self.patience), progress)
 
+    def answer_of(self, client, request, what):
+        """Asked again every few seconds: a question may be lost just after discovery."""
+        for _ in range(TRIES):
+            self.patience = 0.0
+            try:
+                return super().answer_of(client, request, what)
+            except NotReady as error:
+                last = error
+            finally:
+                self.patience = PATIENCE
+        raise last
+
     def persist(self, ask):
         """What `ask` returns; asked again where it failed and the machine was lost."""
         for _ in range(TRIES - 1):
