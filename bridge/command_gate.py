@@ -104,7 +104,7 @@ class CommandGate:
         elif present is not None and np.all(np.isfinite(present)):
             start, where, time, elapsed = present, 'where the joint is', START, 0.0
         else:
-            raise Refused('where the joints are is not known yet')
+            raise Refused('the positions of the joints are not known yet')
         ways = np.abs(wanted - start)
         i = int(np.argmax(ways))
         allowed = self._calibration.speed * time

@@ -52,8 +52,7 @@ class Link:
     No more than bytes_per_second are to be read: what sends more is no serial line, and its
     noise must not take the processor from what stops the machine.
 
-    `put_setpoint` and `request` may be called from any thread; then `wake` is called in that
-    thread. All else belongs to the thread that has the port.
+    It belongs to the thread that has the port, with its session.
     """
 
     def __init__(
@@ -65,7 +64,6 @@ class Link:
     ) -> None:
         self.session = session
         self.is_open = False
-        self.wake: Callable[[], None] = lambda: None
         self._on_event, self._on_written = on_event, on_written
         self._bytes_per_second = bytes_per_second
         self._look_at = self._read_at = self._setpoint_at = self._listened_at = 0.0
@@ -79,25 +77,18 @@ class Link:
     def put_setpoint(self, ticket: Ticket) -> None:
         """Newest wins: one that was not yet sent is forgotten."""
         self._mailbox.append(ticket)
-        self.wake()
 
-    def request(self, command: Command) -> 'Future[None]':
-        """Done when the board has obeyed and on_event was told; Refused says why not."""
-        future: Future[None] = Future()
+    def request(self, command: Command, answer: 'Future[None] | None' = None) -> 'Future[None]':
+        """Done when the board has obeyed and on_event was told; Refused says why not.
+
+        It is always answered, by the next turn or when the session gives the command up: within
+        a second, a STOP that nobody obeys included, which goes on all the same.
+        """
+        future: Future[None] = answer or Future()
         if isinstance(command, Stop):
             self.session.is_stop_wanted = True  # no setpoint goes out from here on
         self._requests.append((command, future))
-        self.wake()
         return future
-
-    def refuse_requests(self, reason: str) -> None:
-        """Of all that nobody will send, because no thread has the port."""
-        while self._requests:
-            _, future = self._requests.popleft()
-            if future.set_running_or_notify_cancel():
-                future.set_exception(Refused(reason))
-
-    # By the thread that has the port
 
     def wants_port(self, now: float) -> bool:
         """The port is to be opened now; a lost one is looked for every 0.25 s."""

@@ -45,9 +45,7 @@ RETRY_AFTER = 0.1
 MAX_TRIES = 4
 BOARD_SILENCE = 0.5
 MAX_BOOT = 5.0
-UPTIME_SLACK_MS = 250
 MODE_AFTER: dict[type, Mode] = {Disarm: Mode.DISARMED, Stop: Mode.STOPPED}
-SHORTEST_ADVANCE_MS = 125
 SHOWN_BY_STATE = (Arm, Clear, Play)
 """Commands whose mode afterwards only the next STATE tells: they are acknowledged with it."""
 
@@ -71,13 +69,13 @@ class Session:
     away or started again, and until the board has obeyed a CLEAR no setpoint goes out.
     """
 
-    def __init__(self, joint_count: int, is_stop_wanted: bool = False) -> None:
+    def __init__(self, joint_count: int) -> None:
         self.joint_count = joint_count
         self.phase = Phase.CLOSED
         self.hello: Hello | None = None
         self.state: State | None = None
         self.setpoints_sent = 0
-        self.is_stop_wanted = is_stop_wanted
+        self.is_stop_wanted = False
         self.reader = FrameReader()
         self.round_trips = RoundTrips()
         self._output = bytearray()
@@ -137,13 +135,13 @@ class Session:
         if pending is None or pending.is_obeyed or now - pending.sent_at < RETRY_AFTER:
             return []
         is_too_often = pending.tries % MAX_TRIES == 0
-        reason = f'no answer from the board after {MAX_TRIES} tries'
+        reason = f'no answer from the board after {pending.tries} tries'
         if is_too_often and not isinstance(pending.command, Stop):
             return self._fail_pending(reason)
         pending.tries += 1
         pending.sent_at = now
         self._output += pending.wire
-        return [CommandFailed(pending.command, f'{reason} yet')] if is_too_often else []
+        return [CommandFailed(pending.command, reason)] if is_too_often else []
 
     def send_setpoint(self, setpoint: Setpoint, now: float) -> None:
         """Newest wins, never repeated; Refused where the board would not follow it."""

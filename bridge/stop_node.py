@@ -1,58 +1,63 @@
-"""The part of serial_bridge that hears STOP, in a thread of its own: it waits for no service."""
+"""The part of serial_bridge that receives STOP, in a thread of its own.
 
+Where messages come faster than the node's executor takes them, they queue up ahead of a STOP, for
+seconds; a callback of another node on the same executor holds it up as well. This executor has
+nothing else to do.
+"""
+
+import os
+import signal
+import threading
 from collections.abc import Callable
-from concurrent.futures import Future, wait
 
+from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
-from bridge.driver import ANSWER_WITHIN, Asked, BoardDriver
-from bridge.side_node import SideNode
+from manipulator.nodes.late_answers import Call, create_late_service
 from manipulator.nodes.qos import EVERY_WORD
 
 
-class StopNode(SideNode):
-    """`emergency_stop` and `~/stop`."""
+class StopNode(Node):
+    """`emergency_stop` and `~/stop`, as a node beside its `owner`; spun from `start` to `close`.
+
+    Where its thread dies of an error the process ends: it would look alive, and obey no STOP.
+    """
 
     def __init__(
-        self,
-        owner: Node,
-        driver: BoardDriver,
-        remember: Callable[[], None],
+        self, owner: Node, on_stop: Callable[[], None], on_call: Callable[[Call], None]
     ) -> None:
-        """`remember` is called after each STOP that was asked for, also if no board heard it."""
-        super().__init__(owner, 'stop')
-        self._driver, self._remember = driver, remember
+        """Both are called in this node's thread and must not wait."""
+        super().__init__(f'{owner.get_name()}_stop', start_parameter_services=False)
+        self._on_stop = on_stop
         self.create_subscription(Bool, 'emergency_stop', self._on_message, EVERY_WORD)
-        self.create_service(Trigger, f'{owner.get_name()}/stop', self._on_service)
+        create_late_service(self, Trigger, f'{owner.get_name()}/stop', on_call)
+        self._own_executor = EventsExecutor()
+        self._own_executor.add_node(self)
+        self._is_closing = False
+        self._thread = threading.Thread(target=self._spin, name='stop', daemon=True)
 
-    def stop(self) -> None:
-        """STOP to the board, now or as soon as there is one; from any thread."""
-        asked = self._driver.stop()
-        self._remember()
-        asked.future.add_done_callback(self._say_failed)
+    def start(self) -> None:
+        """From here on messages and calls are received."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """Ends the thread and leaves the graph."""
+        self._is_closing = True
+        self._own_executor.wake()
+        self._thread.join()
+        self._own_executor.shutdown()
+        self.destroy_node()
 
     def _on_message(self, message: Bool) -> None:
         if message.data:
-            self.stop()
+            self._on_stop()
 
-    def _say_failed(self, done: 'Future[None]') -> None:
-        error = done.exception()
-        if error is not None:
-            text = f'STOP not obeyed yet, it is said again: {error}'
-            self.get_logger().error(text, throttle_duration_sec=1.0)
-
-    def _on_service(
-        self, request: Trigger.Request, response: Trigger.Response
-    ) -> Trigger.Response:
-        asked = self._driver.stop()
-        self._remember()
-        response.success, response.message = answer_of(self._driver, asked)
-        return response
-
-
-def answer_of(driver: BoardDriver, asked: Asked) -> tuple[bool, str]:
-    """Waits for it: whether the board obeyed within a second, and what to say."""
-    wait([asked.future], ANSWER_WITHIN)
-    return driver.answer(asked)
+    def _spin(self) -> None:
+        try:
+            while not self._is_closing:
+                self._own_executor.spin_once(timeout_sec=0.1)
+        finally:
+            if not self._is_closing:
+                os.kill(os.getpid(), signal.SIGTERM)

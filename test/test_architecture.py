@@ -16,7 +16,6 @@ CLOCKED = {
     'board_thread.py',
     'fake_line.py',
     'serial_port.py',
-    'stop_memory.py',
     'stop_socket.py',
 }
 

@@ -110,11 +110,12 @@ class ServoLine:
     def move(self, counts: tuple[int, ...]) -> None:
         """Be there now."""
         setpoint = Setpoint(self._config.link.setpoint_deadline_ms, counts)
-        self._link.put_setpoint(Ticket(setpoint, time.monotonic()))
+        ticket = Ticket(setpoint, time.monotonic())
+        self._thread.post(lambda: self._link.put_setpoint(ticket))
 
     def stop(self) -> None:
         """At once; repeated until the board has heard it."""
-        self._link.request(Stop())
+        self._thread.request(Stop())
 
     def clear(self) -> None:
         """Forget the stop; nothing moves. Refused says why not."""
@@ -124,7 +125,7 @@ class ServoLine:
         """Asks again where it failed: a computer that is busy may lose an answer."""
         for tries_left in reversed(range(TRIES)):
             try:
-                self._link.request(command).result(ANSWER_WITHIN)
+                self._thread.request(command).result(ANSWER_WITHIN)
                 break
             except NoAnswer as error:
                 raise Refused('the board does not answer') from error

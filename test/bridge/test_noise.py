@@ -114,7 +114,7 @@ def test_endless_noise_takes_little_of_the_processor_and_requests_are_heard(nois
         elapsed = time.monotonic() - begin
         cost = time.process_time() - total - (time.thread_time() - used)
         with pytest.raises(Refused):
-            link.request(Stop()).result(2.0)
+            thread.request(Stop()).result(2.0)
     finally:
         thread.close()
         os.close(ours)

@@ -71,8 +71,6 @@ class World:
         self.links['joints_pose'].lead_to(new, new.on_joints)
 
     def start_bridge(self):
-        """A STOP that the one before was asked for is known to it (bridge/stop_memory.py)."""
-        before = self.bridge
         new = self.bridge = Bridge(
             self.timeline,
             self._config,
@@ -80,7 +78,6 @@ class World:
             self.cable,
             self.links['words'],
             Fan([self.links[name] for name in ('joints', 'joints_ik', 'joints_pose')]),
-            before is not None and before.driver.session.is_stop_wanted,
         )
         self.links['commands'].lead_to(new, new.on_command)
         self.cable.lead_to(new)
