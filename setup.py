@@ -5,7 +5,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 NAME = 'hexarm'
-ROOMS = ['manipulator', 'hexapod_control', 'arm_control', 'physics', 'bridge', 'panel', 'hexarm']
+ROOMS = ['manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm']
 
 setup(
     name=NAME,
@@ -14,7 +14,7 @@ setup(
     license='Apache-2.0',
     python_requires='>=3.10',
     packages=find_packages(include=[pattern for r in ROOMS for pattern in (r, f'{r}.*')]),
-    package_data={'panel': ['joystick.html'], 'hexarm': ['fastdds.xml']},
+    package_data={'hexarm': ['fastdds.xml', 'panel/joystick.html']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
@@ -64,7 +64,7 @@ setup(
     },
     entry_points={
         'console_scripts': [
-            'hexarm = hexarm.main:main',
+            'hexarm = hexarm.cli.main:main',
             'hexapod_trajectory = hexapod_control.executables:trajectory',
             'hexapod_ik = hexapod_control.executables:ik',
             'hexapod_pose = hexapod_control.executables:pose',
@@ -76,7 +76,7 @@ setup(
             'keyboard_teleop = manipulator.device_executables:keyboard_teleop',
             'serial_bridge = bridge.executables:serial_bridge',
             'fake_hardware = bridge.executables:fake_hardware',
-            'panel = panel.executables:panel',
+            'panel = hexarm.panel.executables:panel',
         ],
     },
 )

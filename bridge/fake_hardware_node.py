@@ -18,8 +18,8 @@ from bridge.faults import FaultKind, Faults
 from bridge.messages import ResetCause
 from bridge.servo_config import BoardConfig, SimulationConfig
 from hexarm import machines
-from hexarm.board_solver import board_solver
-from hexarm.fake_plant import plant
+from hexarm.board.plant import plant
+from hexarm.board.solver import board_solver
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, LinkError
 from manipulator.nodes.parameters import declare

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hexarm.firmware_build import chip_process
+from hexarm.board.build import chip_process
 
 PATIENCE = 5.0
 """Seconds a process has for its own clean end before it is killed."""

@@ -9,8 +9,8 @@ from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
+from hexarm.cli.up import MACHINES, check
 from hexarm.graph import Executable, machine_graph
-from hexarm.up import MACHINES, check
 
 PACKAGE = 'hexarm'
 PREFIXES = {'hexapod_control': 'hexapod_', 'arm_control': 'arm_'}

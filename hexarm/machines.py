@@ -133,6 +133,6 @@ def _sag(machine_file: MachineFile, kinematics: Kinematics) -> Sag | None:
     """What the machine's nodes compensate, where its file asks for it."""
     if (machine_file.dynamics or {}).get('compensation') is not True:
         return None
-    from physics.compensation import sag_of  # noqa: PLC0415 (most machines need no masses)
+    from hexarm.simulation.compensation import sag_of  # noqa: PLC0415 (most machines need no masses)
 
     return sag_of(machine_file, kinematics)

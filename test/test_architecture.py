@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-ROOMS = {'manipulator', 'hexapod_control', 'arm_control', 'physics', 'bridge', 'panel', 'hexarm'}
-MAY_IMPORT = {'physics': {'hexapod_control', 'arm_control'}}
+ROOMS = {'manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm'}
 TOP = ('nodes/', '_node.py', 'executables.py', '__main__.py')
 ROS = {'rclpy', 'geometry_msgs', 'sensor_msgs', 'std_msgs', 'std_srvs', 'diagnostic_msgs'}
 OUTSIDE_CORE = ROS | {'time', 'logging', 'socket', 'subprocess', 'threading'}
@@ -41,7 +40,7 @@ def core_files(room):
 @pytest.mark.parametrize('room', sorted(ROOMS - {'hexarm'}))
 def test_imports_point_towards_manipulator(room):
     for path in core_files(room):
-        beyond = imports(path) & ROOMS - {room, 'manipulator'} - MAY_IMPORT.get(room, set())
+        beyond = imports(path) & ROOMS - {room, 'manipulator'}
         assert not beyond, f'{path.relative_to(ROOT)} imports {beyond}'
 
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from firmware.simulator.board import BAUD
 from firmware.simulator.chip import CLOCK_HZ, Chip
-from hexarm import firmware_build
-from hexarm.firmware_header import header_of
+from hexarm.board import build as firmware_build
+from hexarm.board.header import header_of
 
 MARKS, DONE = 255, 255
 NOTHING, INVERSE, ARM_STEP, SINE = 1, 2, 3, 4

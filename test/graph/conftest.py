@@ -10,8 +10,8 @@ import pytest
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 from hexarm import panel_process
+from hexarm.cli.up import check_alive
 from hexarm.graph import Graph, machine_graph
-from hexarm.up import check_alive
 from patient_user import PatientUser
 
 MARK = f'HEXARM_TEST_RUN={os.getpid()}'

@@ -8,7 +8,7 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from hexarm import firmware_build
+from hexarm.board import build as firmware_build
 from hexarm.graph import Executable, Graph
 from manipulator.errors import Refused
 from manipulator.nodes.qos import COMMAND, LATCHED

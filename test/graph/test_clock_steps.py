@@ -10,8 +10,8 @@ import pytest
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
 
+from hexarm.cli.up import check_alive
 from hexarm.graph import Graph, machine_graph
-from hexarm.up import check_alive
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
 from patient_user import PatientUser
 

@@ -97,7 +97,7 @@ def test_it_shows_the_link_and_leaves_the_terminal_as_it_was(nodes, monitor, key
 def test_without_rich_it_says_how_to_get_it(request):
     without = (
         'import sys; sys.modules["rich"] = None\n'
-        'from hexarm.main import main; sys.exit(main(["monitor"]))'
+        'from hexarm.cli.main import main; sys.exit(main(["monitor"]))'
     )
     done = subprocess.run(
         [sys.executable, '-c', without],

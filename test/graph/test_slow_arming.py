@@ -5,10 +5,10 @@ import re
 import pytest
 
 from hexarm import client
+from hexarm.cli.up import check_alive
 from hexarm.client import Client
 from hexarm.graph import Graph, machine_graph
 from hexarm.machines import find
-from hexarm.up import check_alive
 from manipulator.errors import Refused
 
 pytestmark = pytest.mark.graph

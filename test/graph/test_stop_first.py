@@ -14,7 +14,7 @@ from bridge.messages import Stop
 from bridge.program_messages import CycleAxis, Play, TableRow
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.board_solver import board_solver
+from hexarm.board.solver import board_solver
 from hexarm.graph import Executable, Graph
 from hexarm.tapped_line import Tap, TappedLine
 from manipulator.nodes.qos import EVERY_WORD, LATCHED

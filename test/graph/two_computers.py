@@ -22,8 +22,8 @@ from bridge.framing import FrameReader
 from bridge.messages import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
+from hexarm.cli.up import check_alive
 from hexarm.graph import Graph, machine_graph
-from hexarm.up import check_alive
 from manipulator.pose import Pose
 
 sys.path.insert(0, str(Path(__file__).parents[1] / 'support'))

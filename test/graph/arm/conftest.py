@@ -9,9 +9,9 @@ from geometry_msgs.msg import TwistStamped
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
+from hexarm.cli.up import check_alive
 from hexarm.graph import Graph, machine_graph
 from hexarm.machines import load
-from hexarm.up import check_alive
 from manipulator.nodes.messages import joints_of, seconds
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
 from patient_user import PatientUser
