@@ -62,7 +62,7 @@ def bare_chain():
 def graph():
     """The bridge's diagnostics and the share of one core (%) while the platform stands enabled."""
     with tempfile.TemporaryDirectory() as folder:
-        nodes = machine_graph('hexapod', 'robocake', 'fake', Path(folder) / 'board')
+        nodes = machine_graph('robocake', 'fake', Path(folder) / 'board', is_separate=True)
         with Graph(nodes, 'bench') as running, Client('bench') as client:
             client.enable()
             client.spin(1.0)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from bridge.calibration import Calibration
-from bridge.servo_config import ServosConfig
+from bridge.servo_config import BoardConfig, ServosConfig
 from manipulator.arrays import Array, frozen
 from manipulator.config import MAX_CHARACTERS, build, parse_yaml
 from manipulator.errors import ConfigError
@@ -76,6 +76,16 @@ def read(name_or_path: str) -> MachineFile:
     """The sections of a machine file; ConfigError lists everything wrong at the top level."""
     path = find(name_or_path)
     return build(MachineFile, parse_yaml(text_of(path), str(path)), source=str(path))
+
+
+def family(name_or_path: str) -> str:
+    """'arm' or 'hexapod': the namespace where such a machine's graph lives by default."""
+    return 'arm' if loader(read(name_or_path).kind) is _arm else 'hexapod'
+
+
+def board_config(name_or_path: str) -> BoardConfig:
+    """What the bridge and the board need of a machine file; ConfigError says what is wrong."""
+    return BoardConfig.from_machine(read(name_or_path), str(find(name_or_path)))
 
 
 def described(name_or_path: str) -> str:

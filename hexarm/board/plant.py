@@ -5,8 +5,11 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from bridge.board_thread import FakeMachine
+from bridge.calibration import Calibration
 from bridge.plant import Plant
+from bridge.servo_config import BoardConfig
 from hexarm import machines
+from hexarm.board.solver import board_solver
 from hexarm.simulation.model import mechanism
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
@@ -16,13 +19,28 @@ TELL_EVERY = 10.0
 PLANTS = ('servo', 'mujoco')
 
 
-def plant(
+def fake_machine(
+    name: str,
+    config: BoardConfig,
+    boot_s: float,
+    hysteresis: float,
+    plant: str,
+    tell: Callable[[str], object],
+) -> FakeMachine:
+    """The fake machine of a file; `tell` receives the real-time factor of a simulated plant.
+
+    Hysteresis in rad (or m). Raises InvalidInput for another plant than PLANTS, ConfigError where
+    the machine file has no masses for MuJoCo.
+    """
+    solve = board_solver(machines.load(name), Calibration.from_config(config.servos))
+    return _with_plant(
+        plant, name, FakeMachine.from_config(config, boot_s, hysteresis, solve), tell
+    )
+
+
+def _with_plant(
     kind: str, name: str, machine: FakeMachine, tell: Callable[[str], object]
 ) -> FakeMachine:
-    """The fake machine with the plant asked for; `tell` hears the real-time factor.
-
-    Raises InvalidInput for another kind, ConfigError where the machine file has no masses.
-    """
     if kind not in PLANTS:
         raise InvalidInput(f'parameter plant: {shown(kind)} is not one of {list(PLANTS)}')
     if kind == 'servo':

@@ -86,7 +86,7 @@ def on_graph(
     from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
 
     with link_folder() as folder:
-        nodes = machine_graph(kind, machine, 'fake', Path(folder) / 'board')
+        nodes = machine_graph(machine, 'fake', Path(folder) / 'board')
         with Graph(
             [*nodes, *others, *offered_panel(machine, say)], kind, log_level='error'
         ) as graph:

@@ -1,4 +1,4 @@
-"""`hexarm up hexapod`: a whole graph, servos enabled, until Ctrl-C; then it parks."""
+"""`hexarm up robocake`: a whole graph, servos enabled, until Ctrl-C; then it parks."""
 
 import argparse
 import contextlib
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hexarm.graph import Graph, link_folder, machine_graph
-from hexarm.machines import load, read
+from hexarm.machines import family, load, read
 from hexarm.namespaces import NAMESPACE
 from hexarm.panel_process import panel_process, panel_words
 from manipulator.errors import ManipulatorError, Refused
@@ -16,7 +16,6 @@ from manipulator.errors import ManipulatorError, Refused
 if TYPE_CHECKING:
     from hexarm.client import Client
 
-ARM_KIND = 'serial_arm'
 SETTLES = 1.0
 """Seconds within which a STOP from before is said to the board, and obeyed."""
 LOOKS = 1.0
@@ -25,6 +24,8 @@ OURS = ('trajectory', 'ik', 'pose', 'serial_bridge')
 """Nodes of which a namespace has one; a fake board may be there for `--port` to name."""
 SERVOS_OFF = ('not heard of', 'disconnected', 'booting', 'disarmed')
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
+NAME = 'a shipped name or the path of a machine file'
+SHORT = ', '.join(f'{kind} is short for {name}' for kind, name in MACHINES.items())
 
 
 class NodeDied(ManipulatorError):
@@ -38,10 +39,11 @@ class Interrupted(ManipulatorError):
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
     parser = commands.add_parser('up', help='start a whole graph and enable the servos')
-    parser.add_argument('kind', choices=list(MACHINES))
-    parser.add_argument('--machine', help='a shipped name or a path (default: the usual one)')
+    parser.add_argument('name', metavar='MACHINE', help=f'{NAME}; {SHORT}')
+    parser.add_argument('--machine', help=f'{NAME}, after hexapod or arm')
     parser.add_argument('--port', default='fake', help="a device, 'fake' (default) or 'simavr'")
-    parser.add_argument('--namespace', help='default: hexapod or arm')
+    parser.add_argument('--namespace', help='default: hexapod or arm, as the machine is')
+    parser.add_argument('--separate', action='store_true', help='one process for each node')
     parser.add_argument('--panel', action='store_true', help='with a web page to look and drive')
     parser.set_defaults(run=run)
 
@@ -50,16 +52,16 @@ def run(arguments: argparse.Namespace) -> int:
     """Runs the graph; status 0 after Ctrl-C, 1 when a node died or did not get ready."""
     from hexarm.client import Client  # noqa: PLC0415 (needs ROS, which `hexarm ik` does not)
 
-    machine = arguments.machine or MACHINES[arguments.kind]
-    namespace = arguments.namespace or arguments.kind
-    check(arguments.kind, machine, namespace)
+    machine = arguments.machine or MACHINES.get(arguments.name, arguments.name)
+    check(arguments.name, machine, arguments.namespace)
+    namespace = arguments.namespace or family(machine)
     others = [panel_process(machine)] if arguments.panel else []
     stop = StopSignal()
     refuse_second(namespace)
     with link_folder() as folder:
-        nodes = machine_graph(arguments.kind, machine, arguments.port, Path(folder) / 'board')
-        nodes += others
-        with Graph(nodes, namespace) as graph:
+        link = Path(folder) / 'board'
+        processes = machine_graph(machine, arguments.port, link, arguments.separate)
+        with Graph([*processes, *others], namespace) as graph:
 
             def interrupt() -> None:
                 stop.check()
@@ -78,15 +80,18 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def check(kind: str, machine: str, namespace: str) -> None:
-    """Raises Refused or ConfigError for what would only fail once the nodes have started."""
-    if NAMESPACE.fullmatch(namespace) is None:
-        raise Refused(f'namespace {namespace!r} is no ROS name: letters, digits, _ and /')
+def check(name: str, machine: str, namespace: str | None) -> None:
+    """Raises Refused or ConfigError for what would only fail once the nodes have started.
+
+    `name` is what the user called the machine, or 'hexapod' or 'arm' for one of the kind.
+    """
+    if namespace is not None and NAMESPACE.fullmatch(namespace) is None:
+        raise Refused(f'namespace {namespace!r} is not a ROS name: letters, digits, _ and /')
     load(machine)
-    its_kind = read(machine).kind
-    if (its_kind == ARM_KIND) != (kind == 'arm'):
-        other = 'arm' if kind == 'hexapod' else 'hexapod'
-        raise Refused(f'{machine} is a {its_kind}: hexarm up {other} --machine {machine}')
+    if name not in MACHINES and machine != name:
+        raise Refused(f'both {name!r} and --machine {machine}: name one machine')
+    if name in MACHINES and family(machine) != name:
+        raise Refused(f'{machine} is a {read(machine).kind}: hexarm up {machine}')
 
 
 def refuse_second(namespace: str) -> None:

@@ -27,7 +27,7 @@ SETTLED = 0.4
 
 def teleop() -> Executable:
     """joy_teleop for the arm's namespace, at three times the speeds of its mapping."""
-    return Executable('manipulator', 'joy_teleop', {'scale': '3.0'})
+    return Executable('joy_teleop', {'scale': '3.0'})
 
 
 def arm_tour(client: 'Client', machine: Machine, say: 'Callable[[str], None]') -> ArmObservation:

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bridge.calibration import Calibration
+from hexarm.machines import board_config
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke
@@ -27,6 +29,17 @@ class GripperJoint:
     def opening(self, position: float) -> float:
         """From 0, closed, to 1, open."""
         return float(np.clip((position - self.closed) / (self.opened - self.closed), 0.0, 1.0))
+
+
+def gripper_of(name_or_path: str) -> GripperJoint | None:
+    """The joint that a machine file marks as its gripper; ConfigError says what is wrong."""
+    servos = board_config(name_or_path).servos
+    calibration = Calibration.from_config(servos)
+    for joint in servos.joints:
+        if joint.is_gripper:
+            closed, opened = calibration.range_of(calibration.names.index(joint.name))
+            return GripperJoint(joint.name, closed, opened)
+    return None
 
 
 def fingers(tool: Pose, opening: float, size: float) -> tuple[Stroke, ...]:

@@ -88,7 +88,7 @@ def robocake_with_deadline(ms, tmp_path_factory):
 def hexapod_graph(patient_robocake, tmp_path_factory):
     """The hexapod's five processes with the fake board; not enabled."""
     link = tmp_path_factory.mktemp('port') / 'board'
-    with Graph(machine_graph('hexapod', patient_robocake, 'fake', link), 'hexapod') as graph:
+    with Graph(machine_graph(patient_robocake, 'fake', link), 'hexapod') as graph:
         yield graph
 
 

@@ -78,8 +78,8 @@ def monitor(request):
 def nodes(tmp_path_factory):
     port = str(tmp_path_factory.mktemp('line') / 'board')
     nodes = [
-        Executable('bridge', 'fake_hardware', {'link': port}),
-        Executable('bridge', 'serial_bridge', {'port': port}),
+        Executable('fake_hardware', {'link': port}),
+        Executable('serial_bridge', {'port': port}),
     ]
     with Graph(nodes, SPACE) as graph:
         yield graph

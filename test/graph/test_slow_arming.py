@@ -24,7 +24,7 @@ def module_user(tmp_path_factory):
     slow = re.sub('arm_interval_ms: .*', 'arm_interval_ms: 1000', find('robocake').read_text())
     machine = folder / 'slow.yaml'
     machine.write_text(slow)
-    nodes = machine_graph('hexapod', str(machine), 'fake', folder / 'board')
+    nodes = machine_graph(str(machine), 'fake', folder / 'board')
     with Graph(nodes, SPACE) as graph, Client(SPACE, lambda: check_alive(graph)) as user:
         yield user
 

@@ -80,7 +80,7 @@ def user(tap, tmp_path_factory):
     board.start()
     parameters = {'machine': 'robocake', 'port': str(path)}
     try:
-        with Graph([Executable('bridge', 'serial_bridge', parameters)], SPACE), User() as user:
+        with Graph([Executable('serial_bridge', parameters)], SPACE), User() as user:
             yield user
     finally:
         board.close()

@@ -32,7 +32,7 @@ def board(tmp_path):
 
 def bridge(tmp_path):
     parameters = {'machine': 'robocake', 'port': str(tmp_path / 'board')}
-    return Graph([Executable('bridge', 'serial_bridge', parameters)], SPACE)
+    return Graph([Executable('serial_bridge', parameters)], SPACE)
 
 
 def wait_for_state(user, word):
@@ -63,7 +63,7 @@ def test_up_waits_until_a_stop_from_before_is_cleared(hexarm, tmp_path):
     port = tmp_path / 'board'
     (tmp_path / 'board.stop').touch()
     fake = {'machine': 'robocake', 'link': str(port)}
-    with Graph([Executable('bridge', 'fake_hardware', fake)], SPACE):
+    with Graph([Executable('fake_hardware', fake)], SPACE):
         process = hexarm('up', 'hexapod', '--port', str(port), '--namespace', SPACE)
         assert any('clear_fault std_srvs' in line for line in process.stdout)
         with PatientUser(SPACE) as user:

@@ -118,7 +118,7 @@ def main(namespace, interface, *prefix):
         board.start()
         pulses = Pulses(machine.board)
         pulses.start()
-        bridge, *nodes = machine_graph('hexapod', MACHINE, str(line.path), line.path)
+        *nodes, bridge = machine_graph(MACHINE, str(line.path), line.path, is_separate=True)
         far = dataclasses.replace(bridge, prefix=prefix)
         graph = Graph([*nodes, far], SPACE)
         with graph, PatientUser(SPACE, lambda: check_alive(graph)) as user:

@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from std_msgs.msg import Float64
 
-from hexarm.panel.gripper import GripperJoint
+from hexarm.panel.gripper import gripper_of
 from hexarm.panel.meshes import sphere
 from hexarm.panel.nodes.asking import Asking
 from hexarm.panel.nodes.hearing import Hearing
@@ -50,12 +50,7 @@ PORT = 'port number of the page; where it is taken, the next free one'
 class PanelNode(Node):
     """Everything of a machine on http://host:port; see docs/panel.md."""
 
-    def __init__(
-        self,
-        load: Callable[[str], Machine],
-        gripper_of: Callable[[str], GripperJoint | None],
-        default_machine: str,
-    ) -> None:
+    def __init__(self, load: Callable[[str], Machine], default_machine: str) -> None:
         super().__init__('panel')
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         host = declare(self, 'host', '127.0.0.1', HOST)

@@ -104,7 +104,7 @@ def arm_graph(tmp_path_factory):
     shipped = Path(__file__).resolve().parents[3] / 'config' / 'arm_6r_stepper.yaml'
     patient = re.sub('setpoint_deadline_ms: .*', 'setpoint_deadline_ms: 1000', shipped.read_text())
     (folder / 'arm.yaml').write_text(patient)
-    nodes = machine_graph('arm', str(folder / 'arm.yaml'), 'fake', folder / 'board')
+    nodes = machine_graph(str(folder / 'arm.yaml'), 'fake', folder / 'board')
     with Graph(nodes, 'arm') as graph:
         yield graph
 

@@ -29,11 +29,9 @@ def test_unknown_subcommand_names_the_nearest(capsys):
     assert "did you mean 'machines'?" in said
 
 
-def test_unknown_kind_of_graph_names_the_nearest(capsys):
-    with pytest.raises(SystemExit) as ended:
-        main(['up', 'hexapds'])
-    assert ended.value.code == 2
-    assert "did you mean 'hexapod'?" in capsys.readouterr().err
+def test_a_machine_is_named_once(capsys):
+    assert main(['up', 'ur5', '--machine', 'arm_6r']) == 1
+    assert "both 'ur5' and --machine arm_6r: name one machine" in capsys.readouterr().err
 
 
 def test_version_is_that_of_the_package(capsys):
@@ -68,8 +66,8 @@ def test_picture_of_an_unknown_ending_is_refused_before_anything_is_worked_out(c
 @pytest.mark.parametrize(
     ('words', 'said'),
     [
-        (('--namespace', 'bad name'), 'is no ROS name'),
-        (('--machine', 'ur5'), 'hexarm up arm --machine ur5'),
+        (('--namespace', 'bad name'), 'is not a ROS name'),
+        (('--machine', 'ur5'), 'hexarm up ur5'),
         (('--machine', 'robocaek'), "did you mean 'robocake'"),
     ],
 )
@@ -83,7 +81,7 @@ def test_what_is_no_namespace_is_refused_before_ros_is_started(command, capsys):
     with pytest.raises(SystemExit) as ended:
         main([command, 'bad name'])
     assert ended.value.code == 2
-    assert "'bad name' is no ROS name" in capsys.readouterr().err
+    assert "'bad name' is not a ROS name" in capsys.readouterr().err
 
 
 def test_ctrl_c_while_modules_are_imported_is_silent():

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
-from hexarm.panel.executables import gripper_of
-from hexarm.panel.gripper import GripperJoint, fingers
+from hexarm.panel.gripper import GripperJoint, fingers, gripper_of
 from hexarm.panel.pieces import pieces
 from manipulator.pose import Pose
 
