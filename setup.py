@@ -5,7 +5,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 NAME = 'hexarm'
-ROOMS = ['manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm']
+PACKAGES = ['manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm']
 
 setup(
     name=NAME,
@@ -13,7 +13,7 @@ setup(
     description='Controls parallel platforms and serial arms, from a pose target to servo pulses',
     license='Apache-2.0',
     python_requires='>=3.10',
-    packages=find_packages(include=[pattern for r in ROOMS for pattern in (r, f'{r}.*')]),
+    packages=find_packages(include=[pattern for r in PACKAGES for pattern in (r, f'{r}.*')]),
     package_data={'hexarm': ['fastdds.xml', 'panel/joystick.html']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),

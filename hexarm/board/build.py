@@ -3,6 +3,7 @@
 import contextlib
 import fcntl
 import hashlib
+import json
 import os
 import shutil
 import subprocess
@@ -73,6 +74,17 @@ def chip_process(machine: str, link: Path) -> tuple[str, ...]:
     battery_mv = round(1000 * config.simulation.battery_v)
     program, pty_chip = firmware(header_of(machine)), simulator() / 'pty_chip'
     return str(pty_chip), str(program), str(config.link.baud), str(link), str(battery_mv)
+
+
+def step_times() -> dict[str, float]:
+    """How long one call takes on the simulated chip at most, in ms, by what is called."""
+    command = [sys.executable, '-m', 'firmware.simulator.cycles', '--json']
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=False, cwd=FIRMWARE.parent
+    )
+    if done.returncode:
+        raise CannotBuild(f'{" ".join(command)}:\n{done.stderr}')
+    return dict(json.loads(done.stdout))
 
 
 def sizes(program: Path) -> Sizes:

@@ -103,18 +103,14 @@ def modes() -> Iterator[Finding]:
 
 def step_times() -> Iterator[Finding]:
     """Clock cycles of one step of the same method in C, where chip and compiler are at hand."""
-    try:
-        from firmware.simulator.cycles import ARM_STEP, SINE, costs  # noqa: PLC0415
-    except ModuleNotFoundError:  # outside the source tree
-        return
     if firmware_build.missing_tools():
         return
-    found = costs()
-    for key, mark, topic, paper in (
-        ('step_time', ARM_STEP, 'one step of the method', '< 20 ms on a C167, ≤ 1 ms with MF167'),
-        ('sine_time', SINE, 'one sine', '2 ms on a C167, 0.7 µs with MF167'),
+    found = firmware_build.step_times()
+    for key, topic, paper in (
+        ('step_time', 'one step of the method', '< 20 ms on a C167, ≤ 1 ms with MF167'),
+        ('sine_time', 'one sine', '2 ms on a C167, 0.7 µs with MF167'),
     ):
-        time = found[mark].milliseconds
+        time = found[key]
         yield Finding(
             key, ARM, topic, paper, f'{time:.2f} ms on an ATmega2560 at 16 MHz', time, 0.05 * time,
             'agrees', 'single precision, on a simulated chip, to the clock cycle',

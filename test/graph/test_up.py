@@ -64,9 +64,7 @@ def test_up_with_a_panel_tells_where_its_page_is(hexarm, processes_left):
 @pytest.mark.parametrize(
     ('node', 'words'), [('machine', ()), ('fake_hardware', ()), ('trajectory', ('--separate',))]
 )
-def test_up_says_which_process_died_stops_the_rest_and_fails(
-    hexarm, processes_left, node, words
-):
+def test_up_says_which_process_died_stops_the_rest_and_fails(hexarm, processes_left, node, words):
     process = hexarm('up', 'robocake', *words)
     read_until(process, 'is up on fake and enabled')
     os.kill(node_of(node, processes_left), signal.SIGKILL)

@@ -86,16 +86,14 @@ def refusal(source, *words, **variables):
     return done.returncode, done.stderr.strip()
 
 
-@pytest.mark.parametrize(
-    ('room', 'names'),
-    [('hexapod_control', 'ik, pose, trajectory'), ('bridge', 'fake_hardware, serial_bridge')],
-)
-def test_room_without_an_executable_lists_its_own(source, room, names):
-    assert refusal(source, room, 'ink') == (2, f'needs one of the names {names}')
+def test_an_unknown_node_is_answered_with_the_known_ones(source):
+    status, reason = refusal(source, 'hexarm.nodes', 'ink')
+    assert status == 2
+    assert reason.startswith('needs one of the names machine, trajectory, ik, pose, serial_bridge')
 
 
 def test_node_of_the_source_tree_names_the_machines_that_it_ships(source):
-    words = ('hexapod_control', 'ik', '--ros-args', '-p', 'machine:=robocale')
+    words = ('hexarm.nodes', 'ik', '--ros-args', '-p', 'machine:=robocale')
     status, said = refusal(source, *words)
     assert status == 1
     assert said.startswith("ik: no machine is called 'robocale', did you mean 'robocake'?")
@@ -105,7 +103,7 @@ def test_node_of_the_source_tree_names_the_machines_that_it_ships(source):
 def test_missing_ruckig_is_said_in_one_sentence(source, tmp_path):
     (tmp_path / 'ruckig.py').write_text('raise ModuleNotFoundError("gone", name="ruckig")\n')
     paths = os.pathsep.join([str(tmp_path), os.environ.get('PYTHONPATH', '')])
-    assert refusal(source, 'hexapod_control', 'trajectory', PYTHONPATH=paths) == (
+    assert refusal(source, 'hexarm.nodes', 'trajectory', PYTHONPATH=paths) == (
         1,
         'trajectory: needs the Python module ruckig: python3 -m pip install ruckig',
     )

@@ -50,7 +50,7 @@ def test_a_board_with_another_joint_count_is_a_fault(tmp_path):
     ],
 )
 def test_what_is_wrong_at_the_start_is_one_line_and_status_1(entry, parameter, said):
-    command = [sys.executable, '-m', 'bridge', entry, '--ros-args', '-p', parameter]
+    command = [sys.executable, '-m', 'hexarm.nodes', entry, '--ros-args', '-p', parameter]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 1
     assert said in done.stderr
