@@ -13,17 +13,22 @@ import pytest
 TOOLS = {'hexarm', 'hexapod_ik', 'hexapod_pose', 'hexapod_trajectory', 'serial_bridge'}
 
 
+def install(run, environment, source, folder):
+    """A wheel of a source tree, made in a folder, into an environment."""
+    offline = ('--disable-pip-version-check', '--no-deps', '--no-index')
+    build = (sys.executable, '-m', 'pip', 'wheel', *offline, '--no-build-isolation')
+    run(*build, '-w', folder, source)
+    (wheel,) = folder.glob('*.whl')
+    run(environment / 'bin' / 'pip', 'install', *offline, wheel)
+
+
 @pytest.fixture(scope='module')
 def scratch(source, run, tmp_path_factory):
     """A virtual environment with hexarm from a wheel; dependencies come from ours."""
     folder = tmp_path_factory.mktemp('pip')
-    pip = (sys.executable, '-m', 'pip')
-    offline = ('--disable-pip-version-check', '--no-deps', '--no-index')
-    run(*pip, 'wheel', *offline, '--no-build-isolation', '-w', folder, source)
-    (wheel,) = folder.glob('hexarm-*.whl')
     environment = folder / 'environment'
     venv.create(environment, symlinks=True, with_pip=True)
-    run(environment / 'bin' / 'pip', 'install', *offline, wheel)
+    install(run, environment, source, folder)
     (packages,) = environment.glob('lib/python3*/site-packages')
     (packages / 'dependencies.pth').write_text(sysconfig.get_path('purelib') + '\n')
     return environment
@@ -63,6 +68,30 @@ def test_installed_kinematics_answers(scratch, run, nowhere):
     words = ('ik', 'robocake', '--xyz', '0', '0', '0.04119', '--json')
     joints = json.loads(run(scratch / 'bin' / 'hexarm', *words, **nowhere))['joints']
     assert joints['positions'] == pytest.approx([2.0945] * 6, abs=1e-3)
+
+
+STRANGER = """
+[project]
+name = "panel"
+version = "1.0"
+[project.scripts]
+panel = "panel:main"
+[tool.setuptools]
+packages = ["panel"]
+"""
+
+
+def test_another_project_called_panel_and_this_one_leave_each_other_alone(
+    scratch, run, nowhere, tmp_path
+):
+    """HoloViz Panel's import name and command; a stand-in for it, installed after ours."""
+    (tmp_path / 'panel').mkdir()
+    (tmp_path / 'panel' / '__init__.py').write_text('def main():\n    print("a stranger")\n')
+    (tmp_path / 'pyproject.toml').write_text(STRANGER)
+    install(run, scratch, tmp_path, tmp_path)
+    assert run(scratch / 'bin' / 'panel', **nowhere) == 'a stranger\n'
+    code = 'import panel, hexarm.panel; print(panel.__file__ != hexarm.panel.__file__)'
+    assert run(scratch / 'bin' / 'python', '-c', code, **nowhere) == 'True\n'
 
 
 def test_source_tree_runs_without_installation(source, machines, run):
