@@ -59,9 +59,9 @@ def jogged():
     with tempfile.TemporaryDirectory() as folder:
         nodes = [
             replace(node, parameters=node.parameters | {'rate': str(RATE)})
-            if node.entry == 'trajectory'
+            if node.name == 'trajectory'
             else node
-            for node in machine_graph('arm', MACHINE, 'fake', Path(folder) / 'board')
+            for node in machine_graph(MACHINE, 'fake', Path(folder) / 'board', is_separate=True)
         ]
         with Graph(nodes, 'fast') as running, Client('fast') as client:
             client.enable()

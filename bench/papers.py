@@ -2,16 +2,17 @@
 
 import numpy as np
 
-from arm_control.differential import joint_rates
 from arm_control.load import jogging
-from arm_control.paper import PaperArm
 from arm_control.resolved_rate import JogState
 from bench.row import Row, interleaved_medians
 from firmware.simulator import cycles
 from hexapod_control.linear_geometry import PlatesConfig
-from hexapod_control.plane_method import PlaneMethod
 from hexapod_control.workspace import sample
-from hexarm import firmware_build, machines
+from hexarm import machines
+from hexarm.board import build as firmware_build
+from hexarm.papers.differential import joint_rates
+from hexarm.papers.paper_arm import PaperArm
+from hexarm.papers.plane_method import PlaneMethod
 from manipulator.config import build
 
 ROUNDS = 500

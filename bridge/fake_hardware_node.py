@@ -12,14 +12,10 @@ from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 
 from bridge.board_thread import BoardThread, FakeMachine
-from bridge.calibration import Calibration
 from bridge.fake_line import FakeLine
 from bridge.faults import FaultKind, Faults
 from bridge.messages import ResetCause
 from bridge.servo_config import BoardConfig, SimulationConfig
-from hexarm import machines
-from hexarm.board_solver import board_solver
-from hexarm.fake_plant import plant
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, LinkError
 from manipulator.nodes.parameters import declare
@@ -48,12 +44,15 @@ PRESET = "'normal', 'bad_day' (six times the play) or 'stepper' (no play, measur
 KINDS = [kind.value for kind in FaultKind]
 SEED = 'of the random faults: the same seed brings the same ones after the same seconds'
 PER_MINUTE = 'random faults in 60 s, on average'
+MakeMachine = Callable[[str, BoardConfig, float, float, str, Callable[[str], object]], FakeMachine]
+"""Makes the fake machine of a machine file's name or path: its configuration, the silence after a
+reset in s, the play of its joints in rad or m, what moves them, and who is told how fast."""
 
 
 class FakeHardware(Node):
     """`fake_hardware`; its topics, services and parameters stand in docs/interfaces.md."""
 
-    def __init__(self) -> None:
+    def __init__(self, board_config: Callable[[str], BoardConfig], make: MakeMachine) -> None:
         super().__init__('fake_hardware')
         name = declare(self, 'machine', 'robocake', 'name or path of the machine file')
         link = declare(self, 'link', '/tmp/hexarm_board', 'where the port appears: a symlink')
@@ -75,12 +74,10 @@ class FakeHardware(Node):
         moved = declare(self, 'plant', 'servo', "'servo', or 'mujoco': loads, torque limits")
         if preset not in PRESETS:
             raise InvalidInput(f'parameter preset: {shown(preset)} is not one of {list(PRESETS)}')
-        config = BoardConfig.from_machine(machines.read(name), str(machines.find(name)))
+        config = board_config(name)
         config = replace(config, simulation=PRESETS[preset](config.simulation))
         hysteresis = math.radians(own) if own >= 0 else config.hysteresis
-        solve = board_solver(machines.load(name), Calibration.from_config(config.servos))
-        machine = FakeMachine.from_config(config, boot_s, hysteresis, solve)
-        machine = plant(moved, name, machine, self.get_logger().info)
+        machine = make(name, config, boot_s, hysteresis, moved, self.get_logger().info)
         self._names = machine.calibration.names
         self._path = Path(link)
         self._board = machine.board

@@ -25,7 +25,6 @@ from bridge.serial_port import SerialPort
 from bridge.servo_config import BoardConfig
 from bridge.stop_node import StopNode
 from bridge.stop_socket import StopSocket, stop_address
-from hexarm import machines
 from manipulator.errors import ManipulatorError
 from manipulator.nodes.bounded import decoded
 from manipulator.nodes.diagnostics import Diagnostics, Report
@@ -45,7 +44,7 @@ MOST_BYTES = 10_000
 class SerialBridge(Node):
     """`serial_bridge`; its topics, services and parameters stand in docs/interfaces.md."""
 
-    def __init__(self) -> None:
+    def __init__(self, board_config: Callable[[str], BoardConfig]) -> None:
         super().__init__('serial_bridge')
         machine = declare(self, 'machine', 'robocake', 'name or path of the machine file')
         port = declare(
@@ -54,7 +53,7 @@ class SerialBridge(Node):
         baud = declare(
             self, 'baud', 0, 'bits per second; 0: the machine file says', (0, 4_000_000)
         )
-        config = BoardConfig.from_machine(machines.read(machine), str(machines.find(machine)))
+        config = board_config(machine)
         line = dataclasses.replace(config.link, baud=baud or config.link.baud)
         config = dataclasses.replace(config, link=line)
         calibration = Calibration.from_config(config.servos)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hexarm.firmware_build import chip_process
+from hexarm.board.build import chip_process
 
 PATIENCE = 5.0
 """Seconds a process has for its own clean end before it is killed."""
@@ -21,36 +21,39 @@ PR_SET_PDEATHSIG = 1
 
 @dataclass(frozen=True)
 class Executable:
-    """One node as a process: its module and entry, its own parameters, the file it waits for.
+    """One process: the name in hexarm/nodes.py, its own parameters, the file it waits for.
 
     `command` is what runs it when it is no node of ours; `prefix` stands before the command, as in
     `ip netns exec far`.
     """
 
-    module: str
-    entry: str
+    name: str
     parameters: dict[str, str] = field(default_factory=dict)
     needs: Path | None = None
     command: tuple[str, ...] = ()
     prefix: tuple[str, ...] = ()
 
 
-def machine_graph(kind: str, machine: str, port: str, link: Path) -> list[Executable]:
-    """The nodes of a hexapod's or an arm's graph.
+def machine_graph(
+    machine: str, port: str, link: Path, is_separate: bool = False
+) -> list[Executable]:
+    """The processes of a machine: one for its four nodes, or one for each where `is_separate`.
 
     Port 'fake' adds the fake board, 'simavr' the firmware on a simulated chip.
     """
-    room = {'hexapod': 'hexapod_control', 'arm': 'arm_control'}[kind]
     common = {'machine': machine}
-    nodes = [Executable(room, entry, common) for entry in ('ik', 'pose', 'trajectory')]
     if port == 'fake':
-        board = Executable('bridge', 'fake_hardware', common | {'link': str(link)})
+        boards = [Executable('fake_hardware', common | {'link': str(link)})]
     elif port == 'simavr':
-        board = Executable('firmware', 'chip', command=chip_process(machine, link))
+        boards = [Executable('chip', command=chip_process(machine, link))]
     else:
-        return [Executable('bridge', 'serial_bridge', common | {'port': port}), *nodes]
-    bridge = Executable('bridge', 'serial_bridge', common | {'port': str(link)}, needs=link)
-    return [board, *nodes, bridge]
+        boards = []
+    needs = link if boards else None
+    to_board = common | {'port': str(link) if boards else port}
+    if not is_separate:
+        return [*boards, Executable('machine', to_board, needs)]
+    nodes = [Executable(name, common) for name in ('ik', 'pose', 'trajectory')]
+    return [*boards, *nodes, Executable('serial_bridge', to_board, needs)]
 
 
 class Graph:
@@ -68,7 +71,7 @@ class Graph:
         """Starts every node."""
         for node in self._nodes:
             _wait_for(node.needs)
-            self._processes[node.entry] = subprocess.Popen(
+            self._processes[node.name] = subprocess.Popen(
                 [*node.prefix, *_command(node, self._namespace, self._log_level)],
                 start_new_session=True,
                 stdin=subprocess.DEVNULL,
@@ -115,7 +118,7 @@ def _wait_for(path: Path | None) -> None:
 def _command(node: Executable, namespace: str, log_level: str) -> list[str]:
     if node.command:
         return list(node.command)
-    command = [sys.executable, '-m', node.module, node.entry, '--ros-args']
+    command = [sys.executable, '-m', 'hexarm.nodes', node.name, '--ros-args']
     command += ['-r', f'__ns:=/{namespace.strip("/")}']
     for name, value in node.parameters.items():
         command += ['-p', f'{name}:={value}']

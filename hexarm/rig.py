@@ -121,7 +121,6 @@ class Rig:
         self,
         folder: Path,
         space: str,
-        kind: str = 'hexapod',
         machine: str = 'robocake',
         boot_s: float = 0.2,
         faults: Faults | None = None,
@@ -134,8 +133,8 @@ class Rig:
         self.board = BoardThread(self.recorder, line, lambda positions: None, faults)
         self.calibration = self.recorder.calibration
         self._space = space
-        nodes = machine_graph(kind, machine, str(self._path), self._path)
-        self._nodes = {node.entry: node for node in nodes}
+        nodes = machine_graph(machine, str(self._path), self._path, is_separate=True)
+        self._nodes = {node.name: node for node in nodes}
         self._graphs: dict[str, Graph] = {}
         self._stack = ExitStack()
 

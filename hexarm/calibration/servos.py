@@ -16,8 +16,8 @@ from hexarm.calibration.servo_line import SIGNALS, ServoLine
 from hexarm.calibration.servo_screen import POSITIVE
 from hexarm.calibration.servo_sitting import Sitting
 from hexarm.calibration.servo_values import changed_values, in_words
+from hexarm.cli.statuses import INTERRUPTED
 from hexarm.machines import read
-from hexarm.statuses import INTERRUPTED
 from manipulator.errors import InvalidInput
 from manipulator.nodes.terminal import Terminal
 from manipulator.words import counted, shown

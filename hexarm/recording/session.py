@@ -12,10 +12,10 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
+from hexarm.cli.up import Interrupted
 from hexarm.recording.bag import Bag
 from hexarm.recording.listener import Listener
 from hexarm.recording.wanted import Wanted
-from hexarm.up import Interrupted
 from manipulator.nodes.discovery import fresh_address
 
 LOOK_AROUND = 0.25

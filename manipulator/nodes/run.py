@@ -1,10 +1,10 @@
-"""Running one node as a process: clean start, clean stop, one line for what went wrong."""
+"""Running nodes as a process: clean start, clean stop, one line for what went wrong."""
 
 import os
 import signal
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import FrameType
 
 import rclpy
@@ -22,52 +22,55 @@ GOODBYE = 3.0
 """Seconds that a node may take to leave the graph once it has closed what it holds."""
 
 
-def run_node(make_node: Callable[[], Node], describe: Callable[[str], str] | None = None) -> int:
-    """Spins the node until SIGINT or SIGTERM; a start-up error is one line and exit status 1.
+def run_nodes(
+    makers: Sequence[Callable[[], Node]], describe: Callable[[str], str] | None = None
+) -> int:
+    """Spins nodes on one executor until SIGINT or SIGTERM; a start-up error is status 1.
 
-    With `describe` the node's log begins with what that says of its parameter `machine`.
+    With `describe` the log begins with what that says of the first node's parameter `machine`.
 
     rclpy's own signal handlers would invalidate the context before the last message is out, so
-    ours only set a flag. A node's `close()`, where it has one, runs before it is destroyed.
+    ours only set a flag. A node's `close()`, where it has one, runs before it is destroyed; the
+    node made last is closed first.
     """
     stop = _StopRequest()
     rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
+    nodes: list[Node] = []
     try:
         with fresh_address():
-            node = make_node()
+            for make in makers:
+                nodes.append(make())
     except (ManipulatorError, ParameterException, ModuleNotFoundError) as error:
-        said = missing(error) if isinstance(error, ModuleNotFoundError) else str(error)
-        print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {said}', file=sys.stderr)
+        reason = missing(error) if isinstance(error, ModuleNotFoundError) else str(error)
+        print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {reason}', file=sys.stderr)
+        _close(nodes)
         try_shutdown()
         return 1
     executor = EventsExecutor()
-    executor.add_node(node)
+    for node in nodes:
+        executor.add_node(node)
     try:
         if describe is not None:
-            node.get_logger().info(describe(node.get_parameter('machine').value))
+            nodes[0].get_logger().info(describe(nodes[0].get_parameter('machine').value))
         while not stop.is_requested:
             executor.spin_once(timeout_sec=0.1)
     finally:
-        close = getattr(node, 'close', None)
-        if close is not None:
-            close()
+        _close(nodes)
         _leave_within(GOODBYE)
         executor.shutdown()
-        node.destroy_node()
+        for node in reversed(nodes):
+            node.destroy_node()
         try_shutdown()
     _leave()
     return 0
 
 
-def run_named(*executables: Callable[[], int | None]) -> int | None:
-    """`python -m ROOM NAME …`: runs the executable of that name; status 2 where there is none."""
-    named = {run.__name__: run for run in executables}
-    name = sys.argv[1] if len(sys.argv) > 1 else ''
-    if name not in named:
-        print(f'needs one of the names {", ".join(named)}', file=sys.stderr)
-        return 2
-    sys.argv[:2] = [name]
-    return named[name]()
+def _close(nodes: Sequence[Node]) -> None:
+    """Ends what nodes have begun, the last one's first."""
+    for node in reversed(nodes):
+        close = getattr(node, 'close', None)
+        if close is not None:
+            close()
 
 
 def _leave_within(seconds: float) -> None:

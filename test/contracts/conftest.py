@@ -16,7 +16,7 @@ from bridge.program_messages import TableBegin, TableEnd, TableRow
 from bridge.servo_config import BoardConfig
 from firmware.simulator.board import SimulatedBoard
 from hexarm import machines
-from hexarm.board_solver import board_solver
+from hexarm.board.solver import board_solver
 
 ROBOCAKE = BoardConfig.from_machine(machines.read('robocake'))
 RANGE = (1100, 4900)

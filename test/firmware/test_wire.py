@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from bridge import cobs, messages
 from bridge.frames import MAX_WIRE_BYTES, checksum
 from bridge.program_messages import Program
-from hexarm import firmware_build
-from hexarm.firmware_header import header_of
+from hexarm.board import build as firmware_build
+from hexarm.board.header import header_of
 from manipulator.errors import ProtocolError
 
 GOLDEN = Path(__file__).parents[1] / 'bridge' / 'golden_frames.txt'

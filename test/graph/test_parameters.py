@@ -14,7 +14,7 @@ from patient_user import PatientUser
 
 pytestmark = pytest.mark.graph
 ROOT = Path(__file__).resolve().parents[2]
-NODES = re.findall(r"'(\w+) = (\w+)\.executables:(\w+)'", (ROOT / 'setup.py').read_text())
+NODES = ('trajectory', 'ik', 'pose', 'serial_bridge', 'fake_hardware', 'joy_teleop', 'panel')
 NAMESPACE = 'described'
 FOREIGN = ('use_sim_time', 'start_type_description_service', 'qos_overrides')
 """rclpy's own."""
@@ -34,13 +34,14 @@ def descriptors(client, tmp_path_factory):
     """Every node's descriptors by name, asked of running nodes that all run at once."""
     link = tmp_path_factory.mktemp('port') / 'board'
     started = []
-    for executable, room, entry in NODES:
-        words = ['-m', room, entry, '--ros-args', '-r', f'__ns:=/{NAMESPACE}/{executable}']
+    for executable in NODES:
+        words = ['-m', 'hexarm.nodes', executable, '--ros-args']
+        words += ['-r', f'__ns:=/{NAMESPACE}/{executable}']
         if executable in PORTS:
             words += ['-p', f'{PORTS[executable]}:={link}']
         started.append(subprocess.Popen([sys.executable, *words], cwd=ROOT, env=os.environ))
     try:
-        yield {executable: describe(client, executable) for executable, _, _ in NODES}
+        yield {executable: describe(client, executable) for executable in NODES}
     finally:
         for process in started:
             process.terminate()
@@ -69,7 +70,7 @@ def call(client, kind, name, **fields):
     return answer
 
 
-@pytest.mark.parametrize('executable', [executable for executable, _, _ in NODES])
+@pytest.mark.parametrize('executable', NODES)
 def test_every_parameter_is_described_and_every_number_has_a_range(descriptors, executable):
     described = descriptors[executable]
     assert described
@@ -88,7 +89,7 @@ UNIT = re.compile(
 )
 
 
-@pytest.mark.parametrize('executable', [executable for executable, _, _ in NODES])
+@pytest.mark.parametrize('executable', NODES)
 def test_every_number_is_described_with_its_unit(descriptors, executable):
     numbers = (
         ParameterType.PARAMETER_DOUBLE,

@@ -21,7 +21,7 @@ def wait_for_state(user, word):
 def stop_by_a_bridge_that_ends(port):
     """The board obeys a STOP of a bridge that is no more when this returns."""
     parameters = {'machine': 'robocake', 'port': str(port)}
-    bridge = Executable('bridge', 'serial_bridge', parameters, needs=port)
+    bridge = Executable('serial_bridge', parameters, needs=port)
     with Graph([bridge], 'before'), PatientUser('before') as user:
         stops = user.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         user.wait('the bridge', lambda: stops.get_subscription_count() == 1)
@@ -33,7 +33,7 @@ def stop_by_a_bridge_that_ends(port):
 def test_up_waits_until_a_stop_from_before_is_cleared(hexarm, tmp_path):
     port = tmp_path / 'board'
     fake = {'machine': 'robocake', 'link': str(port)}
-    with Graph([Executable('bridge', 'fake_hardware', fake)], SPACE):
+    with Graph([Executable('fake_hardware', fake)], SPACE):
         stop_by_a_bridge_that_ends(port)
         process = hexarm('up', 'hexapod', '--port', str(port), '--namespace', SPACE)
         assert any('clear_fault std_srvs' in line for line in process.stdout)

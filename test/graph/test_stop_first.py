@@ -14,7 +14,7 @@ from bridge.messages import Stop
 from bridge.program_messages import CycleAxis, Play, TableRow
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.board_solver import board_solver
+from hexarm.board.solver import board_solver
 from hexarm.graph import Executable, Graph
 from hexarm.tapped_line import Tap, TappedLine
 from manipulator.nodes.qos import EVERY_WORD, LATCHED
@@ -80,7 +80,7 @@ def user(tap, tmp_path_factory):
     board.start()
     parameters = {'machine': 'robocake', 'port': str(path)}
     try:
-        with Graph([Executable('bridge', 'serial_bridge', parameters)], SPACE), User() as user:
+        with Graph([Executable('serial_bridge', parameters)], SPACE), User() as user:
             yield user
     finally:
         board.close()

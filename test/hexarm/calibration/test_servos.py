@@ -12,7 +12,7 @@ from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.calibration.fake_servos import FakeServos, mounted_wrongly
 from hexarm.calibration.servo_values import changed_values
-from hexarm.main import main
+from hexarm.cli.main import main
 
 WRONG = {
     0: {'sign': -1, 'centre_us': 1540.0},

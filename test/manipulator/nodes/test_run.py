@@ -8,7 +8,7 @@ NODE = textwrap.dedent(
     """
     import threading
     from rclpy.node import Node
-    from manipulator.nodes.run import run_node
+    from manipulator.nodes.run import run_nodes
 
     class Clinging(Node):
         def __init__(self):
@@ -21,7 +21,7 @@ NODE = textwrap.dedent(
         def destroy_node(self):
             threading.Event().wait()
 
-    run_node(Clinging)
+    run_nodes([Clinging])
     """
 )
 
