@@ -12,7 +12,7 @@ class Phase(enum.Enum):
 
     CLOSED = 'no port'
     WAITING = 'waiting for HELLO'
-    GREETED = 'waiting for the first STATE'
+    CONNECTING = 'waiting for the first STATE'
     READY = 'ready'
     INCOMPATIBLE = 'another board'
 

@@ -19,6 +19,9 @@ SPACING = 0.0025
 """Setpoints go out 400 times a second at most, half of what the line carries: a flood of them
 must not queue up in the operating system, ahead of a STOP."""
 
+MOST_AT_ONCE = 2048
+"""Bytes: a read that brings more may have left some behind, which are older than they look."""
+
 FASTEST_LINE = 400_000.0
 """Bytes a second that a line of 4 Mbaud carries."""
 
@@ -67,6 +70,7 @@ class Link:
         self._on_event, self._on_written = on_event, on_written
         self._bytes_per_second = bytes_per_second
         self._look_at = self._read_at = self._setpoint_at = self._listened_at = 0.0
+        self._emptied_at = 0.0
         self._unsent = b''
         self._mailbox: deque[Ticket] = deque(maxlen=1)
         self._requests: deque[tuple[Command, Future[None]]] = deque()
@@ -117,7 +121,7 @@ class Link:
     def opened(self, now: float) -> None:
         """The port is open."""
         self.is_open = True
-        self._listened_at = now
+        self._listened_at = self._emptied_at = now
         self._note(self.session.opened(now))
         self._tell(now)
 
@@ -134,9 +138,13 @@ class Link:
         self._take_requests(now)
         self._take_setpoint(now)
         self._unsent += self.session.take_output()
+        if self.is_listening(now) and len(received) <= MOST_AT_ONCE:
+            emptied_at, self._emptied_at = self._emptied_at, now
+        else:
+            emptied_at = self._emptied_at
         if received:
             self._read_at = now + len(received) / self._bytes_per_second
-            self._note(without_passed_states(self.session.receive(received, now)))
+            self._note(without_passed_states(self.session.receive(received, now, emptied_at)))
         # Who was held up may not call the board silent before he has listened again.
         self._note(self.session.tick(self._listened_at))
         self._listened_at = now

@@ -105,7 +105,7 @@ def test_the_idle_hellos_of_a_board_are_no_restart(line):
 def test_a_wrapped_uptime_is_no_restart(line):
     line.run(0.4)
     line.session.hello = Hello(1, ResetCause.POWER_ON, 6, 0xFFFF_FFFF - 100)
-    line.session._greeted_at = line.now
+    line.session._hello_at = line.now
     line.now += 0.2
     wrapped = encode(Hello(1, ResetCause.POWER_ON, 6, 99), 1)
     assert line.session.receive(wrapped, line.now) == []

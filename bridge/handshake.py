@@ -11,7 +11,7 @@ LONGEST_LAG_MS = 2**30
 """12 days, a quarter of the clock: a lag beyond it could as well be a lead."""
 
 
-def misfit(hello: Hello, joint_count: int) -> str:
+def mismatch(hello: Hello, joint_count: int) -> str:
     """Why a board must not be talked to, '' where it fits a machine of `joint_count` joints."""
     if hello.version != PROTOCOL_VERSION:
         return f'the board speaks protocol {hello.version}, this host {PROTOCOL_VERSION}'
@@ -23,9 +23,10 @@ def misfit(hello: Hello, joint_count: int) -> str:
 def has_restarted(before: Hello, hello: Hello, elapsed: float) -> bool:
     """Whether the board's clock (it wraps at 49.7 days) ran less than half as long as ours.
 
-    elapsed: seconds between the two HELLOs. A board's resonator is off by a percent, and a
-    simulated board may stall: neither counts. Two HELLOs of one run are 250 ms apart on that
-    clock, so less is a restart as well.
+    elapsed: seconds that passed between the two HELLOs at least; a HELLO that waited in the port
+    until somebody read it was sent earlier than it was received. A board's resonator is off by a
+    percent, and a simulated board may stall: neither counts. Two HELLOs of one run are 250 ms apart
+    on that clock, so less is a restart as well.
     """
     advance = hello.uptime_ms - before.uptime_ms & 0xFFFF_FFFF
     lag = (round(1000 * elapsed) - advance + 2**31 & 0xFFFF_FFFF) - 2**31

@@ -4,7 +4,7 @@ from itertools import product
 
 import pytest
 
-from bridge.greeting import has_restarted
+from bridge.handshake import has_restarted
 from bridge.messages import Hello, ResetCause
 
 DAY = 86_400.0
