@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bridge.board_courses import table_crc
 from bridge.calibration import Calibration
+from bridge.fake.board_courses import table_crc
 from bridge.messages import Command
 from bridge.program_messages import TableBegin, TableEnd, TableRow
 from manipulator.arrays import Array

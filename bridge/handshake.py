@@ -25,8 +25,8 @@ def has_restarted(before: Hello, hello: Hello, elapsed: float) -> bool:
 
     elapsed: seconds that passed between the two HELLOs at least; a HELLO that waited in the port
     until somebody read it was sent earlier than it was received. A board's resonator is off by a
-    percent, and a simulated board may stall: neither counts. Two HELLOs of one run are 250 ms apart
-    on that clock, so less is a restart as well.
+    percent, and a simulated board may stall: neither counts. Two HELLOs of one run are 250 ms
+    apart on that clock, so less is a restart as well.
     """
     advance = hello.uptime_ms - before.uptime_ms & 0xFFFF_FFFF
     lag = (round(1000 * elapsed) - advance + 2**31 & 0xFFFF_FFFF) - 2**31

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from bridge.board_settings import BoardSettings
+from bridge.fake.board_settings import BoardSettings
 from bridge.frames import encode
 from bridge.framing import FrameReader
 from bridge.messages import Ack, Arm, Command, Message, Result, Setpoint, State

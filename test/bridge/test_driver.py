@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from bridge.board_thread import FakeMachine
 from bridge.driver import BoardDriver
+from bridge.fake.board_thread import FakeMachine
 from bridge.framing import FrameReader
 from bridge.messages import Arm, Clear, Setpoint, Stop
 from bridge.servo_config import BoardConfig

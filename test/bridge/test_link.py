@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from bridge.board import Board
-from bridge.board_settings import BoardSettings
 from bridge.events import Acknowledged, Connected, Disconnected, StateReceived
+from bridge.fake.board import Board
+from bridge.fake.board_settings import BoardSettings
 from bridge.framing import FrameReader
 from bridge.link import LOOK_AGAIN_AFTER, SPACING, TICK, Link, Ticket
 from bridge.messages import Arm, Clear, Disarm, Mode, ResetCause, Setpoint, Stop

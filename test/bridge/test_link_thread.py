@@ -7,9 +7,9 @@ import time
 
 import pytest
 
-from bridge.board_thread import BoardThread, FakeMachine
 from bridge.events import Connected, Disconnected, StateReceived
-from bridge.fake_line import FakeLine
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.fake_line import FakeLine
 from bridge.link import Link, Ticket
 from bridge.link_thread import LinkThread
 from bridge.messages import Arm, Clear, Mode, ResetCause, Setpoint, Stop

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bridge.board import Board
-from bridge.board_modes import BoardSettings
 from bridge.events import StateReceived
+from bridge.fake.board import Board
+from bridge.fake.board_modes import BoardSettings
 from bridge.framing import FrameReader
 from bridge.link import Link
 from bridge.link_thread import LinkThread

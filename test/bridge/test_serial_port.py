@@ -2,7 +2,7 @@ import os
 
 import pytest
 
-from bridge.fake_line import FakeLine
+from bridge.fake.fake_line import FakeLine
 from bridge.serial_port import SerialPort
 from manipulator.errors import LinkError
 

@@ -3,9 +3,9 @@ from concurrent.futures import Future
 import numpy as np
 import pytest
 
-from bridge.board_courses import table_crc
 from bridge.calibration import Calibration
 from bridge.count_table import count_table
+from bridge.fake.board_courses import table_crc
 from bridge.messages import Disarm, Stop
 from bridge.program_messages import TableBegin, TableEnd, TableRow
 from bridge.servo_config import BoardConfig

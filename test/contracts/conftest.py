@@ -5,10 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from bridge.board import Board
-from bridge.board_courses import table_crc
-from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
+from bridge.fake.board import Board
+from bridge.fake.board_courses import table_crc
+from bridge.fake.board_settings import BoardSettings
 from bridge.frames import encode
 from bridge.framing import FrameReader
 from bridge.messages import Ack, Arm, Fault, Hello, ResetCause, Result, State

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from bridge.board_courses import table_crc
+from bridge.fake.board_courses import table_crc
 from bridge.messages import Arm, Disarm, FaultCode, Mode, Result, Setpoint, Stop
 from bridge.program_messages import Finish, Play, Program, TableBegin, TableEnd, TableRow
 

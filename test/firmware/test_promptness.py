@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from bridge.board_courses import table_crc
 from bridge.calibration import Calibration
+from bridge.fake.board_courses import table_crc
 from bridge.messages import Ack, Arm, Mode, Result
 from bridge.program_messages import Play, Program, TableBegin, TableEnd, TableRow
 from bridge.servo_config import BoardConfig

@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 
-from bridge.board_courses import table_crc
 from bridge.calibration import Calibration
 from bridge.count_table import CountTable
+from bridge.fake.board_courses import table_crc
 from bridge.messages import Arm, Mode, Result, Setpoint, State
 from bridge.program_messages import CycleAxis, TableBegin, TableEnd, TableRow
 from bridge.servo_config import BoardConfig

@@ -8,8 +8,8 @@ from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from bridge.board_thread import BoardThread, FakeMachine
 from bridge.calibration import Calibration
+from bridge.fake.board_thread import BoardThread, FakeMachine
 from bridge.messages import Stop
 from bridge.program_messages import CycleAxis, Play, TableRow
 from bridge.servo_config import BoardConfig

@@ -15,9 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from bridge.board_thread import BoardThread, FakeMachine
 from bridge.calibration import Calibration
-from bridge.fake_line import FakeLine
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.fake_line import FakeLine
 from bridge.framing import FrameReader
 from bridge.messages import Setpoint
 from bridge.servo_config import BoardConfig

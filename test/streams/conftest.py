@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from bridge.board_thread import FakeMachine
 from bridge.driver import BoardDriver
+from bridge.fake.board_thread import FakeMachine
 from bridge.messages import Arm
 from bridge.servo_config import BoardConfig
 from hexarm import machines

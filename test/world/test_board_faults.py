@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bridge.faults import FaultKind
+from bridge.fake.faults import FaultKind
 from bridge.messages import Setpoint
 from manipulator.pose import Pose
 from world.faulty_line import FaultyLine

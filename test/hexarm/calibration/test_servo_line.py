@@ -1,7 +1,7 @@
 from dataclasses import replace
 
-from bridge.board_thread import BoardThread, FakeMachine
-from bridge.fake_line import FakeLine
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.fake_line import FakeLine
 from bridge.messages import Mode
 from bridge.servo_config import BoardConfig
 from hexarm import machines

@@ -1,4 +1,4 @@
-"""The serial bridge (bridge/serial_bridge_node.py, link_thread.py) without ROS, port or threads.
+"""The serial bridge (bridge/nodes/, bridge/link_thread.py) without ROS, port or threads.
 
 The driver and its link are the real ones; here stands what the node and the thread do around them.
 """

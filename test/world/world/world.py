@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from bridge.board_thread import FakeMachine
 from bridge.calibration import Calibration
 from bridge.driver import BoardDriver
+from bridge.fake.board_thread import FakeMachine
 from bridge.messages import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines

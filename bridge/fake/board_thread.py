@@ -10,18 +10,18 @@ from typing import Protocol
 
 import numpy as np
 
-from bridge.board import Board
-from bridge.board_courses import Solver
-from bridge.board_faults import BoardFaults
-from bridge.board_settings import BoardSettings
 from bridge.calibration import COUNTS_PER_US, Calibration
-from bridge.fake_line import FakeLine
-from bridge.faults import Faults
+from bridge.fake.board import Board
+from bridge.fake.board_courses import Solver
+from bridge.fake.board_faults import BoardFaults
+from bridge.fake.board_settings import BoardSettings
+from bridge.fake.fake_line import FakeLine
+from bridge.fake.faults import Faults
+from bridge.fake.plant import Plant
+from bridge.fake.servo import Servos
+from bridge.fake.steppers import Steppers
 from bridge.messages import ResetCause
-from bridge.plant import Plant
-from bridge.servo import Servos
 from bridge.servo_config import BoardConfig
-from bridge.steppers import Steppers
 from manipulator.arrays import Array
 
 STEP, LONGEST_STEP = 0.01, 0.05

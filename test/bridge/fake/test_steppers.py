@@ -1,6 +1,6 @@
 import numpy as np
 
-from bridge.steppers import Steppers
+from bridge.fake.steppers import Steppers
 
 
 def steppers(**changes):

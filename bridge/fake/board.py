@@ -4,9 +4,9 @@ What it does with a frame stands in board_modes.py; here it listens, answers and
 as docs/protocol.md says. The simulated chip has the same three methods.
 """
 
-from bridge.board_modes import PULSE_PERIOD_US, BoardModes
-from bridge.board_programs import still_axes
-from bridge.board_settings import BoardSettings
+from bridge.fake.board_modes import PULSE_PERIOD_US, BoardModes
+from bridge.fake.board_programs import still_axes
+from bridge.fake.board_settings import BoardSettings
 from bridge.frames import DELIMITER, Unreadable, code_of, encode
 from bridge.framing import FrameReader
 from bridge.messages import (

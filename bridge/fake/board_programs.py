@@ -7,7 +7,16 @@ import enum
 import math
 from collections.abc import Sequence
 
-from bridge.board_courses import PERIOD, Counts, Course, Cycle, Solver, Table, is_within, table_crc
+from bridge.fake.board_courses import (
+    PERIOD,
+    Counts,
+    Course,
+    Cycle,
+    Solver,
+    Table,
+    is_within,
+    table_crc,
+)
 from bridge.messages import Result
 from bridge.program_messages import CycleAxis, Program, ProgramPart, TableBegin, TableEnd, TableRow
 

@@ -1,6 +1,6 @@
 """Servo after servo gets its first pulse: all at once would pull more than a supply has."""
 
-from bridge.pulse_drive import PulseDrive
+from bridge.fake.pulse_drive import PulseDrive
 
 
 class Arming:

@@ -1,7 +1,7 @@
 import pytest
 
-from bridge.faults import FaultKind
-from bridge.faulty_bytes import FaultyBytes
+from bridge.fake.faults import FaultKind
+from bridge.fake.faulty_bytes import FaultyBytes
 
 PIECES = [bytes([k, k + 1, k + 2, k + 3]) for k in range(0, 200, 4)]
 

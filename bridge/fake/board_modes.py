@@ -4,11 +4,12 @@ The firmware has the same state machine (docs/protocol.md draws it). Times in mi
 the start, as the board counts them.
 """
 
-from bridge.board_arming import Arming
-from bridge.board_programs import Programs, Step
-from bridge.board_setpoint import range_fault, setpoint_fault
-from bridge.board_settings import BoardSettings
-from bridge.board_supply import Supply
+from bridge.fake.board_arming import Arming
+from bridge.fake.board_programs import Programs, Step
+from bridge.fake.board_setpoint import range_fault, setpoint_fault
+from bridge.fake.board_settings import BoardSettings
+from bridge.fake.board_supply import Supply
+from bridge.fake.pulse_drive import PulseDrive
 from bridge.messages import (
     MAX_DEADLINE_MS,
     NO_JOINT,
@@ -25,7 +26,6 @@ from bridge.messages import (
     Stop,
 )
 from bridge.program_messages import CycleAxis, Finish, Play, Program, ProgramPart
-from bridge.pulse_drive import PulseDrive
 
 PULSE_PERIOD_US = 20_000
 

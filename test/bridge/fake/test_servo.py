@@ -1,6 +1,6 @@
 import numpy as np
 
-from bridge.servo import Servos
+from bridge.fake.servo import Servos
 
 
 def servos(**changes):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bridge.servo import Servos
+from bridge.fake.servo import Servos
 from manipulator.arrays import Array
 
 

@@ -2,7 +2,7 @@ import itertools
 
 import pytest
 
-from bridge.faults import LONGEST, FaultKind, Faults
+from bridge.fake.faults import LONGEST, FaultKind, Faults
 
 
 def happenings(seed, per_minute, seconds=600, step=0.01):

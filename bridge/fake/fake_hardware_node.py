@@ -11,9 +11,9 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 
-from bridge.board_thread import BoardThread, FakeMachine
-from bridge.fake_line import FakeLine
-from bridge.faults import FaultKind, Faults
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.fake_line import FakeLine
+from bridge.fake.faults import FaultKind, Faults
 from bridge.messages import ResetCause
 from bridge.servo_config import BoardConfig, SimulationConfig
 from manipulator.arrays import Array

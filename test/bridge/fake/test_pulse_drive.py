@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bridge.pulse_drive import PulseDrive
+from bridge.fake.pulse_drive import PulseDrive
 
 SPEEDS = (1000.0, 2000.0, 500.0)
 TARGETS = st.tuples(*[st.integers(1000, 5000)] * 3)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from bridge.board_courses import Solver
 from bridge.calibration import Calibration
+from bridge.fake.board_courses import Solver
 from bridge.messages import PROTOCOL_VERSION
 from bridge.servo_config import BoardConfig
 

@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Callable, Collection
 from random import Random
 
-from bridge.faults import FaultKind
+from bridge.fake.faults import FaultKind
 
 SHARE = 0.5
 """Of all pieces that pass while a fault lasts, how many it hits."""

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from bridge.board import Board
-from bridge.faults import FaultKind, Faults
-from bridge.faulty_bytes import FaultyBytes
+from bridge.fake.board import Board
+from bridge.fake.faults import FaultKind, Faults
+from bridge.fake.faulty_bytes import FaultyBytes
 from bridge.messages import PROTOCOL_VERSION, ResetCause
 
 
