@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bridge.calibration import Calibration
-from bridge.messages import Setpoint
+from bridge.protocol import Setpoint
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
 from manipulator.stamps import NOTABLE_OFFSET, StampGate

@@ -21,9 +21,8 @@ from bridge.events import (
 )
 from bridge.gripper import Gripper
 from bridge.link import Link, Ticket
-from bridge.link_monitor import JointTable, LinkMonitor
-from bridge.machine_status import MachineStatus
-from bridge.messages import Arm, Clear, Command, Disarm, Stop
+from bridge.link_monitor import JointTable, LinkMonitor, MachineStatus
+from bridge.protocol import Arm, Clear, Command, Disarm, Stop
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
 from manipulator.errors import Refused

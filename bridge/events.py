@@ -4,7 +4,7 @@ import enum
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from bridge.messages import Command, Fault, Hello, State
+from bridge.protocol import Command, Fault, Hello, State
 
 
 class Phase(enum.Enum):

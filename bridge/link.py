@@ -9,7 +9,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 
 from bridge.events import Acknowledged, CommandFailed, Event, without_passed_states
-from bridge.messages import Command, Setpoint, Stop
+from bridge.protocol import Command, Setpoint, Stop
 from bridge.session import Session
 from manipulator.errors import Refused
 

@@ -21,7 +21,8 @@ from bridge.events import (
 )
 from bridge.frames import DELIMITER, encode
 from bridge.framing import FrameReader
-from bridge.messages import (
+from bridge.handshake import RoundTrips
+from bridge.protocol import (
     REASONS,
     Ack,
     Arm,
@@ -31,14 +32,13 @@ from bridge.messages import (
     Fault,
     Hello,
     Mode,
+    Play,
     Result,
     Setpoint,
     State,
     Stop,
     is_newer,
 )
-from bridge.program_messages import Play
-from bridge.round_trips import RoundTrips
 from manipulator.errors import Refused
 
 RETRY_AFTER = 0.1

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from bridge.fake.fake_line import FakeLine
 from bridge.framing import FrameReader
-from bridge.messages import Message
+from bridge.protocol import Message
 
 
 class Tap:

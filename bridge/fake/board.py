@@ -9,7 +9,7 @@ from bridge.fake.board_programs import still_axes
 from bridge.fake.board_settings import BoardSettings
 from bridge.frames import DELIMITER, Unreadable, code_of, encode
 from bridge.framing import FrameReader
-from bridge.messages import (
+from bridge.protocol import (
     NO_JOINT,
     Ack,
     Clear,

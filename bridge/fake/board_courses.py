@@ -4,8 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Protocol, TypeAlias
 
-from bridge.frames import checksum
-from bridge.program_messages import CycleAxis
+from bridge.protocol import CycleAxis
 
 PERIOD = 0.02
 LONGEST = 60.0
@@ -70,11 +69,6 @@ class Table:
         periods = self._step / PERIOD
         pairs = zip(self._rows, self._rows[1:], strict=False)
         return all(is_within(a, b, [s * periods for s in steps]) for a, b in pairs)
-
-
-def table_crc(rows: Sequence[tuple[int, ...]]) -> int:
-    """The CRC of a whole table: of all its counts, little endian, row by row."""
-    return checksum(b''.join(count.to_bytes(2, 'little') for row in rows for count in row))
 
 
 def is_within(before: Counts, after: Counts, steps: Sequence[float]) -> bool:

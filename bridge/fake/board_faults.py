@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from bridge.fake.board import Board
 from bridge.fake.faults import FaultKind, Faults
 from bridge.fake.faulty_bytes import FaultyBytes
-from bridge.messages import PROTOCOL_VERSION, ResetCause
+from bridge.protocol import PROTOCOL_VERSION, ResetCause
 
 
 @dataclass

@@ -10,22 +10,26 @@ from bridge.fake.board_setpoint import range_fault, setpoint_fault
 from bridge.fake.board_settings import BoardSettings
 from bridge.fake.board_supply import Supply
 from bridge.fake.pulse_drive import PulseDrive
-from bridge.messages import (
+from bridge.protocol import (
     MAX_DEADLINE_MS,
     NO_JOINT,
     Arm,
     Clear,
     Command,
+    CycleAxis,
     Disarm,
     Fault,
     FaultCode,
+    Finish,
     Flag,
     Mode,
+    Play,
+    Program,
+    ProgramPart,
     Result,
     Setpoint,
     Stop,
 )
-from bridge.program_messages import CycleAxis, Finish, Play, Program, ProgramPart
 
 PULSE_PERIOD_US = 20_000
 

@@ -15,10 +15,9 @@ from bridge.fake.board_courses import (
     Solver,
     Table,
     is_within,
-    table_crc,
 )
-from bridge.messages import Result
-from bridge.program_messages import CycleAxis, Program, ProgramPart, TableBegin, TableEnd, TableRow
+from bridge.frames import table_crc
+from bridge.protocol import CycleAxis, Program, ProgramPart, Result, TableBegin, TableEnd, TableRow
 
 RAMP = 1.0
 APPROACH = 0.5

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from bridge.messages import (
+from bridge.protocol import (
     MAX_DEADLINE_MS,
     MIN_DEADLINE_MS,
     NO_JOINT,

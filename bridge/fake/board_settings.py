@@ -5,7 +5,7 @@ from typing import Literal
 
 from bridge.calibration import Calibration
 from bridge.fake.board_courses import Solver
-from bridge.messages import PROTOCOL_VERSION
+from bridge.protocol import PROTOCOL_VERSION
 from bridge.servo_config import BoardConfig
 
 

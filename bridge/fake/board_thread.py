@@ -20,7 +20,7 @@ from bridge.fake.faults import Faults
 from bridge.fake.plant import Plant
 from bridge.fake.servo import Servos
 from bridge.fake.steppers import Steppers
-from bridge.messages import ResetCause
+from bridge.protocol import ResetCause
 from bridge.servo_config import BoardConfig
 from manipulator.arrays import Array
 

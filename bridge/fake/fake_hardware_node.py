@@ -14,7 +14,7 @@ from std_srvs.srv import SetBool, Trigger
 from bridge.fake.board_thread import BoardThread, FakeMachine
 from bridge.fake.fake_line import FakeLine
 from bridge.fake.faults import FaultKind, Faults
-from bridge.messages import ResetCause
+from bridge.protocol import ResetCause
 from bridge.servo_config import BoardConfig, SimulationConfig
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, LinkError

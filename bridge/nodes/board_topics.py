@@ -8,10 +8,8 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
 from bridge.driver import MachineState
-from bridge.latencies import Latencies
 from bridge.link import Ticket
-from bridge.link_monitor import JointTable
-from bridge.machine_status import MachineStatus
+from bridge.link_monitor import JointTable, Latencies, MachineStatus
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, status
 from manipulator.nodes.qos import LATCHED, MEASUREMENT
 

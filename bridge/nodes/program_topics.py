@@ -10,11 +10,9 @@ from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectory
 
 from bridge.calibration import Calibration
-from bridge.count_table import count_table
 from bridge.link import Link
-from bridge.messages import Command
-from bridge.program_messages import CycleAxis, Finish, Play, Program
-from bridge.upload import Upload
+from bridge.programs import Upload, count_table
+from bridge.protocol import Command, CycleAxis, Finish, Play, Program
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.nodes.bounded import decoded

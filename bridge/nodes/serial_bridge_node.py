@@ -18,11 +18,10 @@ from std_srvs.srv import SetBool, Trigger
 
 from bridge.calibration import Calibration
 from bridge.driver import Asked, BoardDriver
-from bridge.link_thread import LinkThread
+from bridge.link_thread import LinkThread, SerialPort
 from bridge.nodes.board_topics import LEVELS, BoardTopics
 from bridge.nodes.program_topics import ProgramTopics
 from bridge.nodes.stop_node import StopNode
-from bridge.serial_port import SerialPort
 from bridge.servo_config import BoardConfig
 from bridge.stop_socket import StopSocket, stop_address
 from manipulator.errors import ManipulatorError

@@ -7,7 +7,7 @@ import numpy as np
 
 from bridge.calibration import Calibration
 from bridge.fake.board_settings import BoardSettings
-from bridge.messages import ResetCause
+from bridge.protocol import ResetCause
 from bridge.servo_config import BoardConfig
 from firmware.simulator.chip import CLOCK_HZ, CYCLES_A_COUNT, Chip
 from hexarm import machines

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from bridge.fake.board_settings import BoardSettings
 from bridge.frames import encode
 from bridge.framing import FrameReader
-from bridge.messages import Ack, Arm, Command, Message, Result, Setpoint, State
+from bridge.protocol import Ack, Arm, Command, Message, Result, Setpoint, State
 from firmware.simulator.board import SimulatedBoard
 from firmware.simulator.chip import CLOCK_HZ, CYCLES_A_COUNT
 

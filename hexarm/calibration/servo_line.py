@@ -13,9 +13,8 @@ from contextlib import contextmanager
 from bridge.calibration import COUNTS_PER_US
 from bridge.events import Disconnected, Event, FaultReported, Incompatible
 from bridge.link import Link, Ticket
-from bridge.link_thread import LinkThread
-from bridge.messages import Arm, Clear, Command, Disarm, FaultCode, Known, Mode, Setpoint, Stop
-from bridge.serial_port import SerialPort
+from bridge.link_thread import LinkThread, SerialPort
+from bridge.protocol import Arm, Clear, Command, Disarm, FaultCode, Known, Mode, Setpoint, Stop
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
 from manipulator.errors import LinkError, Refused

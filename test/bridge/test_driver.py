@@ -8,7 +8,7 @@ import pytest
 from bridge.driver import BoardDriver
 from bridge.fake.board_thread import FakeMachine
 from bridge.framing import FrameReader
-from bridge.messages import Arm, Clear, Setpoint, Stop
+from bridge.protocol import Arm, Clear, Setpoint, Stop
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from manipulator.errors import InvalidInput, Refused

@@ -5,7 +5,7 @@ from itertools import product
 import pytest
 
 from bridge.handshake import has_restarted
-from bridge.messages import Hello, ResetCause
+from bridge.protocol import Hello, ResetCause
 
 DAY = 86_400.0
 WRAP = 2**32 / 1000

@@ -9,7 +9,7 @@ from bridge.fake.board import Board
 from bridge.fake.board_settings import BoardSettings
 from bridge.framing import FrameReader
 from bridge.link import LOOK_AGAIN_AFTER, SPACING, TICK, Link, Ticket
-from bridge.messages import Arm, Clear, Disarm, Mode, ResetCause, Setpoint, Stop
+from bridge.protocol import Arm, Clear, Disarm, Mode, ResetCause, Setpoint, Stop
 from bridge.session import Session
 from manipulator.errors import Refused
 

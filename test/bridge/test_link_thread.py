@@ -11,9 +11,8 @@ from bridge.events import Connected, Disconnected, StateReceived
 from bridge.fake.board_thread import BoardThread, FakeMachine
 from bridge.fake.fake_line import FakeLine
 from bridge.link import Link, Ticket
-from bridge.link_thread import LinkThread
-from bridge.messages import Arm, Clear, Mode, ResetCause, Setpoint, Stop
-from bridge.serial_port import SerialPort
+from bridge.link_thread import LinkThread, SerialPort
+from bridge.protocol import Arm, Clear, Mode, ResetCause, Setpoint, Stop
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
 from hexarm import machines

@@ -16,9 +16,8 @@ from bridge.fake.board import Board
 from bridge.fake.board_modes import BoardSettings
 from bridge.framing import FrameReader
 from bridge.link import Link
-from bridge.link_thread import LinkThread
-from bridge.messages import Mode, Stop
-from bridge.serial_port import SerialPort
+from bridge.link_thread import LinkThread, SerialPort
+from bridge.protocol import Mode, Stop
 from bridge.session import Phase, Session
 from manipulator.errors import Refused
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from bridge import cobs, messages
 from bridge.frames import MAX_WIRE_BYTES, checksum
-from bridge.program_messages import Program
+from bridge.protocol import Program
 from hexarm.board import build as firmware_build
 from hexarm.board.header import header_of
 from manipulator.errors import ProtocolError

@@ -10,8 +10,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from bridge.calibration import Calibration
 from bridge.fake.board_thread import BoardThread, FakeMachine
-from bridge.messages import Stop
-from bridge.program_messages import CycleAxis, Play, TableRow
+from bridge.protocol import CycleAxis, Play, Stop, TableRow
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board.solver import board_solver

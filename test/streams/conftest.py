@@ -7,7 +7,7 @@ import pytest
 
 from bridge.driver import BoardDriver
 from bridge.fake.board_thread import FakeMachine
-from bridge.messages import Arm
+from bridge.protocol import Arm
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from manipulator.command_check import CommandCheck

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bridge.driver import BoardDriver
-from bridge.messages import Clear, Setpoint, Stop
+from bridge.protocol import Clear, Setpoint, Stop
 from manipulator.pose import Pose
 
 FAR = Pose.from_xyz_rpy((0.010, 0.0, 0.0412))

@@ -4,7 +4,7 @@ import pytest
 
 from bridge.events import CommandFailed, Connected, Disconnected, Incompatible, Phase
 from bridge.frames import encode
-from bridge.messages import Arm, Disarm, Hello, Mode, ResetCause
+from bridge.protocol import Arm, Disarm, Hello, Mode, ResetCause
 from manipulator.errors import Refused
 
 PARK = (3000,) * 6

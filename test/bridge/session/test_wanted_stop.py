@@ -7,7 +7,7 @@ import pytest
 from bridge.events import Acknowledged, CommandFailed
 from bridge.frames import encode
 from bridge.framing import FrameReader
-from bridge.messages import Ack, Arm, Clear, Mode, ResetCause, Result, Stop
+from bridge.protocol import Ack, Arm, Clear, Mode, ResetCause, Result, Stop
 from manipulator.errors import Refused
 
 PARK = (3000,) * 6

@@ -5,7 +5,7 @@ import numpy as np
 from bridge.calibration import Calibration
 from bridge.driver import BoardDriver
 from bridge.fake.board_thread import FakeMachine
-from bridge.messages import Setpoint
+from bridge.protocol import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from manipulator.trajectory.path import Tolerance

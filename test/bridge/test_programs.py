@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 
 from bridge.calibration import Calibration
-from bridge.count_table import count_table
-from bridge.fake.board_courses import table_crc
-from bridge.messages import Disarm, Stop
-from bridge.program_messages import TableBegin, TableEnd, TableRow
+from bridge.frames import table_crc
+from bridge.programs import Upload, count_table
+from bridge.protocol import Disarm, Stop, TableBegin, TableEnd, TableRow
 from bridge.servo_config import BoardConfig
-from bridge.upload import Upload
 from hexarm import machines
 from manipulator.errors import InvalidInput, Refused
 

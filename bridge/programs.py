@@ -1,13 +1,14 @@
-"""Joint positions at equal time steps as a table of pulse counts, and what uploads it."""
+"""Tables for the board to play, and commands that are sent one after the other."""
 
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass
 
 import numpy as np
 
 from bridge.calibration import Calibration
-from bridge.fake.board_courses import table_crc
-from bridge.messages import Command
-from bridge.program_messages import TableBegin, TableEnd, TableRow
+from bridge.frames import table_crc
+from bridge.protocol import Command, TableBegin, TableEnd, TableRow
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.words import counted
@@ -52,3 +53,36 @@ def count_table(times: Array, positions: Array, calibration: Calibration) -> Cou
         except InvalidInput as error:
             raise InvalidInput(f'row {k}: {error}') from error
     return CountTable(tuple(rows), step_ms)
+
+
+class Upload:
+    """`on_end` hears '' when all were obeyed, else why one was not; in the link's thread.
+
+    No command is begun once `late` says why it is too late for it.
+    """
+
+    def __init__(
+        self,
+        request: Callable[[Command], 'Future[None]'],
+        commands: Sequence[Command],
+        on_end: Callable[[str], None],
+        late: Callable[[], str] = lambda: '',
+    ) -> None:
+        self._request, self._on_end, self._late = request, on_end, late
+        self._left = iter(commands)
+
+    def begin(self) -> None:
+        """Sends the first command."""
+        command = next(self._left, None)
+        reason = self._late() if command is not None else ''
+        if command is None or reason:
+            self._on_end(reason)
+        else:
+            self._request(command).add_done_callback(self._go_on)
+
+    def _go_on(self, done: 'Future[None]') -> None:
+        error = done.exception()
+        if error is None:
+            self.begin()
+        else:
+            self._on_end(str(error))
