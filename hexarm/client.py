@@ -171,7 +171,7 @@ class Client:
 
         However long the way takes: NotReady after `seconds` in which nothing moves or is heard.
         """
-        self.wait('a listener for goals', lambda: self._reaches(self._goals, 'trajectory'), 10.0)
+        self.wait('a listener for goals', lambda: self._reaches(self._goals), 10.0)
         stamp = f'{self.publish_goal(pose):.9f}'
         self._await_result(lambda: self.motion('goal_stamp') == stamp, seconds)
 
@@ -180,9 +180,7 @@ class Client:
 
         `seconds` as for go_to: they must also do for working the path out.
         """
-        self.wait(
-            'a listener for paths', lambda: self._reaches(self._paths, 'path_listener'), 10.0
-        )
+        self.wait('a listener for paths', lambda: self._reaches(self._paths), 10.0)
         stamp = self.node.get_clock().now().to_msg()
         self._paths.publish(path_message(poses, stamp))
         name = f'{stamp.sec + 1e-9 * stamp.nanosec:.9f}'
@@ -204,14 +202,14 @@ class Client:
         self.trigger(f'trajectory/{place}')
         self._await_result(lambda: self.motion('goal_stamp') != before, seconds)
 
-    def _reaches(self, publisher: Any, listener: str) -> bool:
-        """Whether every listener that can be is connected, that node among them; others watch."""
+    def _reaches(self, publisher: Any) -> bool:
+        """Whether all who subscribe to it are connected, the trajectory node among them."""
         found = [
             one
             for one in self.node.get_subscriptions_info_by_topic(publisher.topic_name)
             if one.qos_profile.durability == DurabilityPolicy.VOLATILE
         ]
-        is_there = any(one.node_name == listener for one in found)
+        is_there = any(one.node_name == 'trajectory' for one in found)
         return is_there and bool(publisher.get_subscription_count() >= len(found))
 
     def _await_result(self, is_ours: Callable[[], bool], seconds: float) -> None:
