@@ -17,7 +17,6 @@ from rclpy.utilities import try_shutdown
 from std_srvs.srv import SetBool, Trigger
 
 from manipulator.errors import ManipulatorError, Refused
-from manipulator.nodes.discovery import fresh_address
 from manipulator.nodes.messages import pose_message, seconds
 from manipulator.nodes.path_goals import path_message
 from manipulator.nodes.qos import COMMAND, LATCHED
@@ -48,8 +47,7 @@ class Client:
     def __init__(self, namespace: str, interrupt: Callable[[], None] = lambda: None) -> None:
         if not rclpy.ok():
             rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-        with fresh_address():
-            self.node = Node('hexarm', namespace=namespace)
+        self.node = Node('hexarm', namespace=namespace)
         self.machine_state = DiagnosticStatus(message=UNHEARD)
         self.motion_status = DiagnosticStatus()
         self.diagnostics: dict[str, DiagnosticStatus] = {}

@@ -68,7 +68,7 @@ class PathGoals:
         length = len(message.serialized)
         if length > MOST_BYTES:
             raise InvalidInput(
-                f'a path of {length:,} bytes, at most {MOST_BYTES:,}: {MOST_POSES:,} poses take less'
+                f'a path of {length:,} bytes, limit {MOST_BYTES:,}: {MOST_POSES:,} poses take less'
             )
         check_frame(message.header.frame_id, (BASE_FRAME, WORK_FRAME))
         self._supervisor.follow(

@@ -15,7 +15,6 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from manipulator.errors import ManipulatorError
-from manipulator.nodes.discovery import fresh_address
 from manipulator.requirements import missing
 
 GOODBYE = 3.0
@@ -33,8 +32,7 @@ def run_node(make_node: Callable[[], Node], describe: Callable[[str], str] | Non
     stop = _StopRequest()
     rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
     try:
-        with fresh_address():
-            node = make_node()
+        node = make_node()
     except (ManipulatorError, ParameterException, ModuleNotFoundError) as error:
         said = missing(error) if isinstance(error, ModuleNotFoundError) else str(error)
         print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {said}', file=sys.stderr)
@@ -78,7 +76,7 @@ def _leave_within(seconds: float) -> None:
 
 
 def _leave() -> None:
-    """Ends the process here: the executor's own destructor now and then never comes back."""
+    """Ends the process here: later the binding of ruckig would list leaks on the terminal."""
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(0)

@@ -27,7 +27,7 @@ MEASUREMENT_DELAY = 0.06
 """Seconds from a measured pose to the moment that its correction moves the joints, by default."""
 
 OVERTAKING = 0.5
-"""Seconds by which a goal may overtake a path, which takes longer on the line, or a path a goal."""
+"""Seconds by which a goal may overtake a path, which takes longer to send, or a path a goal."""
 
 Refuse = Callable[[ManipulatorError], object]
 """Is told why a command that was taken came to nothing before it began."""
@@ -94,7 +94,6 @@ class Supervisor:
 
     def pursue(self, goal: Goal, refuse: Refuse, now: float, is_of_platform: bool = True) -> None:
         """A goal: the platform's pose in the base frame, or the pivot's in the work frame."""
-
         self._check_order(goal.stamp, now)
         self._pursue(goal, refuse, now, is_of_platform)
 
@@ -194,7 +193,7 @@ class Supervisor:
         newest, received = self._newest
         ahead = newest - stamp
         if stamp and 0.0 < ahead < OVERTAKING and now - received < OVERTAKING:
-            raise Refused(f'stamped {ahead:.3f} s before the last goal or path: reordered, ignored')
+            raise Refused(f'stamped {ahead:.3f} s before the last goal or path: ignored')
         if stamp:
             self._newest = stamp, now
 

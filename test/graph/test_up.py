@@ -39,7 +39,7 @@ def test_up_enables_runs_and_parks_on_ctrl_c(hexarm, processes_left):
     process = hexarm('up', 'hexapod')
     said = read_until(process, 'is up on fake and enabled')
     assert said.count(f'machine robocake: {ROBOCAKE} (rotary hexapod; RoboCake, crank') == 5
-    assert len(processes_left()) == 7  # up, five nodes, the trajectory node's path_listener
+    assert len(processes_left()) == 6  # up, five nodes
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()
     assert process.wait(60) == 0

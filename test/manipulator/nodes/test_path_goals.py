@@ -140,7 +140,7 @@ def test_the_longest_path_is_taken_and_decoded_only_when_it_is_worked_out(driver
 def test_a_longer_one_is_refused_by_its_bytes_and_never_decoded(driver, monkeypatch):
     monkeypatch.setattr('manipulator.nodes.path_goals.path_of', None)
     driver.send(path_message(poses(2600), driver.now()))
-    assert driver.refused == ['a path of 208,028 bytes, at most 200,000: 2,000 poses take less']
+    assert driver.refused == ['a path of 208,028 bytes, limit 200,000: 2,000 poses take less']
 
 
 def test_path_in_a_frame_that_is_no_name_is_refused_at_once(driver):
@@ -164,9 +164,10 @@ def test_header_of_a_huge_message_is_read_and_nothing_else(monkeypatch):
 
 def test_bytes_that_are_no_path_are_refused_and_nothing_else_happens():
     whole = serialize_message(written())
-    count = whole.index(b'base\0') + 8
     rng = np.random.default_rng(0)
-    broken = [b'', b'\0', b'\0\1\0\0', whole[:40], whole[:count] + b'\xff' * 4 + whole[count + 4 :]]
+    count = whole.index(b'base\0') + 8
+    many = whole[:count] + b'\xff' * 4 + whole[count + 4 :]
+    broken = [b'', b'\0', b'\0\1\0\0', whole[:40], many]
     for _ in range(300):
         one = bytearray(whole[: rng.integers(1, len(whole))])
         for k in rng.integers(0, len(one), 3):
