@@ -39,7 +39,7 @@ def test_up_enables_runs_and_parks_on_ctrl_c(hexarm, processes_left):
     process = hexarm('up', 'hexapod')
     said = read_until(process, 'is up on fake and enabled')
     assert said.count(f'machine robocake: {ROBOCAKE} (rotary hexapod; RoboCake, crank') == 2
-    assert len(processes_left()) == 4  # up, the board, the nodes, their path_listener
+    assert len(processes_left()) == 2  # up, the board
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()
     assert process.wait(60) == 0
