@@ -43,12 +43,17 @@ def machine_graph(
     """
     boards = board_process(machine, port, link)
     needs = link if boards else None
+    if is_separate:
+        return [*boards, *node_processes(machine, port, needs)]
+    parameters = {'machine': machine, 'port': str(needs or port)}
+    return [*boards, Executable('machine', parameters, needs)]
+
+
+def node_processes(machine: str, port: str, link: Path | None = None) -> list[Executable]:
+    """A process for each node of a machine, on a port or on the link that a fake board makes."""
     common = {'machine': machine}
-    to_board = common | {'port': str(needs or port)}
-    if not is_separate:
-        return [*boards, Executable('machine', to_board, needs)]
     nodes = [Executable(name, common) for name in ('ik', 'pose', 'trajectory')]
-    return [*boards, *nodes, Executable('serial_bridge', to_board, needs)]
+    return [*nodes, Executable('serial_bridge', common | {'port': str(link or port)}, link)]
 
 
 def board_process(machine: str, port: str, link: Path) -> list[Executable]:
@@ -114,7 +119,7 @@ def link_folder() -> 'tempfile.TemporaryDirectory[str]':
 
 
 def wait_for(path: Path | None) -> None:
-    """Waits for a file that a process makes, as long as PATIENCE."""
+    """Waits for a file that a process makes, PATIENCE at most."""
     deadline = time.monotonic() + PATIENCE
     while path is not None and not path.exists() and time.monotonic() < deadline:
         time.sleep(0.01)

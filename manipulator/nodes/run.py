@@ -52,6 +52,16 @@ def run_nodes(makers: Makers, describe: Callable[[str], str] | None = None) -> i
 
 
 @contextmanager
+def context(arguments: Sequence[str]) -> Iterator[None]:
+    """The context of ROS of this process, with these arguments for all its nodes."""
+    rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        yield
+    finally:
+        try_shutdown()
+
+
+@contextmanager
 def spinning(makers: Makers) -> Iterator[Callable[[], bool]]:
     """Nodes in a thread of this process, in a context that is there; says whether it still runs.
 

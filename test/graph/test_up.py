@@ -62,7 +62,7 @@ def test_up_with_a_panel_tells_where_its_page_is(hexarm, processes_left):
 
 
 @pytest.mark.parametrize(
-    ('node', 'words'), [('machine', ()), ('fake_hardware', ()), ('trajectory', ('--separate',))]
+    ('node', 'words'), [('fake_hardware', ()), ('trajectory', ('--separate',))]
 )
 def test_up_says_which_process_died_stops_the_rest_and_fails(hexarm, processes_left, node, words):
     process = hexarm('up', 'robocake', *words)
