@@ -13,7 +13,7 @@ from sensor_msgs.msg import JointState
 from bench.graph import cpu_seconds
 from bench.row import Row
 from bridge.frames import encode
-from bridge.messages import Setpoint
+from bridge.protocol import Setpoint
 from hexarm.client import Client
 from hexarm.graph import Graph, machine_graph
 from hexarm.machines import read

@@ -18,8 +18,8 @@ import numpy as np
 from std_msgs.msg import Bool, Float64
 from std_srvs.srv import SetBool
 
-from bridge.faults import Faults
-from bridge.messages import Arm, Disarm, ResetCause, Setpoint
+from bridge.fake.faults import Faults
+from bridge.protocol import Arm, Disarm, ResetCause, Setpoint
 from hexarm import machines
 from hexarm.rig import Rig
 from manipulator.errors import ManipulatorError

@@ -38,7 +38,7 @@ def _pose(machine: str) -> Node:
 
 
 def _serial_bridge() -> Node:
-    from bridge.serial_bridge_node import SerialBridge
+    from bridge.nodes.serial_bridge_node import SerialBridge
     from hexarm.machines import board_config
 
     return SerialBridge(board_config)
@@ -83,7 +83,7 @@ def serial_bridge() -> int:
 
 def fake_hardware() -> int:
     """Runs a board on a pty."""
-    from bridge.fake_hardware_node import FakeHardware
+    from bridge.fake.fake_hardware_node import FakeHardware
     from hexarm.board.plant import fake_machine
     from hexarm.machines import board_config
 

@@ -18,9 +18,9 @@ import numpy as np
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 
-from bridge.board_thread import BoardThread, FakeMachine
-from bridge.faults import Faults
-from bridge.plant import Plant
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.faults import Faults
+from bridge.fake.plant import Plant
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.client import Client, NotReady

@@ -18,8 +18,6 @@ CLOCKED = {
     'link_thread.py',
     'board_thread.py',
     'fake_line.py',
-    'serial_port.py',
-    'stop_memory.py',
     'stop_socket.py',
 }
 CORE = sorted(PACKAGES - {'hexarm'})

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
-from bridge.messages import ResetCause
+from bridge.fake.board_settings import BoardSettings
+from bridge.protocol import ResetCause
 from bridge.servo_config import BoardConfig
 from firmware.simulator.chip import CLOCK_HZ, CYCLES_A_COUNT, Chip
 from hexarm import machines

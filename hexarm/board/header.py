@@ -4,9 +4,9 @@ import argparse
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from bridge.board_modes import PULSE_PERIOD_US
-from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
+from bridge.fake.board_modes import PULSE_PERIOD_US
+from bridge.fake.board_settings import BoardSettings
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board.kinematics import WITHOUT, kinematics_of

@@ -4,9 +4,9 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-from bridge.board_thread import FakeMachine
 from bridge.calibration import Calibration
-from bridge.plant import Plant
+from bridge.fake.board_thread import FakeMachine
+from bridge.fake.plant import Plant
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board.solver import board_solver

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bridge.board_courses import Counts, Solver
 from bridge.calibration import Calibration
+from bridge.fake.board_courses import Counts, Solver
 from hexapod_control.rotary import RotaryHexapod
 from manipulator import rotation
 from manipulator.limits.body_height import BodyHeight

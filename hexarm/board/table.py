@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from bridge.calibration import Calibration
-from bridge.count_table import CountTable, count_table
+from bridge.programs import CountTable, count_table
 from manipulator.errors import ConfigError, InvalidInput
 from manipulator.words import reason
 

@@ -8,8 +8,7 @@ from contextlib import ExitStack, contextmanager
 from difflib import get_close_matches
 
 from bridge.servo_config import BoardConfig, ServoConfig
-from bridge.servo_stages import Stage
-from bridge.servo_walk import ServoWalk
+from bridge.servo_walk import ServoWalk, Stage
 from hexarm.calibration.fake_servos import FakeServos, mounted_wrongly
 from hexarm.calibration.machine_writer import MachineWriter
 from hexarm.calibration.servo_line import SIGNALS, ServoLine

@@ -5,8 +5,8 @@ import re
 
 import pytest
 
-from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
+from bridge.fake.board_settings import BoardSettings
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board import build as firmware_build

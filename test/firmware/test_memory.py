@@ -4,8 +4,7 @@ import dataclasses
 import random
 
 from bridge.calibration import Calibration
-from bridge.messages import Arm, Mode, Setpoint
-from bridge.program_messages import CycleAxis, Play, Program
+from bridge.protocol import Arm, CycleAxis, Mode, Play, Program, Setpoint
 from bridge.servo_config import BoardConfig
 from firmware.simulator.fuzz import mutants
 from firmware.simulator.host import SETTINGS, Host

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bridge import cobs, messages
+from bridge import cobs, protocol
 from bridge.frames import MAX_WIRE_BYTES, checksum
-from bridge.program_messages import Program
+from bridge.protocol import Program
 from hexarm.board import build as firmware_build
 from hexarm.board.header import header_of
 from manipulator.errors import ProtocolError
@@ -90,11 +90,11 @@ def test_every_single_bit_error_is_noticed(wire):
 
 
 ENUMS = {
-    'MODE': messages.Mode,
-    'KNOWN': messages.Known,
-    'FLAG': messages.Flag,
-    'RESULT': messages.Result,
-    'FAULT': messages.FaultCode,
+    'MODE': protocol.Mode,
+    'KNOWN': protocol.Known,
+    'FLAG': protocol.Flag,
+    'RESULT': protocol.Result,
+    'FAULT': protocol.FaultCode,
     'PROGRAM': Program,
 }
 

@@ -8,10 +8,9 @@ from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from bridge.board_thread import BoardThread, FakeMachine
 from bridge.calibration import Calibration
-from bridge.messages import Stop
-from bridge.program_messages import CycleAxis, Play, TableRow
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.protocol import CycleAxis, Play, Stop, TableRow
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board.solver import board_solver
@@ -149,10 +148,10 @@ def test_a_program_does_not_spoil_an_upload(calm, tap):
     )
 
 
-def test_a_table_of_megabytes_is_not_even_decoded(calm):
-    rows = [JointTrajectoryPoint(positions=[2.1] * 6)] * 20_000
+def test_a_table_beyond_what_a_board_holds_is_not_even_decoded(calm):
+    rows = [JointTrajectoryPoint(positions=[2.1] * 6)] * 2_000
     calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
-    calm.wait('a refusal', lambda: any('at most 1000000' in text for text in calm.said))
+    calm.wait('a refusal', lambda: any('at most 100000' in text for text in calm.said))
 
 
 def test_bytes_that_are_no_table_are_refused(calm):

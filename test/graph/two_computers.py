@@ -15,11 +15,11 @@ from pathlib import Path
 
 import numpy as np
 
-from bridge.board_thread import BoardThread, FakeMachine
 from bridge.calibration import Calibration
-from bridge.fake_line import FakeLine
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.fake_line import FakeLine
 from bridge.framing import FrameReader
-from bridge.messages import Setpoint
+from bridge.protocol import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.cli.up import check_alive

@@ -7,7 +7,7 @@ import signal
 import numpy as np
 import pytest
 
-from bridge.messages import Arm, Mode
+from bridge.protocol import Arm, Mode
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.calibration.fake_servos import FakeServos, mounted_wrongly

@@ -1,13 +1,12 @@
 """What `hexarm stop` does first: a STOP waits for nothing that it does not need."""
 
 import argparse
-import queue
 import subprocess
 import sys
 
 import pytest
 
-from bridge.stop_socket import StopSocket, send_stop, stop_address
+from bridge.stop_socket import StopSocket, stop_address
 from hexarm.cli import stop
 from hexarm.cli.stop import press
 
@@ -79,21 +78,18 @@ def test_where_nobody_listens_it_gives_up_in_the_end():
 
 def test_a_bridge_of_this_computer_is_told_before_the_graph_is_joined(monkeypatch):
     monkeypatch.setenv('ROS_DOMAIN_ID', '7')
-    address, heard = stop_address('/test_stop/serial_bridge', 7), queue.Queue()
-    listener = StopSocket(address, lambda: heard.put('STOP'), heard.put)
-    listener.start()
-    while not send_stop(address):
-        pass
-    heard.get(timeout=10.0)
+    received = []
+    stops = StopSocket(stop_address('/test_stop/serial_bridge', 7), lambda: received.append(1))
 
     def join(namespace):
-        assert heard.get(timeout=10.0) == 'STOP'
+        stops.receive()
+        assert received == [1]
         raise KeyboardInterrupt
 
     monkeypatch.setattr(stop, 'StopNode', join)
     with pytest.raises(KeyboardInterrupt):
         stop.run(argparse.Namespace(namespace='test_stop'))
-    listener.close()
+    stops.close()
 
 
 def test_no_other_subcommand_is_loaded_nor_ros_before_the_first_stop_is_out():

@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from bridge.board_thread import FakeMachine
 from bridge.calibration import Calibration
+from bridge.fake.board_thread import FakeMachine
 from bridge.servo_config import BoardConfig
 from hexarm.board.plant import plant
 from hexarm.simulation.model import mechanism
