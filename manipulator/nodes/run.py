@@ -1,5 +1,6 @@
 """Running nodes in a process: clean start, clean stop, one line for what went wrong."""
 
+import faulthandler
 import gc
 import os
 import signal
@@ -46,8 +47,9 @@ def run_nodes(makers: Makers, describe: Callable[[str], str] | None = None) -> i
         print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {reason}', file=sys.stderr)
         try_shutdown()
         return 1
-    try_shutdown()
-    leave(0)
+    with _leaving_within(GOODBYE):
+        try_shutdown()
+    _leave()
     return 0
 
 
@@ -112,11 +114,11 @@ def on_executor(makers: Makers) -> Iterator[tuple[list[Node], EventsExecutor]]:
                 node.destroy_node()
 
 
-def leave(status: int) -> None:
+def _leave() -> None:
     """Ends the process here: later the binding of ruckig would list leaks on the terminal."""
     sys.stdout.flush()
     sys.stderr.flush()
-    os._exit(status)
+    os._exit(0)
 
 
 def _keep_for_good() -> None:
@@ -127,12 +129,15 @@ def _keep_for_good() -> None:
 
 @contextmanager
 def _leaving_within(seconds: float) -> Iterator[None]:
-    """Ends the process where taking leave of the graph does not come back."""
-    timer = threading.Timer(seconds, leave, (0,))
-    timer.daemon = True
-    timer.start()
-    yield
-    timer.cancel()
+    """Ends the process, with status 1, where taking leave of the graph never comes back.
+
+    While others leave too, Fast DDS 2.14 now and then waits for itself (`set_listener`), and rclpy
+    keeps the interpreter's lock meanwhile: only a thread that is none of Python's gets a turn.
+    """
+    with open(os.devnull, 'w', encoding='utf-8') as nowhere:
+        faulthandler.dump_traceback_later(seconds, exit=True, file=nowhere)
+        yield
+        faulthandler.cancel_dump_traceback_later()
 
 
 class _StopRequest:

@@ -45,7 +45,8 @@ def descriptors(client, tmp_path_factory):
     finally:
         for process in started:
             process.terminate()
-        assert [process.wait(60) for process in started] == [0] * len(started)
+        for process in started:
+            process.wait(60)
 
 
 def describe(client, executable):
