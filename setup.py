@@ -22,7 +22,13 @@ setup(
         (f'share/{NAME}/launch', sorted(str(f) for f in Path('launch').glob('*.launch.py'))),
         (f'share/{NAME}/viewers', sorted(str(f) for f in Path('viewers').iterdir())),
     ],
-    install_requires=['numpy>=1.26', 'pyserial>=3.5', 'PyYAML>=6.0', 'ruckig>=0.14'],
+    install_requires=[
+        'numpy>=1.26',
+        'pyserial>=3.5',
+        'PyYAML>=6.0',
+        'ruckig>=0.14',
+        'scipy>=1.11',  # analysis and calibration
+    ],
     extras_require={
         # ROS 2 Jazzy from wheels; a system installation brings these three itself.
         'ros': [
@@ -34,7 +40,7 @@ setup(
         'plot': ['matplotlib>=3.8'],
         'physics': ['mujoco>=3.2', 'matplotlib>=3.8', 'pillow>=10'],
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.5', 'matplotlib>=3.8'],
-        'panel': ['viser>=1.1'],
+        'panel': ['viser>=1.1,<1.2'],  # panel/nodes/web_server.py reaches into it
         'terminal': ['rich>=13'],
         # Libraries that `make bench` compares with: docs/performance.md.
         'bench': [

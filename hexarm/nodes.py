@@ -13,7 +13,7 @@ from rclpy.node import Node
 
 from hexarm.machines import described, load
 from manipulator.errors import InvalidInput
-from manipulator.nodes.run import run_nodes
+from manipulator.nodes.run import Makers, run_nodes
 
 HEXAPOD, ARM = 'robocake', 'arm_6r'
 """The machines of the executables where none is named."""
@@ -48,10 +48,14 @@ _loaded = cache(load)
 """A machine file is read once, also where one process holds several nodes."""
 
 
+def machine_nodes() -> Makers:
+    """What makes the four nodes of a machine: trajectory, ik, pose, serial_bridge."""
+    return [*(partial(part, HEXAPOD) for part in (_trajectory, _ik, _pose)), _serial_bridge]
+
+
 def machine() -> int:
-    """Runs the four nodes of a machine in one process: trajectory, ik, pose, serial_bridge."""
-    parts = (partial(part, HEXAPOD) for part in (_trajectory, _ik, _pose))
-    return run_nodes([*parts, _serial_bridge], described)
+    """Runs the four nodes of a machine in one process."""
+    return run_nodes(machine_nodes(), described)
 
 
 def trajectory(default_machine: str = HEXAPOD) -> int:

@@ -78,3 +78,47 @@ def test_tests_know_nothing_of_the_bench_but_those_of_the_bench_itself():
         name = path.relative_to(ROOT).as_posix()
         if not name.startswith('test/bench/'):
             assert 'bench' not in imports(path), name
+
+
+CONTROLLING = (
+    *(path for path in (ROOT / 'manipulator' / 'nodes').glob('*.py')),
+    *(path for path in (ROOT / 'bridge').glob('*_node.py')),
+    *(ROOT / room / 'load.py' for room in ('hexapod_control', 'arm_control')),
+)
+
+
+def files_imported(path):
+    """The project's files that a file imports, anywhere in it."""
+    names = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names |= {node.module, *(f'{node.module}.{alias.name}' for alias in node.names)}
+    paths = [ROOT.joinpath(*name.split('.')) for name in names]
+    found = {p.with_suffix('.py') for p in paths} | {p / '__init__.py' for p in paths}
+    return {path for path in found if path.is_file()}
+
+
+def test_nothing_that_controls_a_machine_can_come_to_import_scipy():
+    """Its half second and fifty megabytes are for analysis and calibration."""
+    seen, waiting = set(), {*CONTROLLING}
+    while waiting:
+        path = waiting.pop()
+        seen.add(path)
+        assert 'scipy' not in imports(path), path.relative_to(ROOT)
+        waiting |= files_imported(path) - seen
+    assert ROOT / 'manipulator' / 'trajectory' / 'planner.py' in seen
+    assert ROOT / 'arm_control' / 'arm_jogger.py' in seen
+
+
+def test_scipy_is_imported_where_it_is_used():
+    """Every command of `hexarm` imports the modules of all commands."""
+    for room in sorted(PACKAGES):
+        for path in sorted((ROOT / room).rglob('*.py')):
+            top = ast.parse(path.read_text()).body
+            names = {getattr(node, 'module', None) or '' for node in top}
+            names |= {
+                alias.name for node in top if isinstance(node, ast.Import) for alias in node.names
+            }
+            assert not any(name.split('.')[0] == 'scipy' for name in names), path

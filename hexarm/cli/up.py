@@ -4,11 +4,20 @@ import argparse
 import contextlib
 import signal
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hexarm.graph import Graph, link_folder, machine_graph
-from hexarm.machines import family, load, read
+from hexarm.graph import (
+    Executable,
+    Graph,
+    board_process,
+    link_folder,
+    node_processes,
+    ros_arguments,
+    wait_for,
+)
+from hexarm.machines import described, family, load, read
 from hexarm.namespaces import NAMESPACE
 from hexarm.panel_process import panel_process, panel_words
 from manipulator.errors import ManipulatorError, Refused
@@ -49,35 +58,87 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Runs the graph; status 0 after Ctrl-C, 1 when a node died or did not get ready."""
+    """Runs the graph; status 0 after Ctrl-C, 1 when a part of it ended or did not get ready."""
     from hexarm.client import Client  # noqa: PLC0415 (needs ROS, which `hexarm ik` does not)
 
     machine = arguments.machine or MACHINES.get(arguments.name, arguments.name)
     check(arguments.name, machine, arguments.namespace)
     namespace = arguments.namespace or family(machine)
-    others = [panel_process(machine)] if arguments.panel else []
-    stop = StopSignal()
-    refuse_second(namespace)
-    with link_folder() as folder:
-        link = Path(folder) / 'board'
-        processes = machine_graph(machine, arguments.port, link, arguments.separate)
-        with Graph([*processes, *others], namespace) as graph:
+    pages = [panel_process(machine)] if arguments.panel else []
+    stop, parts = StopSignal(), Parts(machine, namespace, arguments.port)
 
-            def interrupt() -> None:
-                stop.check()
-                check_alive(graph)
+    def interrupt() -> None:
+        stop.check()
+        parts.check_alive()
 
-            with Client(namespace, interrupt) as client:
-                try:
-                    enable(client, namespace)
-                    print(_welcome(namespace, machine, arguments.port), flush=True)
-                    for panel in others:
-                        print(f'The panel is on {panel_words(panel)}', flush=True)
-                    _watch(client)
-                except Interrupted:
-                    stop.is_set = False
-                    park(client, stop)
+    with parts, Client(namespace, interrupt) as client:
+        parts.start_processes([*parts.board, *pages])
+        refuse_second(client, namespace)
+        print(described(machine), flush=True)
+        parts.start_nodes(arguments.separate)
+        try:
+            enable(client, namespace)
+            print(_welcome(namespace, machine, arguments.port), flush=True)
+            for page in pages:
+                print(f'The panel is on {panel_words(page)}', flush=True)
+            _watch(client)
+        except Interrupted:
+            stop.is_set = False
+            park(client, stop)
     return 0
+
+
+class Parts:
+    """Everything that runs for one machine: processes, and nodes in this one.
+
+    A context manager that leaves none behind. The context of ROS that nodes and client share is
+    made when it is entered.
+    """
+
+    def __init__(self, machine: str, namespace: str, port: str) -> None:
+        self._stack = contextlib.ExitStack()
+        self._machine, self._namespace, self._port = machine, namespace, port
+        self._link: Path | None = None
+        self._graphs: list[Graph] = []
+        self._are_nodes_alive: Callable[[], bool] = lambda: True
+        self.board: list[Executable] = []
+
+    def __enter__(self) -> 'Parts':
+        """Makes the folder of the board's port, and the context."""
+        from manipulator.nodes.run import context  # noqa: PLC0415 (needs ROS)
+
+        link = Path(self._stack.enter_context(link_folder())) / 'board'
+        self.board = board_process(self._machine, self._port, link)
+        self._link = link if self.board else None
+        parameters = {'machine': self._machine, 'port': str(self._link or self._port)}
+        self._stack.enter_context(context(ros_arguments(self._namespace, parameters)))
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        """Ends them, the ones that were started last first."""
+        self._stack.close()
+
+    def start_processes(self, processes: list[Executable]) -> None:
+        """Starts processes that are watched from now on."""
+        self._graphs.append(self._stack.enter_context(Graph(processes, self._namespace)))
+
+    def start_nodes(self, is_separate: bool) -> None:
+        """The machine's four nodes: in this process, or as one process each."""
+        if is_separate:
+            self.start_processes(node_processes(self._machine, self._port, self._link))
+            return
+        from hexarm.nodes import machine_nodes  # noqa: PLC0415 (as above)
+        from manipulator.nodes.run import spinning  # noqa: PLC0415
+
+        wait_for(self._link)
+        self._are_nodes_alive = self._stack.enter_context(spinning(machine_nodes()))
+
+    def check_alive(self) -> None:
+        """Raises NodeDied when one of them has ended."""
+        for graph in self._graphs:
+            check_alive(graph)
+        if not self._are_nodes_alive():
+            raise NodeDied('the nodes ended by an error; stopping the others')
 
 
 def check(name: str, machine: str, namespace: str | None) -> None:
@@ -94,13 +155,10 @@ def check(name: str, machine: str, namespace: str | None) -> None:
         raise Refused(f'{machine} is a {read(machine).kind}: hexarm up {machine}')
 
 
-def refuse_second(namespace: str) -> None:
-    """Raises Refused where a graph runs in this namespace: both would hear every call."""
-    from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
-
-    with Client(namespace) as client:
-        client.spin(LOOKS)
-        found = client.node.get_node_names_and_namespaces()
+def refuse_second(client: 'Client', namespace: str) -> None:
+    """Raises Refused where a graph runs in this namespace: both would receive every call."""
+    client.spin(LOOKS)
+    found = client.node.get_node_names_and_namespaces()
     if any(name in OURS and space.strip('/') == namespace.strip('/') for name, space in found):
         raise Refused(
             f'a graph runs in /{namespace.strip("/")} already: end it, or take another '

@@ -2,7 +2,7 @@
 
 The unknowns are the nine coordinates of three points: the platform's joints of a 6-3, or of a 6-6
 the corners of the triangle U V W that arises when the sides B1B2, B3B4, B5B6 are prolonged. Three
-sides and six legs give nine equations, solved by a trust-region dogleg method.
+sides and six legs give nine equations, solved by a dogleg method: Powell's hybrid of MINPACK.
 """
 
 from dataclasses import dataclass
@@ -10,22 +10,24 @@ from dataclasses import dataclass
 import numpy as np
 
 from hexapod_control.linear_geometry import PlatesConfig
-from manipulator.arrays import Array, frozen
+from manipulator.arrays import Array
 from manipulator.errors import NoSolution
 from manipulator.pose import Pose
 
-MOST_ITERATIONS = 200
 TOLERANCE = 1e-13
+"""Of a step, relative: the last one where it is as small."""
+MOST_LEFT = 1e-12
+"""Of an equation, in units of UV²."""
 FROM_CORNER = np.array([0, 1, 1, 2, 2, 0])  # joint k lies on the side from this corner
 TO_CORNER = np.array([1, 0, 2, 1, 0, 2])  # to this one, eqs (15) to (20)
 
 
 @dataclass(frozen=True)
 class PlaneSolution:
-    """A pose, the iterations it took, and the worst leg's error in metres."""
+    """A pose, how often the equations were asked for it, and the worst leg's error in metres."""
 
     pose: Pose
-    iterations: int
+    evaluations: int
     residual: float
 
 
@@ -68,11 +70,21 @@ class PlaneMethod:
 
         Raises NoSolution when there is none there.
         """
-        corners, iterations = self._descend(self._corners(start), frozen(lengths))
-        joints = self._joints(corners)
-        reached = np.linalg.norm(joints - self.base_points, axis=1)
+        from scipy.optimize import root  # noqa: PLC0415 (50 MB: for who asks)
+
+        found = root(
+            self._equations, self._corners(start).ravel(), (lengths,), jac=True, tol=TOLERANCE
+        )
+        worst = np.abs(found.fun).max()
+        if worst > MOST_LEFT * (1 + (np.max(lengths) / self.side) ** 2):
+            raise NoSolution(
+                f'the plane method found no pose: an equation misses by '
+                f'{worst:.3g} of the squared side'
+            )
+        corners = found.x.reshape(3, 3)
+        reached = np.linalg.norm(self._joints(corners) - self.base_points, axis=1)
         return PlaneSolution(
-            self._pose(corners), iterations, float(np.abs(reached - lengths).max())
+            self._pose(corners), int(found.nfev), float(np.abs(reached - lengths).max())
         )
 
     def _corners(self, pose: Pose) -> Array:
@@ -113,49 +125,3 @@ class PlaneMethod:
         jacobian[row + 3, FROM_CORNER] = 2 * (1 - self.share) * rods
         jacobian[row + 3, TO_CORNER] = 2 * self.share * rods
         return values / square, jacobian.reshape(9, 9) / square
-
-    def _descend(self, corners: Array, lengths: Array) -> tuple[Array, int]:
-        """Powell's dogleg: the corners at which all nine equations hold, and the iterations."""
-        x = corners.ravel()
-        radius = self.side
-        values, jacobian = self._equations(x, lengths)
-        for iteration in range(MOST_ITERATIONS):
-            if np.abs(values).max() < TOLERANCE * (1 + (lengths.max() / self.side) ** 2):
-                return x.reshape(3, 3), iteration
-            step = dogleg_step(values, jacobian, radius)
-            tried, tried_jacobian = self._equations(x + step, lengths)
-            before = float(values @ values)
-            predicted = before - float(np.sum((values + jacobian @ step) ** 2))
-            gained = before - float(tried @ tried)
-            if predicted <= 0.0 or radius < 1e-14 * self.side:
-                break
-            if gained < 0.25 * predicted:
-                radius = float(np.linalg.norm(step)) / 4
-            elif gained > 0.75 * predicted:
-                radius = max(radius, 2 * float(np.linalg.norm(step)))
-            if gained > 0.0:
-                x, values, jacobian = x + step, tried, tried_jacobian
-        raise NoSolution(
-            f'the plane method found no pose: an equation misses by '
-            f'{np.abs(values).max():.3g} of the squared side'
-        )
-
-
-def dogleg_step(values: Array, jacobian: Array, radius: float) -> Array:
-    """Powell's step of length ≤ radius for values + jacobian·step ≈ 0: (n,), (n, n) to (n,).
-
-    The Newton step where it fits; else the way to it by the steepest descent's minimum, cut off.
-    """
-    newton = np.asarray(np.linalg.lstsq(jacobian, -values, rcond=None)[0], dtype=np.float64)
-    if np.linalg.norm(newton) <= radius:
-        return newton
-    gradient = jacobian.T @ values
-    bent = jacobian @ gradient
-    cauchy: Array = -gradient * float(gradient @ gradient) / float(bent @ bent)
-    length = float(np.linalg.norm(cauchy))
-    if length >= radius:
-        return cauchy * (radius / length)
-    onward = newton - cauchy
-    a, b, c = float(onward @ onward), float(cauchy @ onward), length**2 - radius**2
-    share = (-b + np.sqrt(b * b - a * c)) / a
-    return np.asarray(cauchy + share * onward, dtype=np.float64)

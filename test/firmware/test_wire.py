@@ -116,4 +116,4 @@ def test_protocol_h_says_what_the_messages_say():
         'MAX_DEADLINE_MS',
     ):
         (value,) = re.findall(rf'#define {name} (\d+)', text)
-        assert getattr(messages, name) == int(value)
+        assert getattr(protocol, name) == int(value)

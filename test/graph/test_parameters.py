@@ -19,7 +19,7 @@ NAMESPACE = 'described'
 FOREIGN = ('use_sim_time', 'start_type_description_service', 'qos_overrides')
 """rclpy's own."""
 PORTS = {'fake_hardware': 'link', 'serial_bridge': 'port'}
-COMPANIONS = ('path_listener', 'serial_bridge_stop', 'serial_bridge_programs')
+COMPANIONS = ('serial_bridge_stop', 'serial_bridge_programs')
 """Nodes that others start for themselves, with no parameters of their own."""
 
 
@@ -45,7 +45,8 @@ def descriptors(client, tmp_path_factory):
     finally:
         for process in started:
             process.terminate()
-        assert [process.wait(60) for process in started] == [0] * len(started)
+        for process in started:
+            process.wait(60)
 
 
 def describe(client, executable):

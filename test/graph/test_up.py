@@ -39,7 +39,7 @@ def test_up_enables_runs_and_parks_on_ctrl_c(hexarm, processes_left):
     process = hexarm('up', 'hexapod')
     said = read_until(process, 'is up on fake and enabled')
     assert said.count(f'machine robocake: {ROBOCAKE} (rotary hexapod; RoboCake, crank') == 2
-    assert len(processes_left()) == 4  # up, the board, the nodes, their path_listener
+    assert len(processes_left()) == 2  # up, the board
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()
     assert process.wait(60) == 0
@@ -62,7 +62,7 @@ def test_up_with_a_panel_tells_where_its_page_is(hexarm, processes_left):
 
 
 @pytest.mark.parametrize(
-    ('node', 'words'), [('machine', ()), ('fake_hardware', ()), ('trajectory', ('--separate',))]
+    ('node', 'words'), [('fake_hardware', ()), ('trajectory', ('--separate',))]
 )
 def test_up_says_which_process_died_stops_the_rest_and_fails(hexarm, processes_left, node, words):
     process = hexarm('up', 'robocake', *words)

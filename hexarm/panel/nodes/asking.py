@@ -13,7 +13,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from hexarm.panel.buttons import Wishes
 from manipulator.nodes.messages import pose_message
-from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.qos import COMMAND, EVERY_WORD
 from manipulator.pose import Pose
 
 TRIGGERS = (
@@ -49,7 +49,7 @@ class Asking:
         self._waiting: dict[Future, tuple[str, float]] = {}
         self.said = ''
         self._goals = node.create_publisher(PoseStamped, 'goal_pose', COMMAND)
-        self._stops = node.create_publisher(Bool, 'emergency_stop', COMMAND)
+        self._stops = node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         self._speeds = node.create_publisher(Float64, 'speed_override', COMMAND)
         self._clients = {name: node.create_client(Trigger, name) for name in TRIGGERS}
         self._clients |= {name: node.create_client(SetBool, name) for name in SWITCHES}

@@ -19,6 +19,7 @@ from websockets.http11 import Request, Response
 
 from hexarm.panel.access import refusal
 from manipulator.errors import Refused
+from manipulator.requirements import INSTALL
 from manipulator.words import shown
 
 JOYSTICK_PATH = '/joystick'
@@ -36,7 +37,7 @@ def start_server(host: str, port: int, label: str, serve_joystick: Handler) -> A
         server.stop()
         raise Refused(
             f'viser {viser.__version__} opens its port in a way that this panel does not know: '
-            "python3 -m pip install 'viser>=1.1,<1.2'"
+            f'{INSTALL["viser"]}'
         )
     server.request_share_url = _refuse_to_share
     return server

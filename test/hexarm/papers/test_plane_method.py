@@ -4,7 +4,7 @@ import pytest
 from hexapod_control.assembly_modes import assembly_modes
 from hexapod_control.forward import ForwardByLengths
 from hexapod_control.linear_geometry import PlatesConfig
-from hexarm.papers.plane_method import PlaneMethod, dogleg_step
+from hexarm.papers.plane_method import PlaneMethod
 from manipulator import rotation as so3
 from manipulator.errors import NoSolution
 from manipulator.pose import Pose
@@ -39,7 +39,7 @@ def test_the_pose_that_made_the_lengths_is_found(name):
         assert np.allclose(found.pose.position, pose.position, atol=1e-11)
         assert np.allclose(found.pose.rotation, pose.rotation, atol=1e-10)
         assert found.residual < 1e-12
-        assert 0 < found.iterations < 15
+        assert 0 < found.evaluations < 40
 
 
 @pytest.mark.parametrize('name', PLATES)
@@ -82,17 +82,3 @@ def test_the_jacobian_is_the_derivative_of_the_equations():
 def test_lengths_that_do_not_close_raise():
     with pytest.raises(NoSolution, match='plane method'):
         PlaneMethod.of(PLATES['6-6']).solve(np.array([0.6, 0.1, 0.1, 0.1, 0.1, 0.1]), START)
-
-
-def test_a_dogleg_step_keeps_its_radius_and_descends():
-    random = np.random.default_rng(6)
-    for radius in (1e-3, 0.1, 0.5, 2.0, 50.0):
-        jacobian, values = random.normal(size=(9, 9)), random.normal(size=9)
-        step = dogleg_step(values, jacobian, radius)
-        assert np.linalg.norm(step) <= radius * (1 + 1e-9)
-        assert np.linalg.norm(values + jacobian @ step) < np.linalg.norm(values)
-
-
-def test_a_wide_radius_gives_the_newton_step():
-    jacobian, values = np.diag([2.0, 4.0, 5.0]), np.array([2.0, 4.0, 10.0])
-    assert np.allclose(dogleg_step(values, jacobian, 100.0), [-1, -1, -2])
