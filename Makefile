@@ -8,6 +8,7 @@ PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q
 .PHONY: demo check test lint bench soak clean
 
 demo: $(ENV)/demo
+	@echo 'Both machines on fake boards: about a minute.'
 	@$(BIN)/hexarm demo
 
 check: lint   # all that starts no other program
