@@ -31,7 +31,7 @@ from bench.mutations import Mutation, mutations
 ROOT = Path(__file__).resolve().parents[1]
 SETTINGS = yaml.safe_load((ROOT / 'bench' / 'mutants.yaml').read_text())
 PYTEST = (sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', '--hypothesis-seed=0')
-FAST = ('-m', 'not processes', '-k', 'not chip')
+FAST = ('-m', 'not processes', '-k', 'not chip', '--ignore=test/firmware')
 EQUIVALENT = {
     (module, row['before'], row['after']): row['reason']
     for module, rows in SETTINGS['equivalent'].items()
