@@ -123,6 +123,11 @@ def test_an_unplugged_board_is_lost_and_found_again_disarmed(rig):
     assert rig.machine.board.pulses == (None,) * 6
 
 
+def test_a_board_that_is_closed_leaves_no_port_behind(rig):
+    rig.board.close()
+    assert not rig.path.is_symlink()
+
+
 def test_a_reset_in_motion_ends_disarmed(rig):
     rig.arm()
     rig.put((3200,) * 6)
