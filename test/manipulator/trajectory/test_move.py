@@ -40,3 +40,13 @@ def test_twist_and_acceleration_are_the_derivatives_of_the_pose():
         np.testing.assert_allclose(now.twist, numeric, atol=1e-5)
         numeric = (after.twist - before.twist) / (2 * h)
         np.testing.assert_allclose(now.acceleration, numeric, atol=0.05)
+
+
+def test_slowness_stretches_time_and_keeps_the_way():
+    rng = np.random.default_rng(3)
+    for _ in range(10):
+        start, goal = MotionState.at_rest(random_pose(rng)), random_pose(rng)
+        move, slow = plan_move(start, goal, LIMITS), plan_move(start, goal, LIMITS, 2.0)
+        np.testing.assert_allclose(slow.duration, 2.0 * move.duration, rtol=1e-6)
+        same = move.at(0.3 * move.duration).pose.twist_to(slow.at(0.3 * slow.duration).pose)
+        assert np.abs(same).max() < 1e-7
