@@ -72,9 +72,7 @@ def test_a_cycle_that_cannot_be_followed_is_refused_before_anything_moves(make_d
     assert states[-1].mode in ARMED
 
 
-@pytest.mark.parametrize(
-    'axis', [CycleAxis(2, 0.0179, 500, 0.0), CycleAxis(2, 0.0179, 100, 0.0)]
-)
+@pytest.mark.parametrize('axis', [CycleAxis(2, 0.0179, 500, 0.0), CycleAxis(2, 0.0179, 100, 0.0)])
 def test_where_in_the_cycle_it_is_out_of_reach_is_told_in_ms(make_driver, axis):
     driver = make_driver()
     driver.arm(HOME)
