@@ -54,8 +54,11 @@ def check_limits(poses, joints):
 
 
 def test_it_begins_by_holding_and_names_no_goal():
-    assert player().status == MotionStatus('hold', 'idle', 0.0, '', None)
-    assert player().newest_stamp == 0.0
+    motion = player()
+    assert motion.status == MotionStatus('hold', 'idle', 0.0, '', None)
+    assert motion.newest_stamp == 0.0
+    motion.stop()
+    assert motion.status == MotionStatus('hold', 'stopped', 0.0)
 
 
 def test_goal_is_reached_and_named_by_its_stamp():
