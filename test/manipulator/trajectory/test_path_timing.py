@@ -12,8 +12,9 @@ from manipulator.errors import Refused
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.path import Tolerance
-from manipulator.trajectory.path_timing import PathRequest, TimedPath, plan_path
+from manipulator.trajectory.path import Tolerance, path_along
+from manipulator.trajectory.path_limits import path_limits
+from manipulator.trajectory.path_timing import PathRequest, TimedPath, nodes_of, plan_path
 from manipulator.trajectory.player import Player
 from manipulator.trajectory.shapes import arc, line
 
@@ -72,6 +73,29 @@ def test_circle_keeps_all_limits_and_reaches_one(name, radius):
     first, last = plan.at(0.0), plan.at(plan.duration)
     assert np.abs(first.twist).max() < 1e-9
     assert np.abs(last.twist).max() < 1e-6
+
+
+@pytest.mark.parametrize(('kind', 'part'), [('platform', slice(0, 3)), ('turning', slice(3, 6))])
+def test_rows_of_a_path_say_how_much_the_platform_accelerates_at_both_ends_of_a_step(kind, part):
+    """Within the polygon of directions, which is 15° from corner to corner."""
+    picks = np.random.default_rng(6).uniform(-1.0, 1.0, (8, 6)) * ([0.004] * 3 + [0.05] * 3)
+    poses = Pose.from_xyz_rpy(HOME.position + picks[:, :3], picks[:, 3:])
+    path = path_along(poses, Tolerance(), 0.05)
+    nodes = nodes_of(path, 1, ROBOCAKE.kinematics.characteristic_length)
+    near = ROBOCAKE.kinematics.inverse(poses[0])
+    limits = path_limits(ROBOCAKE, path, nodes, near)
+    squares = np.random.default_rng(7).uniform(0.0, 1e-3, len(nodes))
+    steps, rates = np.diff(nodes)[:, None], path.at(nodes).twist[:, part]
+    bend = np.diff(rates, axis=0) / steps
+    pull = np.diff(squares)[:, None] / (2 * steps)
+    begin = rates[:-1] * pull + bend * squares[:-1, None]
+    end = rates[1:] * pull + bend * squares[1:, None]
+    longest = np.maximum(*(np.linalg.norm(a, axis=1) for a in (begin, end)))
+    columns = [k for k, name in enumerate(limits.row_names) if name == f'{kind} acceleration']
+    rows = limits.rows.on_begin * squares[:-1, None] + limits.rows.on_end * squares[1:, None]
+    said = np.abs(rows[:, columns]).max(axis=1)
+    assert (said <= longest * (1 + 1e-9)).all()
+    assert (said >= longest * np.cos(np.radians(7.5)) * (1 - 1e-9)).all()
 
 
 def test_path_takes_little_longer_than_its_length_at_full_speed():
