@@ -1,4 +1,4 @@
-# make demo, make test: everything they need is put into .venv, from wheels; nothing else is touched.
+# make demo, make test: what each needs is put into .venv, from wheels; nothing else is touched.
 SHELL := /bin/bash
 ENV := .venv
 BIN := $(ENV)/bin
@@ -7,16 +7,19 @@ PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q
 
 .PHONY: demo check test lint bench soak clean
 
-demo: $(ENV)/ready
+demo: $(ENV)/demo
 	@$(BIN)/hexarm demo
 
 check: lint   # all that starts no other program
+	@echo 'Tests that start no other program: two minutes on two quiet cores.'
 	@$(PYTEST) -n auto --dist loadfile -m 'not processes'
 
 test: check
+	@echo 'Tests that start graphs, a browser, installations, one after the other: nine minutes.'
 	@$(PYTEST) -m processes
 
 lint: $(ENV)/ready
+	@echo 'Lint and types: half a minute.'
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy
 
 bench: $(ENV)/peers   # a quiet computer, please: some ten minutes
@@ -31,8 +34,11 @@ $(ENV)/peers: $(ENV)/ready
 	@$(BIN)/python -m pip install --disable-pip-version-check -e '.[bench]' >$(ENV)/peers.log 2>&1 \
 	  && touch $@ || echo 'They could not be installed, see $(ENV)/peers.log: the table says which are missing.' >&2
 
-$(ENV)/ready: setup.py pyproject.toml environment.sh
-	@./environment.sh $(ENV)
+$(ENV)/demo: setup.py pyproject.toml environment.sh
+	@./environment.sh $(ENV) demo
+
+$(ENV)/ready: $(ENV)/demo
+	@./environment.sh $(ENV) ready
 
 clean:
 	rm -rf $(ENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Makes the virtual environment named by the first argument, with hexarm and ROS 2 Jazzy from wheels in it.
+# Makes the virtual environment named by the first argument, with hexarm, ROS 2 Jazzy and all that users need, from
+# wheels (second argument: demo), or adds what only tests need (ready).
 set -u
-environment=$1
+environment=$1 what=$2
 
 stop() { echo "hexarm: $1" >&2; exit 1; }
 
@@ -19,8 +20,14 @@ done
 
 unset LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE PYTHONPATH AMENT_PREFIX_PATH
 log="$environment/install.log"
-echo "Making $environment with $("$python" --version): about a minute, once."
-"$python" -m venv --clear "$environment" || stop "could not make the virtual environment $environment."
-"$environment/bin/python" -m pip install --disable-pip-version-check -e '.[ros,plot,physics,panel,terminal,record,test]' >"$log" 2>&1 \
+if [ "$what" = demo ]; then
+  echo "Making $environment with $("$python" --version), hexarm and ROS 2 in it (@DEMO@ packages, @DEMOMB@ MB): @DEMOS@, once."
+  "$python" -m venv --clear "$environment" || stop "could not make the virtual environment $environment."
+  extras='ros,plot,physics,panel,terminal,record'
+else
+  echo "Adding to $environment what only tests need (@TEST@ packages, @TESTMB@ MB): @TESTS@, once."
+  extras='test'
+fi
+"$environment/bin/python" -m pip install --disable-pip-version-check -e ".[$extras]" >>"$log" 2>&1 \
   || { tail -n 15 "$log" >&2; stop "the installation failed, see above and $log (is there a network?)."; }
-touch "$environment/ready"
+touch "$environment/$what"

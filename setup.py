@@ -5,7 +5,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 NAME = 'hexarm'
-ROOMS = ['manipulator', 'hexapod_control', 'arm_control', 'physics', 'bridge', 'panel', 'hexarm']
+PACKAGES = ['manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm']
 
 setup(
     name=NAME,
@@ -13,8 +13,8 @@ setup(
     description='Controls parallel platforms and serial arms, from a pose target to servo pulses',
     license='Apache-2.0',
     python_requires='>=3.10',
-    packages=find_packages(include=[pattern for r in ROOMS for pattern in (r, f'{r}.*')]),
-    package_data={'panel': ['joystick.html'], 'hexarm': ['fastdds.xml']},
+    packages=find_packages(include=[pattern for r in PACKAGES for pattern in (r, f'{r}.*')]),
+    package_data={'hexarm': ['fastdds.xml', 'panel/joystick.html']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
@@ -22,7 +22,13 @@ setup(
         (f'share/{NAME}/launch', sorted(str(f) for f in Path('launch').glob('*.launch.py'))),
         (f'share/{NAME}/viewers', sorted(str(f) for f in Path('viewers').iterdir())),
     ],
-    install_requires=['numpy>=1.26', 'pyserial>=3.5', 'PyYAML>=6.0', 'ruckig>=0.14'],
+    install_requires=[
+        'numpy>=1.26',
+        'pyserial>=3.5',
+        'PyYAML>=6.0',
+        'ruckig>=0.14',
+        'scipy>=1.11',  # analysis and calibration
+    ],
     extras_require={
         # ROS 2 Jazzy from wheels; a system installation brings these three itself.
         'ros': [
@@ -34,7 +40,7 @@ setup(
         'plot': ['matplotlib>=3.8'],
         'physics': ['mujoco>=3.2', 'matplotlib>=3.8', 'pillow>=10'],
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.5', 'matplotlib>=3.8'],
-        'panel': ['viser>=1.1'],
+        'panel': ['viser>=1.1,<1.2'],  # panel/nodes/web_server.py reaches into it
         'terminal': ['rich>=13'],
         # Libraries that `make bench` compares with: docs/performance.md.
         'bench': [
@@ -64,19 +70,20 @@ setup(
     },
     entry_points={
         'console_scripts': [
-            'hexarm = hexarm.main:main',
-            'hexapod_trajectory = hexapod_control.executables:trajectory',
-            'hexapod_ik = hexapod_control.executables:ik',
-            'hexapod_pose = hexapod_control.executables:pose',
-            'arm_trajectory = arm_control.executables:trajectory',
-            'arm_ik = arm_control.executables:ik',
-            'arm_pose = arm_control.executables:pose',
-            'joy_teleop = manipulator.executables:joy_teleop',
-            'gamepad = manipulator.device_executables:gamepad',
-            'keyboard_teleop = manipulator.device_executables:keyboard_teleop',
-            'serial_bridge = bridge.executables:serial_bridge',
-            'fake_hardware = bridge.executables:fake_hardware',
-            'panel = panel.executables:panel',
+            'hexarm = hexarm.cli.main:main',
+            'hexapod_trajectory = hexarm.nodes:trajectory',
+            'hexapod_ik = hexarm.nodes:ik',
+            'hexapod_pose = hexarm.nodes:pose',
+            'arm_trajectory = hexarm.nodes:arm_trajectory',
+            'arm_ik = hexarm.nodes:arm_ik',
+            'arm_pose = hexarm.nodes:arm_pose',
+            'joy_teleop = hexarm.nodes:joy_teleop',
+            'keyboard_teleop = hexarm.nodes:keyboard_teleop',
+            'serial_bridge = hexarm.nodes:serial_bridge',
+            'fake_hardware = hexarm.nodes:fake_hardware',
+            'hexarm_machine = hexarm.nodes:machine',
+            'hexarm_gamepad = hexarm.nodes:gamepad',
+            'hexarm_panel = hexarm.nodes:panel',
         ],
     },
 )

@@ -13,7 +13,7 @@ from sensor_msgs.msg import JointState
 from bench.graph import cpu_seconds
 from bench.row import Row
 from bridge.frames import encode
-from bridge.messages import Setpoint
+from bridge.protocol import Setpoint
 from hexarm.client import Client
 from hexarm.graph import Graph, machine_graph
 from hexarm.machines import read
@@ -59,9 +59,9 @@ def jogged():
     with tempfile.TemporaryDirectory() as folder:
         nodes = [
             replace(node, parameters=node.parameters | {'rate': str(RATE)})
-            if node.entry == 'trajectory'
+            if node.name == 'trajectory'
             else node
-            for node in machine_graph('arm', MACHINE, 'fake', Path(folder) / 'board')
+            for node in machine_graph(MACHINE, 'fake', Path(folder) / 'board', is_separate=True)
         ]
         with Graph(nodes, 'fast') as running, Client('fast') as client:
             client.enable()

@@ -18,8 +18,8 @@ import numpy as np
 from std_msgs.msg import Bool, Float64
 from std_srvs.srv import SetBool
 
-from bridge.faults import Faults
-from bridge.messages import Arm, Disarm, ResetCause, Setpoint
+from bridge.fake.faults import Faults
+from bridge.protocol import Arm, Disarm, ResetCause, Setpoint
 from hexarm import machines
 from hexarm.rig import Rig
 from manipulator.errors import ManipulatorError
@@ -136,7 +136,7 @@ def soaked(kind, seconds, folder):
     """Drives one machine through faults; whether all was as it should be."""
     machine, reach = MACHINES[kind]
     faults = Faults(seed=1, per_minute=FAULTS_PER_MINUTE)
-    with Rig(folder, f'soak_{kind}', kind, machine, BOOT, faults) as rig:
+    with Rig(folder, f'soak_{kind}', machine, BOOT, faults) as rig:
         soak = Soak(rig, machine, reach, seed=2)
         soak.user.wait('motion', lambda: soak.user.motion('mode') != '', 15.0)
         taken = [soak.go_on(seconds / 3) for _ in range(3)]

@@ -13,7 +13,7 @@ import numpy as np
 from std_msgs.msg import Bool
 
 from bench.row import Row
-from bridge.messages import Stop
+from bridge.protocol import Stop
 from hexarm.rig import Rig
 from manipulator.nodes.qos import COMMAND
 

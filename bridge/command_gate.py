@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bridge.calibration import Calibration
-from bridge.messages import Setpoint
+from bridge.protocol import Setpoint
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
 from manipulator.stamps import NOTABLE_OFFSET, StampGate
@@ -104,7 +104,7 @@ class CommandGate:
         elif present is not None and np.all(np.isfinite(present)):
             start, where, time, elapsed = present, 'where the joint is', START, 0.0
         else:
-            raise Refused('where the joints are is not known yet')
+            raise Refused('the positions of the joints are not known yet')
         ways = np.abs(wanted - start)
         i = int(np.argmax(ways))
         allowed = self._calibration.speed * time

@@ -5,7 +5,7 @@ No ROS, no thread, no port, no clock: decoded values and times in, values out.
 
 from collections.abc import Sequence
 from concurrent.futures import Future
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from bridge.calibration import Calibration
@@ -21,15 +21,11 @@ from bridge.events import (
 )
 from bridge.gripper import Gripper
 from bridge.link import Link, Ticket
-from bridge.link_monitor import JointTable, LinkMonitor
-from bridge.machine_status import MachineStatus
-from bridge.messages import Arm, Clear, Command, Disarm, Stop
+from bridge.link_monitor import JointTable, LinkMonitor, MachineStatus
+from bridge.protocol import Arm, Clear, Command, Disarm, Stop
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
 from manipulator.errors import Refused
-
-ANSWER_WITHIN = 1.0
-"""Seconds that a service waits for the board."""
 
 
 @dataclass(frozen=True)
@@ -38,8 +34,6 @@ class Asked:
 
     done: str
     future: 'Future[None]'
-    is_withdrawn_late: bool = True
-    """What was said to have failed must not be sent later; a STOP must."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +48,7 @@ class MachineState:
 
 
 class Listener(Protocol):
-    """Who publishes what the driver announces, in the thread that has the link's port."""
+    """Who publishes what the driver announces, in the driver's thread."""
 
     def on_joints(self, joints: JointTable) -> None:
         """After each STATE that tells where any joint is."""
@@ -66,14 +60,14 @@ class Listener(Protocol):
         """Of the board or the line, for people to read."""
 
     def on_written(self, ticket: Ticket, now: float) -> None:
-        """A setpoint was handed to the port."""
+        """A setpoint was handed to the port; stamped is None where it is by another clock."""
 
 
 class BoardDriver:
     """One board and its servos.
 
-    Commands and questions come from one thread, only `stop` from any; `link` belongs to the
-    thread that has the port. `now` is monotonic, in seconds.
+    It belongs to the thread that has the port, with its link and all that stands behind it.
+    `now` is monotonic, in seconds.
     """
 
     def __init__(
@@ -81,16 +75,12 @@ class BoardDriver:
         config: BoardConfig,
         listener: Listener,
         epoch: float = 0.0,
-        is_stop_wanted: bool = False,
     ) -> None:
-        """`epoch` is what the system's clock says where `now` is zero, s.
-
-        is_stop_wanted: of a STOP that an earlier driver was asked for and nobody has cleared.
-        """
+        """`epoch` is what the system's clock says where `now` is zero, s."""
         self.calibration = Calibration.from_config(config.servos)
         self.gate = CommandGate(self.calibration, 1e-3 * config.link.setpoint_deadline_ms)
         self._gripper = Gripper(config.servos, self.calibration)
-        self.session = Session(len(self.calibration.names), is_stop_wanted)
+        self.session = Session(len(self.calibration.names))
         self.monitor = LinkMonitor(self.session, self.calibration)
         rate = config.link.baud / 5  # twice what the line carries
         self.link = Link(self.session, self._note, self._note_written, rate)
@@ -137,18 +127,14 @@ class BoardDriver:
         return self._ask(Clear(), 'cleared: nothing moves until a new command')
 
     def stop(self) -> Asked:
-        """Now, or as soon as there is a board; from any thread."""
+        """Now, or as soon as there is a board."""
         return self._ask(Stop(), 'stopped: ~/clear_fault ends it')
 
     def answer(self, asked: Asked) -> tuple[bool, str]:
-        """Whether the board obeyed, and what to say: once that is known, or ANSWER_WITHIN is over.
+        """Whether the board obeyed, and what to say, once the future is done.
 
-        A request is done only when machine_state shows it: who is answered may look at once.
+        It is done only when machine_state shows it: who is answered may look at once.
         """
-        if not asked.future.done():
-            if asked.is_withdrawn_late:
-                asked.future.cancel()
-            return False, f'no answer within {ANSWER_WITHIN:g} s'
         error = asked.future.exception()
         if error is None:
             return True, asked.done
@@ -156,7 +142,7 @@ class BoardDriver:
         return False, f'{error}{f": {trouble}" if trouble else ""}'
 
     def _ask(self, command: Command, done: str) -> Asked:
-        return Asked(done, self.link.request(command), not isinstance(command, Stop))
+        return Asked(done, self.link.request(command))
 
     def _refuse_unless_enabled(self) -> None:
         """What comes after a refusal, or after an answer, must start where the joints are."""
@@ -204,7 +190,8 @@ class BoardDriver:
 
     def _note_written(self, ticket: Ticket, now: float) -> None:
         self._is_followed = True
-        self._listener.on_written(ticket, now)
+        stamped = None if self.gate.has_notable_offset else ticket.stamped
+        self._listener.on_written(replace(ticket, stamped=stamped), now)
 
 
 def _answered(done: str) -> Asked:

@@ -4,7 +4,7 @@ import enum
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from bridge.messages import Command, Fault, Hello, State
+from bridge.protocol import Command, Fault, Hello, State
 
 
 class Phase(enum.Enum):
@@ -12,7 +12,7 @@ class Phase(enum.Enum):
 
     CLOSED = 'no port'
     WAITING = 'waiting for HELLO'
-    GREETED = 'waiting for the first STATE'
+    CONNECTING = 'waiting for the first STATE'
     READY = 'ready'
     INCOMPATIBLE = 'another board'
 

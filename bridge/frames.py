@@ -7,35 +7,33 @@ core's receive ring is that long.
 
 import binascii
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
 from bridge import cobs
-from bridge.messages import (
+from bridge.protocol import (
     MAX_JOINTS,
     Ack,
     Arm,
     Clear,
+    CycleAxis,
     Disarm,
     Fault,
     FaultCode,
+    Finish,
     Flag,
     Hello,
     Joint,
     Known,
     Message,
     Mode,
+    Play,
     ResetCause,
     Result,
     Setpoint,
     State,
     Stop,
-)
-from bridge.program_messages import (
-    CycleAxis,
-    Finish,
-    Play,
     TableBegin,
     TableEnd,
     TableRow,
@@ -115,6 +113,11 @@ def decode(stuffed: bytes) -> Frame:
 def checksum(content: bytes) -> int:
     """CRC-16 as avr-libc's _crc_xmodem_update from 0xFFFF: b'123456789' gives 0x29B1."""
     return binascii.crc_hqx(content, 0xFFFF)
+
+
+def table_crc(rows: Sequence[tuple[int, ...]]) -> int:
+    """The CRC of a whole table: of all its counts, little endian, row by row."""
+    return checksum(b''.join(count.to_bytes(2, 'little') for row in rows for count in row))
 
 
 def _pack_counts(counts: tuple[int, ...]) -> bytes:

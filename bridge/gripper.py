@@ -60,7 +60,7 @@ class Gripper:
         """Where it should be now; Refused while nobody knows where it is."""
         if self._position is None:
             if math.isnan(present):
-                raise Refused(f'where {self._name} is is not known yet')
+                raise Refused(f'the position of {self._name} is not known yet')
             self._position, self._stepped_at = present, now
         reach = self._speed * min(max(now - self._stepped_at, 0.0), LONGEST_GAP)
         way = 0.0 if self._target is None else self._target - self._position

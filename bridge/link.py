@@ -9,7 +9,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 
 from bridge.events import Acknowledged, CommandFailed, Event, without_passed_states
-from bridge.messages import Command, Setpoint, Stop
+from bridge.protocol import Command, Setpoint, Stop
 from bridge.session import Session
 from manipulator.errors import Refused
 
@@ -18,6 +18,9 @@ TICK = 0.05
 SPACING = 0.0025
 """Setpoints go out 400 times a second at most, half of what the line carries: a flood of them
 must not queue up in the operating system, ahead of a STOP."""
+
+MOST_AT_ONCE = 2048
+"""Bytes: a read that brings more may have left some behind, which are older than they look."""
 
 FASTEST_LINE = 400_000.0
 """Bytes a second that a line of 4 Mbaud carries."""
@@ -52,8 +55,7 @@ class Link:
     No more than bytes_per_second are to be read: what sends more is no serial line, and its
     noise must not take the processor from what stops the machine.
 
-    `put_setpoint` and `request` may be called from any thread; then `wake` is called in that
-    thread. All else belongs to the thread that has the port.
+    It belongs to the thread that has the port, with its session.
     """
 
     def __init__(
@@ -65,10 +67,10 @@ class Link:
     ) -> None:
         self.session = session
         self.is_open = False
-        self.wake: Callable[[], None] = lambda: None
         self._on_event, self._on_written = on_event, on_written
         self._bytes_per_second = bytes_per_second
         self._look_at = self._read_at = self._setpoint_at = self._listened_at = 0.0
+        self._emptied_at = 0.0
         self._unsent = b''
         self._mailbox: deque[Ticket] = deque(maxlen=1)
         self._requests: deque[tuple[Command, Future[None]]] = deque()
@@ -79,25 +81,18 @@ class Link:
     def put_setpoint(self, ticket: Ticket) -> None:
         """Newest wins: one that was not yet sent is forgotten."""
         self._mailbox.append(ticket)
-        self.wake()
 
-    def request(self, command: Command) -> 'Future[None]':
-        """Done when the board has obeyed and on_event was told; Refused says why not."""
-        future: Future[None] = Future()
+    def request(self, command: Command, answer: 'Future[None] | None' = None) -> 'Future[None]':
+        """Done when the board has obeyed and on_event was told; Refused says why not.
+
+        It is always answered, by the next turn or when the session gives the command up: within
+        a second, a STOP that nobody obeys included, which goes on all the same.
+        """
+        future: Future[None] = answer or Future()
         if isinstance(command, Stop):
             self.session.is_stop_wanted = True  # no setpoint goes out from here on
         self._requests.append((command, future))
-        self.wake()
         return future
-
-    def refuse_requests(self, reason: str) -> None:
-        """Of all that nobody will send, because no thread has the port."""
-        while self._requests:
-            _, future = self._requests.popleft()
-            if future.set_running_or_notify_cancel():
-                future.set_exception(Refused(reason))
-
-    # By the thread that has the port
 
     def wants_port(self, now: float) -> bool:
         """The port is to be opened now; a lost one is looked for every 0.25 s."""
@@ -126,7 +121,7 @@ class Link:
     def opened(self, now: float) -> None:
         """The port is open."""
         self.is_open = True
-        self._listened_at = now
+        self._listened_at = self._emptied_at = now
         self._note(self.session.opened(now))
         self._tell(now)
 
@@ -143,9 +138,13 @@ class Link:
         self._take_requests(now)
         self._take_setpoint(now)
         self._unsent += self.session.take_output()
+        if self.is_listening(now) and len(received) <= MOST_AT_ONCE:
+            emptied_at, self._emptied_at = self._emptied_at, now
+        else:
+            emptied_at = self._emptied_at
         if received:
             self._read_at = now + len(received) / self._bytes_per_second
-            self._note(without_passed_states(self.session.receive(received, now)))
+            self._note(without_passed_states(self.session.receive(received, now, emptied_at)))
         # Who was held up may not call the board silent before he has listened again.
         self._note(self.session.tick(self._listened_at))
         self._listened_at = now

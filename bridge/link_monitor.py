@@ -1,5 +1,7 @@
-"""What the bridge knows of its board, from the events of the link."""
+"""What the bridge knows of its board, from the events of the link: state, joints, latencies."""
 
+from collections import deque
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,14 +15,82 @@ from bridge.events import (
     FaultReported,
     Incompatible,
     Opened,
+    Phase,
     StateReceived,
 )
-from bridge.latencies import percentiles_ms
-from bridge.machine_status import MachineStatus, machine_status
-from bridge.messages import NO_JOINT, Arm, Fault, Known, Mode, State
+from bridge.protocol import NO_JOINT, Arm, Fault, FaultCode, Known, Mode, State
 from bridge.session import Session
 from manipulator.arrays import Array
 from manipulator.words import counted
+
+
+class Latencies:
+    """Keeps the newest of them, in seconds."""
+
+    def __init__(self, keep: int = 1000) -> None:
+        self._seconds: deque[float] = deque(maxlen=keep)
+
+    def add(self, seconds: float) -> None:
+        """One more; negative ones (two clocks) count as zero."""
+        self._seconds.append(max(seconds, 0.0))
+
+    def report(self, name: str) -> dict[str, float]:
+        """p50 and p99 in milliseconds, under names that say so; empty when there are none."""
+        return percentiles_ms(name, tuple(self._seconds))
+
+
+def percentiles_ms(name: str, seconds: Iterable[float]) -> dict[str, float]:
+    """{name}_p50_ms and {name}_p99_ms; empty where there is nothing to sort."""
+    ordered = sorted(seconds)
+    if not ordered:
+        return {}
+    p50, p99 = (ordered[min(int(q * len(ordered)), len(ordered) - 1)] for q in (0.5, 0.99))
+    return {f'{name}_p50_ms': 1e3 * p50, f'{name}_p99_ms': 1e3 * p99}
+
+
+OK, WARN, ERROR = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class MachineStatus:
+    """level is OK, WARN or ERROR; `word` one of disconnected, booting, disarmed, arming, enabled,
+    holding, unclaimed, playing, stopped, fault; `reason` is empty where all is well.
+    """
+
+    level: int
+    word: str
+    reason: str = ''
+
+
+_MODES = {
+    Mode.DISARMED: MachineStatus(OK, 'disarmed'),
+    Mode.ARMING: MachineStatus(OK, 'arming'),
+    Mode.ARMED: MachineStatus(OK, 'enabled'),
+    Mode.HOLDING: MachineStatus(WARN, 'holding', 'no joint command within the deadline'),
+    Mode.STOPPED: MachineStatus(WARN, 'stopped', 'until ~/clear_fault is called'),
+    Mode.FAULT: MachineStatus(ERROR, 'fault'),
+    Mode.CHECKING: MachineStatus(OK, 'playing', 'the board checks its program'),
+    Mode.PLAYING: MachineStatus(OK, 'playing', 'the board plays its program'),
+}
+_FAULTS = {FaultCode.UNDERVOLTAGE: 'the battery is too low'}
+
+
+def machine_status(session: Session, is_enabled_here: bool, trouble: str) -> MachineStatus:
+    """The state of the machine; `trouble` is why there is no board, where there is none."""
+    if session.phase is Phase.INCOMPATIBLE:
+        return MachineStatus(ERROR, 'fault', trouble)
+    state = session.state
+    if session.phase is not Phase.READY or state is None:
+        if trouble or session.phase is Phase.CLOSED:
+            return MachineStatus(ERROR, 'disconnected', trouble)
+        return MachineStatus(WARN, 'booting', 'waiting for the board to say HELLO')
+    if state.mode is Mode.FAULT:
+        return MachineStatus(ERROR, 'fault', _FAULTS.get(state.fault, state.fault.name.lower()))
+    if state.mode in (Mode.ARMED, Mode.HOLDING) and not is_enabled_here:
+        reason = 'the servos are on, but this bridge was not asked: call ~/enable'
+        return MachineStatus(WARN, 'unclaimed', reason)
+    return _MODES[state.mode]
+
 
 STATE_PERIOD = 0.02
 

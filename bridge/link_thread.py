@@ -1,15 +1,90 @@
-"""The thread that owns the serial port: it opens, reads, writes and waits, as the link says."""
+"""The serial port, and the thread that owns it and the link: it opens, reads, writes and waits."""
 
 import contextlib
+import errno
 import os
 import select
 import threading
 import time
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from typing import Protocol
 
+import serial
+
 from bridge.link import Link
+from bridge.protocol import Command
 from manipulator.errors import LinkError
+
+_REASONS = {
+    errno.ENOENT: 'does not exist: is the board plugged in?',
+    errno.ENXIO: 'does not exist: is the board plugged in?',
+    errno.ENODEV: 'does not exist: is the board plugged in?',
+    errno.EIO: 'has no board behind it any more',
+    errno.EACCES: 'is not permitted: add yourself to the group dialout '
+    "('sudo usermod -aG dialout $USER', then log in again)",
+    errno.EPERM: 'is not permitted: is another program using it exclusively?',
+    errno.EBUSY: 'is in use by another program',
+    errno.EAGAIN: 'is in use by another program (a second serial_bridge?)',
+    errno.ENOTTY: 'is not a serial port',
+    errno.EINVAL: 'is not a serial port, or cannot run at this baud rate',
+    errno.EISDIR: 'is a folder, not a serial port',
+    errno.ELOOP: 'is a link that leads to itself',
+}
+MAX_READ = 4096
+
+
+class SerialPort:
+    """An open port that never blocks. Opening it resets an Arduino: it boots for 1 to 2 s."""
+
+    def __init__(self, name: str, baud: int) -> None:
+        """LinkError says why the port cannot be opened."""
+        self.name = name
+        try:
+            self._port = serial.Serial(name, baud, timeout=0, exclusive=True)
+        except (serial.SerialException, OSError, ValueError) as error:
+            raise LinkError(f'{name} {_reason(error)}') from error
+        # Only some adapters know it (FTDI: 1 ms instead of 16); all others do without.
+        with contextlib.suppress(OSError, ValueError, NotImplementedError, AttributeError):
+            self._port.set_low_latency_mode(True)
+
+    def fileno(self) -> int:
+        """For select."""
+        return int(self._port.fileno())
+
+    def read(self) -> bytes:
+        """What has arrived, once select says that something has; LinkError: it was the end."""
+        try:
+            received = os.read(self.fileno(), MAX_READ)
+        except BlockingIOError:
+            return b''
+        except OSError as error:
+            raise LinkError(f'{self.name} has vanished ({_reason(error)})') from error
+        if not received:
+            raise LinkError(f'{self.name} has vanished (unplugged?)')
+        return received
+
+    def write(self, waiting: bytes) -> bytes:
+        """Writes what fits and returns the rest; LinkError when the port has vanished."""
+        try:
+            return waiting[os.write(self.fileno(), waiting) :]
+        except BlockingIOError:
+            return waiting
+        except OSError as error:
+            raise LinkError(f'{self.name} has vanished ({_reason(error)})') from error
+
+    def close(self) -> None:
+        """Gives the port back; what is still in its buffers is lost."""
+        with contextlib.suppress(OSError):
+            self._port.close()
+
+
+def _reason(error: Exception) -> str:
+    """What the error number means; pyserial drops the one of termios, which stands behind it."""
+    behind = error.__context__
+    number = getattr(error, 'errno', None) or (behind.args[0] if behind and behind.args else None)
+    return _REASONS.get(number or 0) or f'cannot be used: {error}'
 
 
 class Port(Protocol):
@@ -21,22 +96,42 @@ class Port(Protocol):
     def close(self) -> None: ...  # noqa: D102
 
 
+class Input(Protocol):
+    """What else the thread waits for; `receive` is called in it."""
+
+    def fileno(self) -> int: ...  # noqa: D102
+    def receive(self) -> None: ...  # noqa: D102
+
+
 class LinkThread(threading.Thread):
     """Gives a link its port, from `start` to `close`; what the link tells is told in this thread.
 
-    A setpoint is written the moment it is there.
+    Nobody else touches the link or what belongs to it: other threads `post` what is to be done.
     """
 
-    def __init__(self, open_port: Callable[[], Port], link: Link) -> None:
+    def __init__(
+        self, open_port: Callable[[], Port], link: Link, inputs: Sequence[Input] = ()
+    ) -> None:
         super().__init__(name='link', daemon=True)
-        self._open_port, self._link = open_port, link
+        self._open_port, self._link, self._inputs = open_port, link, inputs
         self._port: Port | None = None
+        self._posted: deque[Callable[[], object]] = deque()
         self._is_stopping = False
         self._wake_out, self._wake_in = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
-        link.wake = self._wake
+
+    def post(self, act: Callable[[], object]) -> None:
+        """Has it done in this thread, in the order of the calls; from any thread."""
+        self._posted.append(act)
+        self._wake()
+
+    def request(self, command: Command) -> 'Future[None]':
+        """As `Link.request`; from any thread."""
+        answer: Future[None] = Future()
+        self.post(lambda: self._link.request(command, answer))
+        return answer
 
     def close(self) -> None:
-        """Ends the thread and gives the port back."""
+        """Ends the thread and gives the port back; nothing may be posted any more."""
         self._is_stopping = True
         self._wake()
         self.join()
@@ -59,6 +154,8 @@ class LinkThread(threading.Thread):
             self._port = self._open_port()
             self._link.opened(time.monotonic())
         received = self._wait()
+        for _ in range(len(self._posted)):
+            self._posted.popleft()()
         waiting = self._link.turn(received, time.monotonic())
         if waiting and self._port is not None:
             waiting = self._port.write(waiting)
@@ -67,7 +164,7 @@ class LinkThread(threading.Thread):
     def _wait(self) -> bytes:
         """What the port has to read, until the link's next turn is due."""
         now = time.monotonic()
-        reading: list[int | Port] = [self._wake_out]
+        reading: list[int | Input | Port] = [self._wake_out, *self._inputs]
         writing: list[Port] = []
         if self._port is not None:
             reading += [self._port] if self._link.is_listening(now) else []
@@ -76,6 +173,9 @@ class LinkThread(threading.Thread):
         if self._wake_out in readable:
             with contextlib.suppress(BlockingIOError):
                 os.read(self._wake_out, 4096)
+        for waiting in self._inputs:
+            if waiting in readable:
+                waiting.receive()
         return self._port.read() if self._port is not None and self._port in readable else b''
 
     def _close_port(self) -> None:
@@ -84,8 +184,5 @@ class LinkThread(threading.Thread):
         self._port = None
 
     def _wake(self) -> None:
-        if not self.is_alive():
-            self._link.refuse_requests('the thread of the serial link does not run')
-            return
         with contextlib.suppress(BlockingIOError):
             os.write(self._wake_in, b'w')

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from bridge.messages import MAX_JOINTS
+from bridge.protocol import MAX_JOINTS
 from manipulator.config import build, quantity
 from manipulator.errors import ConfigError
 from manipulator.machine import MachineFile

@@ -4,13 +4,35 @@ A state machine without terminal, port or clock. Only the servo at hand moves, s
 further than one step ahead of itself and never beyond the pulse range of the machine file.
 """
 
+import enum
 from dataclasses import dataclass, replace
 
 from bridge.calibration import COUNTS_PER_US
 from bridge.servo_config import ServoConfig
-from bridge.servo_stages import AFTER, Stage
 from manipulator.errors import ConfigError
 from manipulator.words import shown
+
+
+class Stage(enum.Enum):
+    """What is asked of the person now."""
+
+    DIRECTION = 'direction'
+    CENTRE = 'centre'
+    SCALE = 'scale'
+    RANGE = 'range'
+    RETURN = 'return'
+    REVIEW = 'review'
+    WRITE = 'write'
+    LEAVE = 'leave'
+
+
+AFTER = {
+    Stage.DIRECTION: Stage.CENTRE,
+    Stage.CENTRE: Stage.SCALE,
+    Stage.SCALE: Stage.RANGE,
+    Stage.RANGE: Stage.RETURN,
+}
+
 
 SPEED_US_S = 150.0
 """A quarter of a turn takes 6 s with an SG90."""

@@ -6,7 +6,7 @@ waiting for ever. `now` is monotonic time in seconds, given by the caller.
 
 from dataclasses import dataclass, replace
 
-from bridge import greeting
+from bridge import handshake
 from bridge.events import (
     Acknowledged,
     CommandFailed,
@@ -21,7 +21,8 @@ from bridge.events import (
 )
 from bridge.frames import DELIMITER, encode
 from bridge.framing import FrameReader
-from bridge.messages import (
+from bridge.handshake import RoundTrips
+from bridge.protocol import (
     REASONS,
     Ack,
     Arm,
@@ -31,23 +32,20 @@ from bridge.messages import (
     Fault,
     Hello,
     Mode,
+    Play,
     Result,
     Setpoint,
     State,
     Stop,
     is_newer,
 )
-from bridge.program_messages import Play
-from bridge.round_trips import RoundTrips
 from manipulator.errors import Refused
 
 RETRY_AFTER = 0.1
 MAX_TRIES = 4
 BOARD_SILENCE = 0.5
 MAX_BOOT = 5.0
-UPTIME_SLACK_MS = 250
 MODE_AFTER: dict[type, Mode] = {Disarm: Mode.DISARMED, Stop: Mode.STOPPED}
-SHORTEST_ADVANCE_MS = 125
 SHOWN_BY_STATE = (Arm, Clear, Play)
 """Commands whose mode afterwards only the next STATE tells: they are acknowledged with it."""
 
@@ -71,19 +69,19 @@ class Session:
     away or started again, and until the board has obeyed a CLEAR no setpoint goes out.
     """
 
-    def __init__(self, joint_count: int, is_stop_wanted: bool = False) -> None:
+    def __init__(self, joint_count: int) -> None:
         self.joint_count = joint_count
         self.phase = Phase.CLOSED
         self.hello: Hello | None = None
         self.state: State | None = None
         self.setpoints_sent = 0
-        self.is_stop_wanted = is_stop_wanted
+        self.is_stop_wanted = False
         self.reader = FrameReader()
         self.round_trips = RoundTrips()
         self._output = bytearray()
         self._sequence = 0
         self._pending: _Pending | None = None
-        self._heard_at = self._opened_at = self._greeted_at = 0.0
+        self._heard_at = self._opened_at = self._hello_at = 0.0
 
     @property
     def accepts_setpoints(self) -> bool:
@@ -108,14 +106,15 @@ class Session:
         self._forget(Phase.CLOSED, now)
         return events
 
-    def receive(self, received: bytes, now: float) -> list[Event]:
-        """Bytes from the board."""
+    def receive(self, received: bytes, now: float, sent_after: float | None = None) -> list[Event]:
+        """Bytes from the board; sent_after: when all before them had been received (None: now)."""
+        sent_after = now if sent_after is None else sent_after
         events: list[Event] = []
         for frame in self.reader.feed(received):
             self._heard_at = now
             match frame.message:
                 case Hello():
-                    events += self._greet(frame.message, now)
+                    events += self._shake_hands(frame.message, now, sent_after)
                 case State():
                     events += self._note_state(frame.message, now)
                 case Ack():
@@ -126,7 +125,7 @@ class Session:
 
     def tick(self, now: float) -> list[Event]:
         """Retries what was not acknowledged; notices a board that fell silent."""
-        if self.phase in (Phase.GREETED, Phase.READY) and now - self._heard_at > BOARD_SILENCE:
+        if self.phase in (Phase.CONNECTING, Phase.READY) and now - self._heard_at > BOARD_SILENCE:
             events = self.closed(f'the board has been silent for {BOARD_SILENCE:g} s', now)
             self.phase = Phase.WAITING
             return events
@@ -137,13 +136,13 @@ class Session:
         if pending is None or pending.is_obeyed or now - pending.sent_at < RETRY_AFTER:
             return []
         is_too_often = pending.tries % MAX_TRIES == 0
-        reason = f'no answer from the board after {MAX_TRIES} tries'
+        reason = f'no answer from the board after {pending.tries} tries'
         if is_too_often and not isinstance(pending.command, Stop):
             return self._fail_pending(reason)
         pending.tries += 1
         pending.sent_at = now
         self._output += pending.wire
-        return [CommandFailed(pending.command, f'{reason} yet')] if is_too_often else []
+        return [CommandFailed(pending.command, reason)] if is_too_often else []
 
     def send_setpoint(self, setpoint: Setpoint, now: float) -> None:
         """Newest wins, never repeated; Refused where the board would not follow it."""
@@ -196,32 +195,32 @@ class Session:
         self.round_trips.forget_sent()
         self._output.clear()
 
-    def _greet(self, hello: Hello, now: float) -> list[Event]:
-        misfit = greeting.misfit(hello, self.joint_count)
-        if misfit:
-            failed = self._fail_pending(misfit)
+    def _shake_hands(self, hello: Hello, now: float, sent_after: float) -> list[Event]:
+        mismatch = handshake.mismatch(hello, self.joint_count)
+        if mismatch:
+            failed = self._fail_pending(mismatch)
             is_news = self.phase is not Phase.INCOMPATIBLE
             self._forget(Phase.INCOMPATIBLE, now)
-            return [*failed, Incompatible(misfit)] if is_news else []
+            return [*failed, Incompatible(mismatch)] if is_news else []
         events: list[Event] = []
-        has_restarted = self.hello is not None and greeting.has_restarted(
-            self.hello, hello, now - self._greeted_at
+        has_restarted = self.hello is not None and handshake.has_restarted(
+            self.hello, hello, max(sent_after - self._hello_at, 0.0)
         )
         if self.phase is not Phase.READY or has_restarted:
             if has_restarted:
                 cause = hello.reset_cause.name or hello.reset_cause
                 reason = f'the board has restarted (cause: {cause})'
                 events = [*self._fail_pending(reason), Disconnected(reason)]
-            self._forget(Phase.GREETED, now)
-        self.hello, self._greeted_at = hello, now
+            self._forget(Phase.CONNECTING, now)
+        self.hello, self._hello_at = hello, now
         return events
 
     def _note_state(self, state: State, now: float) -> list[Event]:
-        if self.phase not in (Phase.GREETED, Phase.READY) or self.hello is None:
+        if self.phase not in (Phase.CONNECTING, Phase.READY) or self.hello is None:
             return []
         if len(state.joints) != self.joint_count:
             return []
-        is_first = self.phase is Phase.GREETED
+        is_first = self.phase is Phase.CONNECTING
         if is_first or is_newer(state.echo, self._sequence):
             # The board may remember an earlier host: go on from there.
             self._sequence = state.echo

@@ -4,9 +4,9 @@ A process that joins the graph computes a fifth of a second before its first mes
 on busy cores that is one or two. Who sends here has only to start. It can do nothing but stop.
 """
 
+import contextlib
 import os
 import socket
-import threading
 from collections.abc import Callable
 
 STOP = b'STOP'
@@ -37,34 +37,32 @@ def send_stop(address: bytes) -> bool:
     return True
 
 
-class StopSocket(threading.Thread):
-    """Calls on_stop, in this thread, for each STOP that was sent to `address`.
+class StopSocket:
+    """Calls on_stop for each STOP that was sent to `address`; the link's thread waits for it.
 
-    Where the address is taken on_trouble hears why, and the other ways to stop remain.
+    `trouble` says why the address cannot be had, '' where it can: the other ways to stop remain.
     """
 
-    def __init__(
-        self, address: bytes, on_stop: Callable[[], object], on_trouble: Callable[[str], object]
-    ) -> None:
-        super().__init__(name='stop socket', daemon=True)
-        self._address, self._on_stop, self._on_trouble = address, on_stop, on_trouble
-        self._is_closing = False
+    def __init__(self, address: bytes, on_stop: Callable[[], object]) -> None:
+        self.trouble = ''
+        self._on_stop = on_stop
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
-
-    def run(self) -> None:
-        """The thread's work, until `close`."""
+        self._socket.setblocking(False)
         try:
-            self._socket.bind(self._address)
+            self._socket.bind(address)
         except OSError as error:
-            self._on_trouble(f'`hexarm stop` is not heard but over ROS: {error.strerror}')
-            return
-        while not self._is_closing:
+            self.trouble = f'`hexarm stop` reaches this bridge over ROS only: {error.strerror}'
+
+    def fileno(self) -> int:
+        """For select."""
+        return self._socket.fileno()
+
+    def receive(self) -> None:
+        """Takes one datagram, once select says that there is one."""
+        with contextlib.suppress(BlockingIOError):
             if self._socket.recv(len(STOP)) == STOP:
                 self._on_stop()
 
     def close(self) -> None:
-        """Ends the thread."""
-        self._is_closing = True
-        self._socket.shutdown(socket.SHUT_RD)
-        self.join()
+        """Gives the address back."""
         self._socket.close()

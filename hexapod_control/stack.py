@@ -4,13 +4,12 @@ The end's pose is the product T₁ X₁ T₂ X₂ … Tₙ Xₙ of the sections'
 transforms Xᵢ from each platform to the next section's base, or to the end.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
 
-from hexapod_control.stack_descent import descend
 from hexapod_control.workspace import axis_range
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
@@ -23,6 +22,7 @@ SPARE = 0.01
 """The part of every margin at home that is kept where the limits decide."""
 
 STIFFNESSES = (1e1, 1e3, 1e5)
+STEP, SETTLED = 1e-6, 1e-14
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,11 +102,11 @@ class Stack:
         naming section and limit, where none is found, or no free way leads there from home.
         """
         free = np.zeros(6 * (len(self.sections) - 1))
-        free = descend(lambda x: self._relative(self._poses(x, end)), free)
+        free = _descended(lambda x: self._relative(self._poses(x, end)), free)
         for stiffness in STIFFNESSES:
             if self._is_inside(self._poses(free, end)):
                 break
-            free = descend(partial(self._pressed, end=end, stiffness=stiffness), free)
+            free = _descended(partial(self._pressed, end=end, stiffness=stiffness), free)
         return self._checked(self._poses(free, end))
 
     def distance(self, sections: Sequence[Pose]) -> float:
@@ -164,3 +164,21 @@ class Stack:
         return StackPose(
             tuple(poses), frozen(np.stack(joints)), self.end_of(poses), self.distance(poses)
         )
+
+
+def _descended(residuals: Callable[[Array], Array], start: Array) -> Array:
+    """Where Σ residuals² has a local minimum, from `start` (n,); slopes by differences.
+
+    residuals maps (..., n) to (..., m), all variables being of about the same size.
+    """
+    from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: for who asks)
+
+    if not start.size:
+        return start
+    steps = STEP * np.eye(start.size)
+
+    def slopes(x: Array) -> Array:
+        return np.asarray((residuals(x + steps) - residuals(x)).T / STEP)
+
+    found = least_squares(residuals, start, slopes, method='lm', ftol=SETTLED, xtol=SETTLED)
+    return np.asarray(found.x)

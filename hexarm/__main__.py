@@ -2,6 +2,6 @@
 
 import sys
 
-from hexarm.main import main
+from hexarm.cli.main import main
 
 sys.exit(main())

@@ -17,7 +17,6 @@ from rclpy.utilities import try_shutdown
 from std_srvs.srv import SetBool, Trigger
 
 from manipulator.errors import ManipulatorError, Refused
-from manipulator.nodes.discovery import fresh_address
 from manipulator.nodes.messages import pose_message, seconds
 from manipulator.nodes.path_goals import path_message
 from manipulator.nodes.qos import COMMAND, LATCHED
@@ -46,10 +45,10 @@ class Client:
     """
 
     def __init__(self, namespace: str, interrupt: Callable[[], None] = lambda: None) -> None:
-        if not rclpy.ok():
+        self._owns_context = not rclpy.ok()
+        if self._owns_context:
             rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-        with fresh_address():
-            self.node = Node('hexarm', namespace=namespace)
+        self.node = Node('hexarm', namespace=namespace)
         self.machine_state = DiagnosticStatus(message=UNHEARD)
         self.motion_status = DiagnosticStatus()
         self.diagnostics: dict[str, DiagnosticStatus] = {}
@@ -75,7 +74,8 @@ class Client:
         # Shutting down lets go of the node's handles: without it the node stays in the graph.
         self._executor.shutdown()
         self.node.destroy_node()
-        try_shutdown()
+        if self._owns_context:
+            try_shutdown()
 
     def spin(self, seconds: float) -> None:
         """Hears messages for a while."""
@@ -171,7 +171,7 @@ class Client:
 
         However long the way takes: NotReady after `seconds` in which nothing moves or is heard.
         """
-        self.wait('a listener for goals', lambda: self._reaches(self._goals, 'trajectory'), 10.0)
+        self.wait('a listener for goals', lambda: self._reaches(self._goals), 10.0)
         stamp = f'{self.publish_goal(pose):.9f}'
         self._await_result(lambda: self.motion('goal_stamp') == stamp, seconds)
 
@@ -180,9 +180,7 @@ class Client:
 
         `seconds` as for go_to: they must also do for working the path out.
         """
-        self.wait(
-            'a listener for paths', lambda: self._reaches(self._paths, 'path_listener'), 10.0
-        )
+        self.wait('a listener for paths', lambda: self._reaches(self._paths), 10.0)
         stamp = self.node.get_clock().now().to_msg()
         self._paths.publish(path_message(poses, stamp))
         name = f'{stamp.sec + 1e-9 * stamp.nanosec:.9f}'
@@ -204,14 +202,14 @@ class Client:
         self.trigger(f'trajectory/{place}')
         self._await_result(lambda: self.motion('goal_stamp') != before, seconds)
 
-    def _reaches(self, publisher: Any, listener: str) -> bool:
-        """Whether every listener that can be is connected, that node among them; others watch."""
+    def _reaches(self, publisher: Any) -> bool:
+        """Whether all who subscribe to it are connected, the trajectory node among them."""
         found = [
             one
             for one in self.node.get_subscriptions_info_by_topic(publisher.topic_name)
             if one.qos_profile.durability == DurabilityPolicy.VOLATILE
         ]
-        is_there = any(one.node_name == listener for one in found)
+        is_there = any(one.node_name == 'trajectory' for one in found)
         return is_there and bool(publisher.get_subscription_count() >= len(found))
 
     def _await_result(self, is_ours: Callable[[], bool], seconds: float) -> None:

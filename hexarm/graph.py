@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hexarm.firmware_build import chip_process
+from hexarm.board.build import chip_process
 
 PATIENCE = 5.0
 """Seconds a process has for its own clean end before it is killed."""
@@ -21,36 +21,48 @@ PR_SET_PDEATHSIG = 1
 
 @dataclass(frozen=True)
 class Executable:
-    """One node as a process: its module and entry, its own parameters, the file it waits for.
+    """One process: the name in hexarm/nodes.py, its own parameters, the file it waits for.
 
     `command` is what runs it when it is no node of ours; `prefix` stands before the command, as in
     `ip netns exec far`.
     """
 
-    module: str
-    entry: str
+    name: str
     parameters: dict[str, str] = field(default_factory=dict)
     needs: Path | None = None
     command: tuple[str, ...] = ()
     prefix: tuple[str, ...] = ()
 
 
-def machine_graph(kind: str, machine: str, port: str, link: Path) -> list[Executable]:
-    """The nodes of a hexapod's or an arm's graph.
+def machine_graph(
+    machine: str, port: str, link: Path, is_separate: bool = False
+) -> list[Executable]:
+    """The processes of a machine: one for its four nodes, or one for each where `is_separate`.
 
-    Port 'fake' adds the fake board, 'simavr' the firmware on a simulated chip.
+    Before them the board of port 'fake' or 'simavr', whose port appears at `link`.
     """
-    room = {'hexapod': 'hexapod_control', 'arm': 'arm_control'}[kind]
+    boards = board_process(machine, port, link)
+    needs = link if boards else None
+    if is_separate:
+        return [*boards, *node_processes(machine, port, needs)]
+    parameters = {'machine': machine, 'port': str(needs or port)}
+    return [*boards, Executable('machine', parameters, needs)]
+
+
+def node_processes(machine: str, port: str, link: Path | None = None) -> list[Executable]:
+    """A process for each node of a machine, on a port or on the link that a fake board makes."""
     common = {'machine': machine}
-    nodes = [Executable(room, entry, common) for entry in ('ik', 'pose', 'trajectory')]
+    nodes = [Executable(name, common) for name in ('ik', 'pose', 'trajectory')]
+    return [*nodes, Executable('serial_bridge', common | {'port': str(link or port)}, link)]
+
+
+def board_process(machine: str, port: str, link: Path) -> list[Executable]:
+    """The fake board for port 'fake', the firmware on a simulated chip for 'simavr', or none."""
     if port == 'fake':
-        board = Executable('bridge', 'fake_hardware', common | {'link': str(link)})
-    elif port == 'simavr':
-        board = Executable('firmware', 'chip', command=chip_process(machine, link))
-    else:
-        return [Executable('bridge', 'serial_bridge', common | {'port': port}), *nodes]
-    bridge = Executable('bridge', 'serial_bridge', common | {'port': str(link)}, needs=link)
-    return [board, *nodes, bridge]
+        return [Executable('fake_hardware', {'machine': machine, 'link': str(link)})]
+    if port == 'simavr':
+        return [Executable('chip', command=chip_process(machine, link))]
+    return []
 
 
 class Graph:
@@ -67,8 +79,8 @@ class Graph:
     def __enter__(self) -> 'Graph':
         """Starts every node."""
         for node in self._nodes:
-            _wait_for(node.needs)
-            self._processes[node.entry] = subprocess.Popen(
+            wait_for(node.needs)
+            self._processes[node.name] = subprocess.Popen(
                 [*node.prefix, *_command(node, self._namespace, self._log_level)],
                 start_new_session=True,
                 stdin=subprocess.DEVNULL,
@@ -106,7 +118,8 @@ def link_folder() -> 'tempfile.TemporaryDirectory[str]':
     return tempfile.TemporaryDirectory(prefix='hexarm-')
 
 
-def _wait_for(path: Path | None) -> None:
+def wait_for(path: Path | None) -> None:
+    """Waits for a file that a process makes, PATIENCE at most."""
     deadline = time.monotonic() + PATIENCE
     while path is not None and not path.exists() and time.monotonic() < deadline:
         time.sleep(0.01)
@@ -115,11 +128,16 @@ def _wait_for(path: Path | None) -> None:
 def _command(node: Executable, namespace: str, log_level: str) -> list[str]:
     if node.command:
         return list(node.command)
-    command = [sys.executable, '-m', node.module, node.entry, '--ros-args']
-    command += ['-r', f'__ns:=/{namespace.strip("/")}']
-    for name, value in node.parameters.items():
-        command += ['-p', f'{name}:={value}']
-    return [*command, '--log-level', log_level]
+    arguments = ros_arguments(namespace, node.parameters)
+    return [sys.executable, '-m', 'hexarm.nodes', node.name, *arguments, '--log-level', log_level]
+
+
+def ros_arguments(namespace: str, parameters: dict[str, str]) -> list[str]:
+    """The arguments that put every node of a process there, with these parameters."""
+    words = ['--ros-args', '-r', f'__ns:=/{namespace.strip("/")}']
+    for name, value in parameters.items():
+        words += ['-p', f'{name}:={value}']
+    return words
 
 
 def _environment() -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""A machine's graph for `ros2 launch`: the nodes of `hexarm up`, for full ROS installations."""
+"""A machine's graph for `ros2 launch`: the processes of `hexarm up`, where ROS is installed."""
 
 from pathlib import Path
 from typing import Any
@@ -9,12 +9,12 @@ from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
+from hexarm.cli.up import MACHINES, check
 from hexarm.graph import Executable, machine_graph
-from hexarm.up import MACHINES, check
 
 PACKAGE = 'hexarm'
-PREFIXES = {'hexapod_control': 'hexapod_', 'arm_control': 'arm_'}
-"""Of a room's executables; those of other rooms are called as their entries are."""
+PROGRAMS = {'machine': 'hexarm_machine', 'panel': 'hexarm_panel'}
+"""Executables whose name in the package is not that in hexarm/nodes.py."""
 
 
 def graph(kind: str) -> LaunchDescription:
@@ -42,14 +42,14 @@ def _nodes(context: LaunchContext, kind: str) -> list[Any]:
     check(kind, machine, namespace)
     space = namespace.strip('/')
     link = Path(f'/tmp/hexarm_{space.replace("/", "_")}')
-    own = {'pose': {'frame_prefix': frame_prefix}}
+    own = {'machine': {'frame_prefix': frame_prefix}}
     started = [
-        _process(node, space, own.get(node.entry, {}))
-        for node in machine_graph(kind, machine, port, link)
+        _process(node, space, own.get(node.name, {}))
+        for node in machine_graph(machine, port, link)
     ]
     panel = Node(
         package=PACKAGE,
-        executable='panel',
+        executable=PROGRAMS['panel'],
         namespace=space,
         parameters=[{'machine': machine}],
         output='screen',
@@ -63,7 +63,7 @@ def _process(node: Executable, namespace: str, own: dict[str, str]) -> Any:
         return ExecuteProcess(cmd=list(node.command), output='screen')
     return Node(
         package=PACKAGE,
-        executable=PREFIXES.get(node.module, '') + node.entry,
+        executable=PROGRAMS.get(node.name, node.name),
         namespace=namespace,
         parameters=[node.parameters | own],
         output='screen',

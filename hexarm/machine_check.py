@@ -12,13 +12,13 @@ from bridge.calibration import Calibration
 from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
 from hexarm.machine_warnings import warnings_of
 from hexarm.machines import loader
+from hexarm.simulation.dynamics_config import SCHEMAS
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
 from manipulator.frames import Frames
 from manipulator.limits.joint_range import JointRange
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionConfig
-from physics.dynamics_config import SCHEMAS
 
 T = TypeVar('T')
 ROOM = ('geometry', 'limits')

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from bridge.calibration import Calibration
-from bridge.servo_config import ServosConfig
+from bridge.servo_config import BoardConfig, ServosConfig
 from manipulator.arrays import Array, frozen
 from manipulator.config import MAX_CHARACTERS, build, parse_yaml
 from manipulator.errors import ConfigError
@@ -78,6 +78,16 @@ def read(name_or_path: str) -> MachineFile:
     return build(MachineFile, parse_yaml(text_of(path), str(path)), source=str(path))
 
 
+def family(name_or_path: str) -> str:
+    """'arm' or 'hexapod': the namespace where such a machine's graph lives by default."""
+    return 'arm' if loader(read(name_or_path).kind) is _arm else 'hexapod'
+
+
+def board_config(name_or_path: str) -> BoardConfig:
+    """What the bridge and the board need of a machine file; ConfigError says what is wrong."""
+    return BoardConfig.from_machine(read(name_or_path), str(find(name_or_path)))
+
+
 def described(name_or_path: str) -> str:
     """Which file a name or a path means, and what it is of, in one line."""
     path, machine_file = find(name_or_path).resolve(), read(name_or_path)
@@ -133,6 +143,6 @@ def _sag(machine_file: MachineFile, kinematics: Kinematics) -> Sag | None:
     """What the machine's nodes compensate, where its file asks for it."""
     if (machine_file.dynamics or {}).get('compensation') is not True:
         return None
-    from physics.compensation import sag_of  # noqa: PLC0415 (most machines need no masses)
+    from hexarm.simulation.compensation import sag_of  # noqa: PLC0415 (most machines need no masses)
 
     return sag_of(machine_file, kinematics)

@@ -16,7 +16,7 @@ def panel_process(machine: str) -> Executable:
     """The panel on the first free port from 8080; ModuleNotFoundError where viser is missing."""
     if importlib.util.find_spec('viser') is None:
         raise ModuleNotFoundError('the panel needs viser', name='viser')
-    return Executable('panel', 'panel', {'machine': machine, 'port': str(_free_port())})
+    return Executable('panel', {'machine': machine, 'port': str(_free_port())})
 
 
 def panel_address(panel: Executable) -> str:

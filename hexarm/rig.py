@@ -18,9 +18,9 @@ import numpy as np
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 
-from bridge.board_thread import BoardThread, FakeMachine
-from bridge.faults import Faults
-from bridge.plant import Plant
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.faults import Faults
+from bridge.fake.plant import Plant
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.client import Client, NotReady
@@ -121,7 +121,6 @@ class Rig:
         self,
         folder: Path,
         space: str,
-        kind: str = 'hexapod',
         machine: str = 'robocake',
         boot_s: float = 0.2,
         faults: Faults | None = None,
@@ -134,8 +133,8 @@ class Rig:
         self.board = BoardThread(self.recorder, line, lambda positions: None, faults)
         self.calibration = self.recorder.calibration
         self._space = space
-        nodes = machine_graph(kind, machine, str(self._path), self._path)
-        self._nodes = {node.entry: node for node in nodes}
+        nodes = machine_graph(machine, str(self._path), self._path, is_separate=True)
+        self._nodes = {node.name: node for node in nodes}
         self._graphs: dict[str, Graph] = {}
         self._stack = ExitStack()
 

@@ -4,9 +4,9 @@ import threading
 import time
 from pathlib import Path
 
-from bridge.fake_line import FakeLine
+from bridge.fake.fake_line import FakeLine
 from bridge.framing import FrameReader
-from bridge.messages import Message
+from bridge.protocol import Message
 
 
 class Tap:

@@ -25,7 +25,7 @@ class MachineFile:
     """The sections of a machine file; each room checks its own against its own schema.
 
     geometry and limits belong to the kind of machine, servos, link and simulation to the bridge,
-    dynamics to physics/.
+    dynamics to hexarm/simulation/.
     """
 
     kind: str

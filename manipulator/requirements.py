@@ -10,7 +10,8 @@ INSTALL = {
     'mcap': 'python3 -m pip install mcap',
     'mcap_ros2': 'python3 -m pip install mcap-ros2-support',
     'PIL': 'python3 -m pip install pillow',
-    'viser': 'python3 -m pip install viser',
+    'viser': "python3 -m pip install 'viser>=1.1,<1.2'",
+    'scipy': 'python3 -m pip install scipy, or apt install python3-scipy',
     'rclpy': 'install ROS 2 Jazzy and source its setup.bash, or pip install hexarm[ros]',
 }
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from hexarm import firmware_build
+from hexarm.board import build as firmware_build
 
 settings.register_profile(  # how long a computer takes is no verdict
     'patient', deadline=None, suppress_health_check=[HealthCheck.too_slow]

@@ -20,10 +20,10 @@ from manipulator.errors import ConfigError, Refused
 ROOT = Path(__file__).resolve().parents[1]
 FILES = sorted((ROOT / 'launch').glob('*.launch.py'))
 SETUP = (ROOT / 'setup.py').read_text()
-STARTED = {
-    'hexapod': {'hexapod_ik', 'hexapod_pose', 'hexapod_trajectory', 'serial_bridge'},
-    'arm': {'arm_ik', 'arm_pose', 'arm_trajectory', 'serial_bridge'},
-}
+KINDS = ('hexapod', 'arm')
+MACHINE = 'hexarm_machine'
+NODES = {MACHINE: ('ik', 'pose', 'trajectory', 'serial_bridge'), 'hexarm_panel': ('panel',)}
+"""What an executable holds whose name is not that of its one node."""
 
 
 @dataclass(frozen=True)
@@ -122,13 +122,15 @@ def executables():
 
 def parameters_of(executable):
     """What the table of the node in docs/interfaces.md lists."""
-    node = executable.removeprefix('hexapod_').removeprefix('arm_')
     text = (ROOT / 'docs' / 'interfaces.md').read_text()
-    section = text.split(f'\n## {node}\n')[1].split('\n## ')[0]
-    return set(re.findall(r'^\| `([\w.]+)` \|', section.split('| parameter |')[1], re.MULTILINE))
+    found = set()
+    for node in NODES.get(executable, (executable,)):
+        section = text.split(f'\n## {node}\n')[1].split('\n## ')[0].split('| parameter |')[1]
+        found |= set(re.findall(r'^\| `([\w.]+)` \|', section, re.MULTILINE))
+    return found
 
 
-@pytest.mark.parametrize('kind', STARTED)
+@pytest.mark.parametrize('kind', KINDS)
 def test_arguments_are_those_of_the_document(kind):
     *declared, _ = arguments_of(kind)
     text = (ROOT / 'docs' / 'viewers.md').read_text()
@@ -140,26 +142,26 @@ def test_arguments_are_those_of_the_document(kind):
     assert all(a.description for a in declared)
 
 
-@pytest.mark.parametrize('kind', STARTED)
+@pytest.mark.parametrize('kind', KINDS)
 def test_default_is_the_whole_graph_on_the_fake_board(kind):
     nodes = started(kind)
-    assert {n.executable for n in nodes} == STARTED[kind] | {'fake_hardware'}
+    assert {n.executable for n in nodes} == {MACHINE, 'fake_hardware'}
     assert {n.namespace for n in nodes} == {kind}
     by_name = {n.executable: n.parameters[0] for n in nodes}
-    assert by_name['serial_bridge']['port'] == by_name['fake_hardware']['link']
+    assert by_name[MACHINE]['port'] == by_name['fake_hardware']['link']
 
 
-@pytest.mark.parametrize('kind', STARTED)
+@pytest.mark.parametrize('kind', KINDS)
 def test_real_port_starts_no_fake_board(kind):
     nodes = started(kind, port='/dev/ttyACM0', namespace='/lab/left', frame_prefix='left/')
-    assert {n.executable for n in nodes} == STARTED[kind]
+    assert {n.executable for n in nodes} == {MACHINE}
     assert {n.namespace for n in nodes} == {'lab/left'}
     by_name = {n.executable: n.parameters[0] for n in nodes}
-    assert by_name['serial_bridge']['port'] == '/dev/ttyACM0'
-    assert by_name[f'{kind}_pose']['frame_prefix'] == 'left/'
+    assert by_name[MACHINE]['port'] == '/dev/ttyACM0'
+    assert by_name[MACHINE]['frame_prefix'] == 'left/'
 
 
-@pytest.mark.parametrize('kind', STARTED)
+@pytest.mark.parametrize('kind', KINDS)
 def test_executables_and_parameters_exist(kind):
     for node in started(kind):
         assert node.package == 'hexarm'
@@ -167,21 +169,20 @@ def test_executables_and_parameters_exist(kind):
         assert set(node.parameters[0]) <= parameters_of(node.executable)
 
 
-@pytest.mark.parametrize('kind', STARTED)
+@pytest.mark.parametrize('kind', KINDS)
 def test_panel_runs_only_where_it_is_asked_for(kind):
     (panel,) = (n for n in started(kind, panel='true') if n not in started(kind))
-    assert panel.executable == 'panel'
+    assert panel.executable == 'hexarm_panel'
     assert panel.namespace == kind
-    if 'panel' in executables():
-        assert set(panel.parameters[0]) <= parameters_of('panel')
+    assert set(panel.parameters[0]) <= parameters_of('hexarm_panel')
 
 
 @pytest.mark.parametrize(
     ('chosen', 'error', 'reason'),
     [
-        ({'machine': 'arm_6r'}, Refused, 'hexarm up arm --machine arm_6r'),
+        ({'machine': 'arm_6r'}, Refused, 'hexarm up arm_6r'),
         ({'machine': 'robocaek'}, ConfigError, "did you mean 'robocake'"),
-        ({'namespace': 'two words'}, Refused, 'is no ROS name'),
+        ({'namespace': 'two words'}, Refused, 'is not a ROS name'),
     ],
 )
 def test_arguments_that_do_not_fit_start_nothing(chosen, error, reason):
@@ -194,7 +195,7 @@ def test_chip_on_a_simulator_is_a_process_of_its_own():
     nodes = started('hexapod', port='simavr')
     (chip,) = (n for n in nodes if isinstance(n, ExecuteProcess))
     assert chip.cmd
-    assert {n.executable for n in nodes if n is not chip} == STARTED['hexapod']
+    assert {n.executable for n in nodes if n is not chip} == {MACHINE}
 
 
 def test_launch_files_and_viewers_are_installed():

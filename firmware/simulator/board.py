@@ -5,14 +5,15 @@ from pathlib import Path
 
 import numpy as np
 
-from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
-from bridge.messages import ResetCause
+from bridge.fake.board_settings import BoardSettings
+from bridge.protocol import ResetCause
 from bridge.servo_config import BoardConfig
 from firmware.simulator.chip import CLOCK_HZ, CYCLES_A_COUNT, Chip
-from hexarm import firmware_build, machines
-from hexarm.firmware_header import header
-from hexarm.firmware_kinematics import WITHOUT, kinematics_of
+from hexarm import machines
+from hexarm.board import build as firmware_build
+from hexarm.board.header import header
+from hexarm.board.kinematics import WITHOUT, kinematics_of
 
 BAUD = 250_000
 CHANNELS = 8

@@ -4,7 +4,7 @@ import random
 
 import numpy as np
 
-from bridge.messages import Mode, ResetCause, Setpoint, Stop
+from bridge.protocol import Mode, ResetCause, Setpoint, Stop
 from firmware.simulator.chip import CLOCK_HZ, CYCLES_A_COUNT
 from firmware.simulator.host import PARK, PERIOD, Host
 

@@ -10,8 +10,7 @@ from collections.abc import Iterator
 
 from bridge import cobs
 from bridge.frames import DELIMITER, checksum, encode
-from bridge.messages import Arm, Clear, Disarm, Mode, Setpoint, Stop
-from bridge.program_messages import Play, Program, TableRow
+from bridge.protocol import Arm, Clear, Disarm, Mode, Play, Program, Setpoint, Stop, TableRow
 from firmware.simulator.host import PARK, Host
 
 FAR = (4800, 1200, 4800, 1200, 4800, 1200)

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from bridge.board_settings import BoardSettings
+from bridge.fake.board_settings import BoardSettings
 from bridge.frames import encode
 from bridge.framing import FrameReader
-from bridge.messages import Ack, Arm, Command, Message, Result, Setpoint, State
+from bridge.protocol import Ack, Arm, Command, Message, Result, Setpoint, State
 from firmware.simulator.board import SimulatedBoard
 from firmware.simulator.chip import CLOCK_HZ, CYCLES_A_COUNT
 

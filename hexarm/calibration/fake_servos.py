@@ -9,8 +9,8 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from bridge.board_thread import BoardThread, FakeMachine
-from bridge.fake_line import FakeLine
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.fake_line import FakeLine
 from bridge.servo_config import BoardConfig, ServoConfig
 from manipulator.arrays import Array
 

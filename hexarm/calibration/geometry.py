@@ -7,11 +7,11 @@ import numpy as np
 
 from bridge.servo_config import BoardConfig
 from hexapod_control.identification.leg_model import Tolerances
-from hexarm.answers import Answer, add_machine, answering
 from hexarm.calibration.geometry_report import for_programs, in_words
 from hexarm.calibration.machine_model import machine_model, new_geometry
 from hexarm.calibration.machine_writer import MachineWriter
 from hexarm.calibration.pose_table import measurements
+from hexarm.cli.answers import Answer, add_machine, answering
 from hexarm.machines import load, read
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, NoSolution

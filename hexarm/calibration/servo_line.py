@@ -13,9 +13,8 @@ from contextlib import contextmanager
 from bridge.calibration import COUNTS_PER_US
 from bridge.events import Disconnected, Event, FaultReported, Incompatible
 from bridge.link import Link, Ticket
-from bridge.link_thread import LinkThread
-from bridge.messages import Arm, Clear, Command, Disarm, FaultCode, Known, Mode, Setpoint, Stop
-from bridge.serial_port import SerialPort
+from bridge.link_thread import LinkThread, SerialPort
+from bridge.protocol import Arm, Clear, Command, Disarm, FaultCode, Known, Mode, Setpoint, Stop
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
 from manipulator.errors import LinkError, Refused
@@ -110,11 +109,12 @@ class ServoLine:
     def move(self, counts: tuple[int, ...]) -> None:
         """Be there now."""
         setpoint = Setpoint(self._config.link.setpoint_deadline_ms, counts)
-        self._link.put_setpoint(Ticket(setpoint, time.monotonic()))
+        ticket = Ticket(setpoint, time.monotonic())
+        self._thread.post(lambda: self._link.put_setpoint(ticket))
 
     def stop(self) -> None:
         """At once; repeated until the board has heard it."""
-        self._link.request(Stop())
+        self._thread.request(Stop())
 
     def clear(self) -> None:
         """Forget the stop; nothing moves. Refused says why not."""
@@ -124,7 +124,7 @@ class ServoLine:
         """Asks again where it failed: a computer that is busy may lose an answer."""
         for tries_left in reversed(range(TRIES)):
             try:
-                self._link.request(command).result(ANSWER_WITHIN)
+                self._thread.request(command).result(ANSWER_WITHIN)
                 break
             except NoAnswer as error:
                 raise Refused('the board does not answer') from error

@@ -1,8 +1,7 @@
 """What the person at the terminal reads while walking through the servos."""
 
-from bridge.messages import Mode
-from bridge.servo_stages import Stage
-from bridge.servo_walk import ServoWalk
+from bridge.protocol import Mode
+from bridge.servo_walk import ServoWalk, Stage
 
 HELP = """\
  →/← or d/a  longer, shorter pulse     +/-  step    s  skip    b  this servo again

@@ -4,10 +4,9 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from bridge.messages import Mode
+from bridge.protocol import Mode
 from bridge.servo_config import ServoConfig
-from bridge.servo_stages import Stage
-from bridge.servo_walk import ServoWalk
+from bridge.servo_walk import ServoWalk, Stage
 from hexarm.calibration.servo_line import ServoLine
 from hexarm.calibration.servo_screen import CONSENT, FOUND, HELP, question, status
 from manipulator.errors import LinkError, ManipulatorError, Refused

@@ -8,16 +8,15 @@ from contextlib import ExitStack, contextmanager
 from difflib import get_close_matches
 
 from bridge.servo_config import BoardConfig, ServoConfig
-from bridge.servo_stages import Stage
-from bridge.servo_walk import ServoWalk
+from bridge.servo_walk import ServoWalk, Stage
 from hexarm.calibration.fake_servos import FakeServos, mounted_wrongly
 from hexarm.calibration.machine_writer import MachineWriter
 from hexarm.calibration.servo_line import SIGNALS, ServoLine
 from hexarm.calibration.servo_screen import POSITIVE
 from hexarm.calibration.servo_sitting import Sitting
 from hexarm.calibration.servo_values import changed_values, in_words
+from hexarm.cli.statuses import INTERRUPTED
 from hexarm.machines import read
-from hexarm.statuses import INTERRUPTED
 from manipulator.errors import InvalidInput
 from manipulator.nodes.terminal import Terminal
 from manipulator.words import counted, shown

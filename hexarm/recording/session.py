@@ -12,11 +12,10 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
+from hexarm.cli.up import Interrupted
 from hexarm.recording.bag import Bag
 from hexarm.recording.listener import Listener
 from hexarm.recording.wanted import Wanted
-from hexarm.up import Interrupted
-from manipulator.nodes.discovery import fresh_address
 
 LOOK_AROUND = 0.25
 """Seconds between two looks at which topics there are."""
@@ -53,8 +52,7 @@ def record(bag: Bag, namespace: str, wanted: Wanted, control: Control) -> tuple[
     the disk is full.
     """
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    with fresh_address():
-        node = Node('recorder', namespace=namespace, enable_rosout=False)
+    node = Node('recorder', namespace=namespace, enable_rosout=False)
     executor = EventsExecutor()
     executor.add_node(node)
     listener, domain = Listener(node, wanted, bag), node.context.get_domain_id()

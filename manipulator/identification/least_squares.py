@@ -6,6 +6,7 @@ of their tolerances; where a tolerance is infinite, that value has no prior and 
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -15,11 +16,10 @@ from manipulator.errors import NoSolution
 Errors = Callable[[Array], tuple[Array, Array]]
 """Values (p,) to errors (m,) and their slopes (m, p)."""
 
-MOST_STEPS = 200
-STILL = 1e-8
-"""A step this small, per noise and per error that is left, is the last."""
-
-FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-12, 1e12
+MOST_EVALUATIONS = 200
+STILL = 1e-10
+BEYOND = 1e9
+"""The error, by its noise, where the machine cannot stand: a shorter step is tried instead."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,37 +28,30 @@ class Fit:
 
     values: Array
     covariance: Array
-    steps: int
 
 
 def fit(errors: Errors, tolerances: Array) -> Fit:
     """The values (p,), beginning at zero; NoSolution where no minimum is found."""
+    from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: for who asks)
+
     has_prior = np.isfinite(tolerances)
-    scale = np.where(has_prior, tolerances, 1.0)
-    prior = has_prior.astype(np.float64)
-    x, damping = np.zeros(len(scale)), FIRST_DAMPING
-    r, J = errors(scale * x)
-    for step in range(MOST_STEPS):
-        rows = np.concatenate([J * scale, np.diag(prior)])
-        left = np.concatenate([r, prior * x])
-        lengths = np.sqrt((rows * rows).sum(axis=0))
-        # Unseen values without a prior stay where they are: nothing but damping is in their rows.
-        damped = np.concatenate([rows, np.sqrt(damping) * np.diag(np.maximum(lengths, 1e-5))])
-        way = -np.linalg.lstsq(damped, np.concatenate([left, 0.0 * x]), rcond=None)[0]
-        cost = float(left @ left)
-        if np.abs(way * lengths).max() < STILL * (1.0 + np.sqrt(cost)):
-            inverse = scale[:, None] * np.linalg.pinv(rows)
-            return Fit(scale * x, inverse @ inverse.T, step)
+    scale, prior = np.where(has_prior, tolerances, 1.0), np.diag(has_prior.astype(np.float64))
+    beyond = np.full_like(errors(np.zeros(len(scale)))[0], BEYOND), np.zeros((0, len(scale)))
+
+    @lru_cache(maxsize=1)  # MINPACK asks for errors and for slopes, which are found together
+    def at(x: tuple[float, ...]) -> tuple[Array, Array]:
+        values = np.array(x)
         try:
-            r_new, J_new = errors(scale * (x + way))
+            r, J = errors(scale * values)
         except NoSolution:
-            damping *= 10.0
-        else:
-            pulled = prior * (x + way)
-            is_better = float(r_new @ r_new + pulled @ pulled) <= cost * (1 + 1e-12)
-            if is_better:
-                x, r, J = x + way, r_new, J_new
-            damping = max(damping / 10.0, LEAST_DAMPING) if is_better else damping * 10.0
-        if damping > MOST_DAMPING:
-            break
-    raise NoSolution('the parameters do not converge: are the measurements of this machine?')
+            r, J = beyond
+        return np.concatenate([r, prior @ values]), np.concatenate([J * scale, prior])
+
+    found = least_squares(
+        lambda x: at(tuple(x))[0], np.zeros(len(scale)), lambda x: at(tuple(x))[1], method='lm',
+        x_scale='jac', ftol=STILL, xtol=STILL, gtol=STILL, max_nfev=MOST_EVALUATIONS,
+    )  # fmt: skip
+    if not found.success:
+        raise NoSolution('the parameters do not converge: are the measurements of this machine?')
+    inverse = scale[:, None] * np.linalg.pinv(found.jac)
+    return Fit(scale * found.x, inverse @ inverse.T)

@@ -1,46 +1,54 @@
-"""`goal_path`: received in a process of its own, handed to the supervisor still serialized."""
+"""`goal_path`: judged by its length and its header in the tick, decoded in the planning thread.
+
+Decoding 2,000 poses costs 30 to 50 ms of a core: several ticks, and the planning thread has the
+time. What is longer than the longest path is refused by its length, and never decoded.
+"""
 
 import time
 from dataclasses import dataclass
 from functools import partial
 from math import radians
+from operator import attrgetter
 
+import numpy as np
 from builtin_interfaces.msg import Time
 from nav_msgs.msg import Path
 from rclpy.node import Node
 from std_msgs.msg import Header
 
+from manipulator import rotation as so3
+from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
-from manipulator.nodes.graph_check import Received
+from manipulator.nodes.bounded import decoded
 from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, check_frame, pose_message, seconds
 from manipulator.nodes.parameters import declare
-from manipulator.nodes.path_cdr import read_poses
-from manipulator.nodes.path_ear import PathEar
-from manipulator.nodes.path_listener import MOST_POSES, HeardPath
 from manipulator.nodes.qos import COMMAND
 from manipulator.pose import Pose
 from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.path_planning import PathGoal
 from manipulator.trajectory.path_timing import PathRequest
 from manipulator.trajectory.supervisor import Supervisor
-from manipulator.words import counted
+from manipulator.words import counted, shown
 
-GOAL_PATH = Received('goal_path', Path, COMMAND)
-"""What the process of path_listener receives."""
+MOST_POSES = 2000
+MOST_BYTES = 100 * MOST_POSES
+"""Of a serialized path: a pose takes 68 bytes and its frame_id, at most 80 together."""
+
+NUMBERS = ('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw')
+POSITION, ORIENTATION = attrgetter(*'xyz'), attrgetter(*'xyzw')
 
 
 @dataclass(frozen=True)
 class RawPath:
-    """A path of which only the beginning has been read."""
+    """A path of which only the header has been decoded; an empty one where it cannot be."""
 
     header: Header
-    count: int
     serialized: bytes
 
 
 class PathGoals:
-    """The topic and its parameters; `poll` is called at every tick."""
+    """The topic and its parameters."""
 
     def __init__(self, node: Node, supervisor: Supervisor) -> None:
         self._node, self._supervisor = node, supervisor
@@ -52,24 +60,16 @@ class PathGoals:
         ):
             declare(node, name, default, description, bounds, is_read_only=False)
         self._intake = Intake(node, 'goal_path', self._on_path, self._on_bad_path)
-        self._ear = PathEar(node.get_namespace(), node.resolve_topic_name('goal_path'))
-
-    def poll(self) -> None:
-        """Takes up what was heard since the last tick."""
-        message = self._ear.take()
-        if message is not None:
-            self._intake(_raw_path(message))
-
-    def close(self) -> None:
-        """Ends the process that receives paths."""
-        self._ear.close()
+        node.create_subscription(
+            Path, 'goal_path', lambda raw: self._intake(raw_path(raw)), COMMAND, raw=True
+        )
 
     def _on_path(self, message: RawPath) -> None:
-        poses = counted(message.count, 'pose')
-        if not 1 <= message.count <= MOST_POSES:
-            raise InvalidInput(f'a path of {poses}, needs 1 to {MOST_POSES}')
-        if not message.serialized:
-            raise InvalidInput(f'a path of {poses}, and yet of too many bytes')
+        length = len(message.serialized)
+        if length > MOST_BYTES:
+            raise InvalidInput(
+                f'a path of {length:,} bytes, limit {MOST_BYTES:,}: {MOST_POSES:,} poses take less'
+            )
         check_frame(message.header.frame_id, (BASE_FRAME, WORK_FRAME))
         self._supervisor.follow(
             self._goal_of(message),
@@ -82,9 +82,7 @@ class PathGoals:
         tolerance = Tolerance(
             self._parameter('path_tolerance'), self._parameter('path_turn_tolerance')
         )
-        read = partial(
-            _request, message.serialized, frame, self._parameter('path_speed'), tolerance
-        )
+        read = partial(_request, message.serialized, self._parameter('path_speed'), tolerance)
         return PathGoal(seconds(message.header.stamp), read, is_of_platform=frame == BASE_FRAME)
 
     def _parameter(self, name: str) -> float:
@@ -94,15 +92,69 @@ class PathGoals:
         self._supervisor.refuse(seconds(message.header.stamp), error)
 
 
-def _request(serialized: bytes, frame: str, speed: float, tolerance: Tolerance) -> PathRequest:
-    poses, stamps = read_poses(serialized, frame)
+def raw_path(serialized: bytes) -> RawPath:
+    """A path with its header decoded, which is what it begins with: at most 0.3 ms."""
+    try:
+        return RawPath(decoded(serialized[:MOST_BYTES], Header, MOST_BYTES), serialized)
+    except InvalidInput:
+        return RawPath(Header(), serialized)
+
+
+def _request(serialized: bytes, speed: float, tolerance: Tolerance) -> PathRequest:
+    poses, stamps = path_of(decoded(serialized, Path, MOST_BYTES))
     return PathRequest(poses, speed, tolerance, stamps)
 
 
-def _raw_path(message: HeardPath) -> RawPath:
-    stamp = Time(sec=message.head.sec, nanosec=message.head.nanosec)
-    header = Header(stamp=stamp, frame_id=message.head.frame_id)
-    return RawPath(header, message.head.count, message.serialized)
+def path_of(message: Path) -> tuple[Pose, Array | None]:
+    """Poses (n,) and their stamps (n,), in seconds from the first; None where all are equal.
+
+    Raises InvalidInput for too few or many poses; naming the pose, for numbers that are not
+    finite, quaternions that are no rotation, frames that are neither empty nor the path's, and
+    stamps that do not all increase.
+    """
+    count, frame = len(message.poses), message.header.frame_id or BASE_FRAME
+    if not 1 <= count <= MOST_POSES:
+        raise InvalidInput(f'a path of {counted(count, "pose")}, needs 1 to {MOST_POSES:,}')
+    stamps, values = np.empty((count, 2), dtype=np.int64), np.empty((count, 7))
+    for i, stamped in enumerate(message.poses):
+        name, stamp = stamped.header.frame_id, stamped.header.stamp
+        if name not in ('', frame):
+            raise InvalidInput(
+                f'pose {i + 1}: frame_id {shown(name)}, the path is in {shown(frame)}'
+            )
+        stamps[i] = stamp.sec, stamp.nanosec
+        values[i, :3] = POSITION(stamped.pose.position)
+        values[i, 3:] = ORIENTATION(stamped.pose.orientation)
+    return _poses(values), _seconds(stamps)
+
+
+def _poses(values: Array) -> Pose:
+    bad = np.argwhere(~np.isfinite(values))
+    if len(bad):
+        i, k = bad[0]
+        raise InvalidInput(f'pose {i + 1}: {NUMBERS[k]} is {values[i, k]}, not a finite number')
+    lengths = np.linalg.norm(values[:, 3:], axis=1)
+    odd = np.flatnonzero(np.abs(lengths - 1.0) > so3.UNIT_TOLERANCE)
+    if len(odd):
+        i = odd[0]
+        raise InvalidInput(
+            f'pose {i + 1}: quaternion has length {lengths[i]:.6g}, a rotation needs 1 ± 0.001'
+        )
+    return Pose.from_xyz_quaternion(values[:, :3], values[:, 3:])
+
+
+def _seconds(stamps: 'np.ndarray[tuple[int, ...], np.dtype[np.int64]]') -> Array | None:
+    if (stamps == stamps[0]).all():
+        return None
+    since = stamps - stamps[0]
+    seconds: Array = since[:, 0] + 1e-9 * since[:, 1]
+    back = np.flatnonzero(np.diff(seconds) <= 0)
+    if len(back):
+        raise InvalidInput(
+            f'pose {back[0] + 2}: its stamp is not after that of pose {back[0] + 1}: stamps must '
+            'all increase, or all be the same'
+        )
+    return seconds
 
 
 def path_message(

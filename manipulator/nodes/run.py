@@ -1,10 +1,13 @@
-"""Running one node as a process: clean start, clean stop, one line for what went wrong."""
+"""Running nodes in a process: clean start, clean stop, one line for what went wrong."""
 
+import faulthandler
+import gc
 import os
 import signal
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from types import FrameType
 
 import rclpy
@@ -15,73 +18,126 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from manipulator.errors import ManipulatorError
-from manipulator.nodes.discovery import fresh_address
 from manipulator.requirements import missing
 
 GOODBYE = 3.0
-"""Seconds that a node may take to leave the graph once it has closed what it holds."""
+"""Seconds that nodes may take to leave the graph once they have closed what they hold."""
+
+Makers = Sequence[Callable[[], Node]]
 
 
-def run_node(make_node: Callable[[], Node], describe: Callable[[str], str] | None = None) -> int:
-    """Spins the node until SIGINT or SIGTERM; a start-up error is one line and exit status 1.
+def run_nodes(makers: Makers, describe: Callable[[str], str] | None = None) -> int:
+    """Spins nodes on one executor until SIGINT or SIGTERM; a start-up error is status 1.
 
-    With `describe` the node's log begins with what that says of its parameter `machine`.
+    With `describe` the log begins with what that says of the first node's parameter `machine`.
 
     rclpy's own signal handlers would invalidate the context before the last message is out, so
-    ours only set a flag. A node's `close()`, where it has one, runs before it is destroyed.
+    ours only set a flag.
     """
     stop = _StopRequest()
     rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
     try:
-        with fresh_address():
-            node = make_node()
+        with on_executor(makers) as (nodes, executor):
+            if describe is not None:
+                nodes[0].get_logger().info(describe(nodes[0].get_parameter('machine').value))
+            while not stop.is_requested:
+                executor.spin_once(timeout_sec=0.1)
     except (ManipulatorError, ParameterException, ModuleNotFoundError) as error:
-        said = missing(error) if isinstance(error, ModuleNotFoundError) else str(error)
-        print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {said}', file=sys.stderr)
+        reason = missing(error) if isinstance(error, ModuleNotFoundError) else str(error)
+        print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {reason}', file=sys.stderr)
         try_shutdown()
         return 1
-    executor = EventsExecutor()
-    executor.add_node(node)
-    try:
-        if describe is not None:
-            node.get_logger().info(describe(node.get_parameter('machine').value))
-        while not stop.is_requested:
-            executor.spin_once(timeout_sec=0.1)
-    finally:
-        close = getattr(node, 'close', None)
-        if close is not None:
-            close()
-        _leave_within(GOODBYE)
-        executor.shutdown()
-        node.destroy_node()
+    with _leaving_within(GOODBYE):
         try_shutdown()
     _leave()
     return 0
 
 
-def run_named(*executables: Callable[[], int | None]) -> int | None:
-    """`python -m ROOM NAME …`: runs the executable of that name; status 2 where there is none."""
-    named = {run.__name__: run for run in executables}
-    name = sys.argv[1] if len(sys.argv) > 1 else ''
-    if name not in named:
-        print(f'needs one of the names {", ".join(named)}', file=sys.stderr)
-        return 2
-    sys.argv[:2] = [name]
-    return named[name]()
+@contextmanager
+def context(arguments: Sequence[str]) -> Iterator[None]:
+    """The context of ROS of this process, with these arguments for all its nodes."""
+    rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        yield
+    finally:
+        try_shutdown()
 
 
-def _leave_within(seconds: float) -> None:
-    """Ends the process even where taking leave of the graph does not come back."""
-    timer = threading.Timer(seconds, _leave)
-    timer.daemon = True
-    timer.start()
+@contextmanager
+def spinning(makers: Makers) -> Iterator[Callable[[], bool]]:
+    """Nodes in a thread of this process, in a context that is there; says whether it still runs.
+
+    An exception in a callback ends the thread, after its traceback.
+    """
+    is_over = threading.Event()
+    with on_executor(makers) as (_, executor):
+
+        def spin() -> None:
+            while not is_over.is_set():
+                executor.spin_once(timeout_sec=0.1)
+
+        thread = threading.Thread(target=spin, name='nodes')
+        thread.start()
+        try:
+            yield thread.is_alive
+        finally:
+            is_over.set()
+            thread.join()
+
+
+@contextmanager
+def on_executor(makers: Makers) -> Iterator[tuple[list[Node], EventsExecutor]]:
+    """Nodes, made in this order, and their executor.
+
+    At the end a node's `close()`, where it has one, runs before it is destroyed; the node made
+    last is closed first.
+    """
+    nodes: list[Node] = []
+    executor = None
+    try:
+        for make in makers:
+            nodes.append(make())
+        _keep_for_good()
+        executor = EventsExecutor()
+        for node in nodes:
+            executor.add_node(node)
+        yield nodes, executor
+    finally:
+        for node in reversed(nodes):
+            close = getattr(node, 'close', None)
+            if close is not None:
+                close()
+        with _leaving_within(GOODBYE):
+            if executor is not None:
+                executor.shutdown()
+            for node in reversed(nodes):
+                node.destroy_node()
 
 
 def _leave() -> None:
-    """Ends the process here: the executor's own destructor now and then never comes back."""
+    """Ends the process here: later the binding of ruckig would list leaks on the terminal."""
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(0)
+
+
+def _keep_for_good() -> None:
+    """Leaves what is there now out of garbage collections, which kept ticks waiting for 30 ms."""
+    gc.collect()
+    gc.freeze()
+
+
+@contextmanager
+def _leaving_within(seconds: float) -> Iterator[None]:
+    """Ends the process, with status 1, where taking leave of the graph never comes back.
+
+    While others leave too, Fast DDS 2.14 now and then waits for itself (`set_listener`), and rclpy
+    keeps the interpreter's lock meanwhile: only a thread that is none of Python's gets a turn.
+    """
+    with open(os.devnull, 'w', encoding='utf-8') as nowhere:
+        faulthandler.dump_traceback_later(seconds, exit=True, file=nowhere)
+        yield
+        faulthandler.cancel_dump_traceback_later()
 
 
 class _StopRequest:

@@ -1,8 +1,9 @@
 """Timers that a clock which is set neither stalls nor hurries.
 
 A node's own timers run on the system's clock, and even for those on the monotonic one rclpy's
-executor, as built for its wheels, waits until a time of the system's clock: set back by an hour,
-it rests for an hour. So a thread sleeps, and only wakes the executor up.
+EventsExecutor, as built for its wheels, waits until a time of the system's clock: set back by an
+hour, it rests for an hour (SingleThreadedExecutor does not, but costs a third more: see Choices
+in docs/architecture.md). So a thread sleeps, and only wakes the executor up.
 """
 
 import os

@@ -27,7 +27,7 @@ from manipulator.nodes.messages import (
     seconds,
 )
 from manipulator.nodes.parameters import declare
-from manipulator.nodes.path_goals import GOAL_PATH, PathGoals
+from manipulator.nodes.path_goals import PathGoals
 from manipulator.nodes.planning_thread import PlanningThread
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.steady_timer import SteadyTimer
@@ -91,18 +91,15 @@ class TrajectoryNode(Node):
         tolerances = Tolerances.of(machine, tolerance, goal_tolerance)
         self._supervisor = Supervisor(machine, dt, tolerances, self._worker, delay)
         self._connect()
-        self._paths = PathGoals(self, self._supervisor)
+        PathGoals(self, self._supervisor)
         self._teleop_topics = TeleopTopics(self, self._supervisor.teleop)
         self._answers = TrajectoryServices(self, self._supervisor, dt, self._worker)
         self._timer = SteadyTimer(self, dt, self._tick)
-        self._diagnostics = Diagnostics(
-            self, self._report, ('setpoint', 'pose', *PEOPLE), (GOAL_PATH,)
-        )
+        self._diagnostics = Diagnostics(self, self._report, ('setpoint', 'pose', *PEOPLE))
 
     def close(self) -> None:
         """Ends what runs beside this node."""
         self._supervisor.close()
-        self._paths.close()
         self._worker.close()
 
     def _connect(self) -> None:
@@ -171,7 +168,6 @@ class TrajectoryNode(Node):
         pose = self._supervisor.end_tick(time.monotonic())
         if pose is not None:
             self._setpoints.publish(pose_message(pose, stamp))
-        self._paths.poll()
         self._answers.poll()
         self._publish_news()
 

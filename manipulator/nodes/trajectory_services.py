@@ -4,7 +4,6 @@ import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from threading import Thread
 
 import numpy as np
 from geometry_msgs.msg import PoseStamped
@@ -12,13 +11,11 @@ from nav_msgs.srv import GetPlan
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
-from manipulator.errors import ManipulatorError, Unreachable
+from manipulator.errors import ManipulatorError
 from manipulator.machine import Machine
 from manipulator.nodes.cycle_parameters import CycleParameters
 from manipulator.nodes.late_answers import Call, create_late_service
 from manipulator.nodes.messages import goal_of, pose_message, seconds
-from manipulator.pose import Pose
-from manipulator.reach.words import explained
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.planner import Start, plan_goal
@@ -32,7 +29,6 @@ class _PlanCall:
 
     call: Call
     machine: Machine
-    goal: Pose
     job: Job[Plan]
 
 
@@ -112,7 +108,7 @@ class TrajectoryServices:
             self._node.get_logger().warning(f'plan: {error}')
             call.send()
         else:
-            self._plan = _PlanCall(call, machine, goal, job)
+            self._plan = _PlanCall(call, machine, job)
 
     def _answer_plan(self, plan: _PlanCall) -> None:
         machine, response = plan.machine, plan.call.response
@@ -120,9 +116,6 @@ class TrajectoryServices:
             move = plan.job.result()
         except ManipulatorError as error:
             self._node.get_logger().warning(f'plan: {error}')
-            if isinstance(error, Unreachable):
-                # A tenth of a second's work: not in the thread that streams setpoints.
-                Thread(target=self._explain, args=(machine, plan.goal), daemon=True).start()
         else:
             stamp = self._node.get_clock().now().to_msg()
             times = np.append(np.arange(0.0, move.duration, self._dt), move.duration)
@@ -130,11 +123,6 @@ class TrajectoryServices:
             response.plan.header.stamp = stamp
             response.plan.poses = [pose_message(poses[i], stamp) for i in range(len(times))]
         plan.call.send()
-
-    def _explain(self, machine: Machine, goal: Pose) -> None:
-        said = explained(machine, goal)
-        if said:
-            self._node.get_logger().info(f'plan: {said}')
 
     def _start_of(self, request: GetPlan.Request) -> Start:
         machine = self._supervisor.pilot.machine

@@ -2,13 +2,11 @@
 
 import numpy as np
 
-from manipulator.arrays import Array, Mask
+from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.reach.metric import distance, offset, scale
 
-MOST_STEPS = 200
-DAMPINGS = (1e-9, 1e-6, 1e-4, 1e-2, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0)
 SETTLED = 1e-12
 CLEARANCE = 1e-9  # rad or m inside the ranges, so that the answer's inverse is in range, too
 RANDOM_STARTS = 12
@@ -17,8 +15,9 @@ RANDOM_STARTS = 12
 def nearest_by_joints(machine: Machine, target: Pose) -> Pose:
     """The pose nearest to `target` in the metric of `metric.distance`, over all joints in range.
 
-    Projected Levenberg-Marquardt from home's joints and a fixed set of others; the best local
-    minimum. Every such pose is connected to home through the joints' ranges.
+    Bounded least squares (trust region reflective: Branch, Coleman, Li 1999) from home's joints
+    and a fixed set of others; the best local minimum. Every such pose is connected to home through
+    the joints' ranges.
     """
     kinematics = machine.kinematics
     low, high = joint_box(machine)
@@ -46,32 +45,21 @@ def joint_box(machine: Machine) -> tuple[Array, Array]:
 
 
 def _descended(machine: Machine, target: Pose, start: Array, low: Array, high: Array) -> Pose:
-    """A local minimum of the distance; several dampings are tried at each step."""
-    kinematics = machine.kinematics
-    joints = start
-    pose = kinematics.forward(joints).pose
-    metres = float(distance(machine, pose, target))
-    for _ in range(MOST_STEPS):
-        goal = offset(machine, pose, target)
-        rows = scale(machine)[:, None] * kinematics.jacobian(pose, joints)
-        pull = rows.T @ goal
-        free = ~((joints <= low) & (pull < 0.0) | (joints >= high) & (pull > 0.0))
-        trials = [joints + _damped(rows, goal, free, damping) for damping in DAMPINGS]
-        clipped = [np.clip(trial, low, high) for trial in trials]
-        poses = [kinematics.forward(trial).pose for trial in clipped]
-        reached = [float(distance(machine, p, target)) for p in poses]
-        best = int(np.argmin(reached))
-        if not reached[best] < metres - SETTLED:
-            break
-        joints, pose, metres = clipped[best], poses[best], reached[best]
-    return pose
+    """A local minimum of the distance over joints (n,) between `low` and `high`."""
+    from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: for who asks)
 
+    kinematics, weights = machine.kinematics, scale(machine)[:, None]
 
-def _damped(rows: Array, goal: Array, free: Mask, damping: float) -> Array:
-    """The Levenberg-Marquardt step (n,) of the free joints; damping is relative."""
-    step = np.zeros(rows.shape[1])
-    chosen = rows[:, free]
-    square = chosen.T @ chosen
-    square += damping * max(float(np.trace(square)), SETTLED) * np.eye(len(square))
-    step[free] = np.linalg.solve(square, chosen.T @ goal)
-    return step
+    def pose_of(joints: Array) -> Pose:
+        return kinematics.forward(joints).pose
+
+    def slopes(joints: Array) -> Array:
+        # What they miss, the Jacobian of the logarithm, leaves a rotation vector as it is: the
+        # slope of the squared offset is exact.
+        return -weights * kinematics.jacobian(pose_of(joints), joints)
+
+    found = least_squares(
+        lambda joints: offset(machine, pose_of(joints), target), np.clip(start, low, high), slopes,
+        bounds=(low, high), ftol=SETTLED, xtol=SETTLED, gtol=SETTLED,
+    )  # fmt: skip
+    return pose_of(found.x)

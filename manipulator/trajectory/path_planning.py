@@ -12,13 +12,11 @@ from manipulator.errors import ManipulatorError, Refused
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.motion_status import MotionStatus
+from manipulator.trajectory.motion_status import MotionNews, MotionStatus
 from manipulator.trajectory.path_timing import PathRequest, TimedPath, plan_path
 from manipulator.trajectory.pilot import Pilot
-from manipulator.trajectory.player import Player
+from manipulator.trajectory.player import OVERTAKEN, Player
 from manipulator.trajectory.worker import Effort, Job, Worker
-
-OVERTAKEN = 'a newer command came while the path was worked out'
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +45,8 @@ class PathGoal:
 class PathPlanning:
     """The newest path that is expected, if any; `step` is called at every tick."""
 
-    def __init__(self, pilot: Pilot, dt: float, worker: Worker) -> None:
-        self._pilot, self._dt, self._worker = pilot, dt, worker
+    def __init__(self, pilot: Pilot, dt: float, worker: Worker, news: MotionNews) -> None:
+        self._pilot, self._dt, self._worker, self._news = pilot, dt, worker, news
         self._stamp = 0.0
         self._job: Job[TimedPath | Pose] | None = None
 
@@ -57,30 +55,36 @@ class PathPlanning:
         player, machine = self._pilot.player, self._pilot.machine
         near, dt = player.joints, self._dt
         player.expect(path.stamp)
-        self.cancel()
+        self._drop(OVERTAKEN)
         try:
             self._job = self._worker.submit(lambda e: path.planned(machine, near, dt, e))
             self._stamp = path.stamp
         except Refused as error:
             player.refuse(path.stamp, str(error))
 
-    def step(self) -> MotionStatus | None:
-        """Pursues the path once it is worked out; what became of one that was overtaken."""
+    def step(self) -> None:
+        """Pursues the path once it is worked out; that it was dropped is news."""
         if self._job is None:
-            return None
-        if not self._is_expected:
-            self.cancel()
-            return MotionStatus(self._pilot.status.mode, 'stopped', self._stamp, OVERTAKEN)
-        if self._job.is_done:
+            return
+        reason = self._unexpected
+        if reason:
+            self._drop(reason)
+        elif self._job.is_done:
             job, self._job = self._job, None
             self._pursue(job, self._pilot.player)
-        return None
 
     def cancel(self) -> None:
         """Nobody waits for it any more."""
         if self._job is not None:
             self._job.cancel()
             self._job = None
+
+    def _drop(self, reason: str) -> None:
+        """What nobody waits for any more, if anything, is given up, and reported as stopped."""
+        if self._job is not None:
+            self.cancel()
+            mode = self._pilot.status.mode
+            self._news.add(MotionStatus(mode, 'stopped', self._stamp, reason))
 
     def _pursue(self, job: 'Job[TimedPath | Pose]', player: Player) -> None:
         try:
@@ -94,8 +98,10 @@ class PathPlanning:
             player.pursue(Goal(outcome.at(0.0).pose, self._stamp, then=outcome))
 
     @property
-    def _is_expected(self) -> bool:
+    def _unexpected(self) -> str:
+        """Why the path is not expected any more, '' while it is."""
         try:
-            return self._pilot.player.expected == self._stamp
-        except Refused:
-            return False
+            player = self._pilot.player
+        except Refused as refusal:
+            return str(refusal)
+        return '' if player.expected == self._stamp else player.dropped

@@ -25,6 +25,11 @@ from manipulator.trajectory.planning import Planned, Planning
 from manipulator.trajectory.playing import Playing
 from manipulator.trajectory.worker import InPlace, Worker
 
+OVERTAKEN = 'a newer command came while the path was worked out'
+STOPPED = 'stopped before it began'
+TAKEN_OVER = 'the machine was taken over anew while the path was worked out'
+"""Why a path that was expected is not driven."""
+
 
 class Player:
     """Owns the commanded state of one machine from the moment that it is enabled."""
@@ -42,6 +47,7 @@ class Player:
         self._planning = Planning(machine, dt, worker or InPlace())
         self._next: Goal | Cycle | TimedPath | None = None
         self.expected: float | None = None
+        self.dropped = TAKEN_OVER
         self._wish: Wish | None = None
         self._jogging: Jogging | None = None
         self._measured: Pose | None = None
@@ -86,10 +92,10 @@ class Player:
         """
         self._refuse_while_jogged()
         self._planning.ask(goal)
-        self.expected = None
+        self._drop_path(OVERTAKEN)
 
     def expect(self, stamp: float) -> None:
-        """A path is being worked out; `expected` is its stamp until a newer command comes."""
+        """A path is being worked out; `expected` is its stamp until `dropped` says why not."""
         self._refuse_while_jogged()
         self.expected = stamp
         self._report('planning', stamp)
@@ -107,7 +113,8 @@ class Player:
         if wish is not None and self._wish is None and self.is_busy:
             self._drop()
             self._pace.is_stopping = not self._playing.is_hold
-        self.expected = self.expected if wish is None else None
+        if wish is not None:
+            self._drop_path(_taken_over_by(wish))
         self._wish = wish
 
     def note_measured(self, pose: Pose) -> None:
@@ -123,12 +130,12 @@ class Player:
 
     def stop(self) -> None:
         """Brakes along the way, then holds; what was to come is dropped."""
-        waiting = self._planning.goal
-        stamp = self._playing.stamp if waiting is None else waiting.stamp
+        stamp, reason = self._to_come
         self._drop()
-        self._wish = self.expected = None
+        self._drop_path(STOPPED)
+        self._wish = None
         if self._jogging is None and self._playing.is_hold:
-            self._report('stopped', stamp)
+            self._report('stopped', stamp, reason)
         else:
             self._pace.is_stopping = True
 
@@ -176,6 +183,19 @@ class Player:
         """The joints to stay near: those of the plan, where it says them."""
         plan = self._playing.plan
         return plan.joints_at(self._playing.time) if isinstance(plan, JointMove) else self.joints
+
+    @property
+    def _to_come(self) -> tuple[float, str]:
+        """The stamp of what a stop ends, and why it then never began, '' for what is driven."""
+        waiting = self._planning.goal
+        if self.expected is not None:
+            return self.expected, STOPPED
+        return (self._playing.stamp if waiting is None else waiting.stamp), ''
+
+    def _drop_path(self, reason: str) -> None:
+        """The path that was expected, if any, does not come."""
+        if self.expected is not None:
+            self.expected, self.dropped = None, reason
 
     def _drop(self) -> None:
         """What was to come does not come."""
@@ -264,4 +284,8 @@ class Player:
                 self._planning.ask(following)
         else:
             wish = self._wish if result == 'stopped' else None
-            self._report(result, stamp, f'{wish.source} took the machine over' if wish else '')
+            self._report(result, stamp, _taken_over_by(wish) if wish else '')
+
+
+def _taken_over_by(wish: Wish) -> str:
+    return f'{wish.source} took the machine over'

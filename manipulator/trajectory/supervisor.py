@@ -19,11 +19,15 @@ from manipulator.trajectory.jitter import Jitter
 from manipulator.trajectory.motion_status import MotionNews, MotionStatus
 from manipulator.trajectory.path_planning import PathGoal, PathPlanning
 from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.player import STOPPED
 from manipulator.trajectory.teleop import Teleop
 from manipulator.trajectory.worker import InPlace, Worker
 
 MEASUREMENT_DELAY = 0.06
 """Seconds from a measured pose to the moment that its correction moves the joints, by default."""
+
+OVERTAKING = 0.5
+"""Seconds by which a goal may overtake a path, which takes longer to send, or a path a goal."""
 
 Refuse = Callable[[ManipulatorError], object]
 """Is told why a command that was taken came to nothing before it began."""
@@ -59,8 +63,9 @@ class Supervisor:
         self.jitter = Jitter(dt)
         self.news = MotionNews()
         self._dt = dt
-        self._paths = PathPlanning(self.pilot, dt, worker or InPlace())
+        self._paths = PathPlanning(self.pilot, dt, worker or InPlace(), self.news)
         self._early = EarlyCommand()
+        self._newest = float('-inf'), float('-inf')
         self._state_at = self._pose_at = self._tick_at = float('-inf')
         self._pose: Pose | None = None
 
@@ -89,16 +94,12 @@ class Supervisor:
 
     def pursue(self, goal: Goal, refuse: Refuse, now: float, is_of_platform: bool = True) -> None:
         """A goal: the platform's pose in the base frame, or the pivot's in the work frame."""
-
-        def act() -> None:
-            frames = self.pilot.machine.frames
-            pose = frames.pivot(goal.pose) if is_of_platform else goal.pose
-            self.pilot.player.pursue(replace(goal, pose=pose))
-
-        self._early.take(act, refuse, now)
+        self._check_order(goal.stamp, now)
+        self._pursue(goal, refuse, now, is_of_platform)
 
     def follow(self, path: PathGoal, refuse: Refuse, now: float) -> None:
         """A path: it is worked out, then driven like a goal, unless a newer command comes."""
+        self._check_order(path.stamp, now)
         self._early.take(lambda: self._paths.begin(path), refuse, now)
 
     def home(self, stamp: float, now: float) -> None:
@@ -119,7 +120,7 @@ class Supervisor:
 
     def stop(self) -> None:
         """Brakes along the way, then holds; whoever jogs is not heard until he lets go."""
-        self._early.drop('stopped before it began')
+        self._early.drop(STOPPED)
         self.pilot.player.stop()
         self.teleop.stop()
 
@@ -154,9 +155,7 @@ class Supervisor:
         self.pilot.note_silence(now - self._pose_at)
         self.pilot.note_bridge_silence(now - self._state_at)
         self.teleop.drive(now)
-        overtaken = self._paths.step()
-        if overtaken is not None:
-            self.news.add(overtaken)
+        self._paths.step()
         self._early.poll(now)
         self._pose = self.pilot.step()
 
@@ -176,7 +175,27 @@ class Supervisor:
     def _go(self, pose: Pose, joints: Array, stamp: float, now: float) -> None:
         """To joints (n,) at a pose of the pivot in the work frame."""
         goal = Goal(pose, stamp, motion=Motion.ANY, joints=joints)
-        self.pursue(goal, lambda error: self.refuse(stamp, error), now, is_of_platform=False)
+        self._pursue(goal, lambda error: self.refuse(stamp, error), now, is_of_platform=False)
+
+    def _pursue(self, goal: Goal, refuse: Refuse, now: float, is_of_platform: bool) -> None:
+        def act() -> None:
+            frames = self.pilot.machine.frames
+            pose = frames.pivot(goal.pose) if is_of_platform else goal.pose
+            self.pilot.player.pursue(replace(goal, pose=pose))
+
+        self._early.take(act, refuse, now)
+
+    def _check_order(self, stamp: float, now: float) -> None:
+        """Refused for a goal or a path that one published later has overtaken on its topic.
+
+        Stamps that are farther apart, or come so, may be those of two clocks.
+        """
+        newest, received = self._newest
+        ahead = newest - stamp
+        if stamp and 0.0 < ahead < OVERTAKING and now - received < OVERTAKING:
+            raise Refused(f'stamped {ahead:.3f} s before the last goal or path: ignored')
+        if stamp:
+            self._newest = stamp, now
 
     def _is_newest(self, stamp: float) -> bool:
         try:

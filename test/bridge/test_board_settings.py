@@ -1,6 +1,6 @@
 from dataclasses import replace
 
-from bridge.board_settings import BoardSettings
+from bridge.fake.board_settings import BoardSettings
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 

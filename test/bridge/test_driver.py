@@ -5,10 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from bridge.board_thread import FakeMachine
-from bridge.driver import ANSWER_WITHIN, BoardDriver
+from bridge.driver import BoardDriver
+from bridge.fake.board_thread import FakeMachine
 from bridge.framing import FrameReader
-from bridge.messages import Arm, Clear, Setpoint, Stop
+from bridge.protocol import Arm, Clear, Setpoint, Stop
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from manipulator.errors import InvalidInput, Refused
@@ -204,13 +204,20 @@ def test_a_refusal_is_told_with_what_is_wrong_with_the_board(rig):
     assert rig.driver.answer(asked) == (False, reason)
 
 
-def test_what_was_said_to_have_failed_is_not_sent_later_but_for_a_stop(enabled):
-    late = f'no answer within {ANSWER_WITHIN:g} s'
-    off, stop = enabled.driver.enable(False), enabled.driver.stop()
-    assert enabled.driver.answer(off) == enabled.driver.answer(stop) == (False, late)
-    enabled.frames.clear()
-    enabled.run(0.1)
-    assert enabled.frames == [Stop()]
+@pytest.mark.parametrize('is_mute', [True, False])
+def test_every_question_is_answered_within_a_second(enabled, is_mute):
+    enabled.is_mute = is_mute
+    asked = [enabled.driver.enable(False)]
+    enabled.run(0.02)
+    asked += [enabled.driver.clear_fault(), enabled.driver.stop(), enabled.driver.stop()]
+    enabled.run(0.9)
+    assert all(question.future.done() for question in asked)
+    assert [enabled.driver.answer(question)[0] for question in asked] == [
+        not is_mute,
+        True,  # there is nothing to clear
+        not is_mute,
+        not is_mute,
+    ]
 
 
 def test_a_gripper_stays_until_it_is_asked_and_forgets_that_with_the_enable():

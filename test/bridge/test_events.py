@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import pytest
 
 from bridge.events import Disconnected, StateReceived, without_passed_states
-from bridge.messages import Mode
+from bridge.protocol import Mode
 
 
 def told(*modes):

@@ -6,34 +6,32 @@ from hypothesis import strategies as st
 
 from bridge import cobs
 from bridge.frames import MAX_WIRE_BYTES, Frame, Unreadable, checksum, decode, encode
-from bridge.messages import (
+from bridge.protocol import (
     NO_JOINT,
     Ack,
     Arm,
     Clear,
+    CycleAxis,
     Disarm,
     Fault,
     FaultCode,
+    Finish,
     Flag,
     Hello,
     Joint,
     Known,
     Mode,
+    Play,
+    Program,
     ResetCause,
     Result,
     Setpoint,
     State,
     Stop,
-    is_newer,
-)
-from bridge.program_messages import (
-    CycleAxis,
-    Finish,
-    Play,
-    Program,
     TableBegin,
     TableEnd,
     TableRow,
+    is_newer,
 )
 from manipulator.errors import InvalidInput, ProtocolError
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from bridge import cobs
 from bridge.frames import checksum, encode
 from bridge.framing import FrameReader
-from bridge.messages import Disarm, Setpoint, Stop
+from bridge.protocol import Disarm, Setpoint, Stop
 
 FRAMES = [encode(Setpoint(200, (3000 + k,) * 6), k) for k in range(20)]
 

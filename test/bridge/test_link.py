@@ -4,12 +4,12 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from bridge.board import Board
-from bridge.board_settings import BoardSettings
 from bridge.events import Acknowledged, Connected, Disconnected, StateReceived
+from bridge.fake.board import Board
+from bridge.fake.board_settings import BoardSettings
 from bridge.framing import FrameReader
 from bridge.link import LOOK_AGAIN_AFTER, SPACING, TICK, Link, Ticket
-from bridge.messages import Arm, Clear, Disarm, Mode, ResetCause, Setpoint, Stop
+from bridge.protocol import Arm, Clear, Disarm, Mode, ResetCause, Setpoint, Stop
 from bridge.session import Session
 from manipulator.errors import Refused
 
@@ -254,3 +254,25 @@ def test_no_more_is_read_than_a_line_carries():
     assert link.is_listening(0.1)
     assert link.rest(0.0) == TICK
     assert link.rest(0.08) == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize('seconds', [0.6, 2.0, 10.0])
+def test_hellos_that_piled_up_while_nobody_listened_are_no_restart(seconds):
+    rig = Rig()
+    rig.run(3.0)
+    rig.pass_time(seconds)
+    rig.run(3.0)
+    assert len(rig.logged(Connected)) == 1
+    assert rig.logged(Disconnected) == []
+
+
+@pytest.mark.parametrize('seconds', [0.6, 2.0, 10.0])
+def test_a_restart_while_nobody_listened_is_noticed(seconds):
+    rig = Rig()
+    rig.run(1.5)
+    rig.pass_time(seconds / 2)
+    rig.board.reset(ResetCause.WATCHDOG)
+    rig.pass_time(seconds / 2)
+    rig.run(1.0)
+    assert 'has restarted' in rig.logged(Disconnected)[0].reason
+    assert len(rig.logged(Connected)) == 2

@@ -13,8 +13,8 @@ from bridge.events import (
     Phase,
     StateReceived,
 )
-from bridge.link_monitor import LinkMonitor
-from bridge.messages import (
+from bridge.link_monitor import Latencies, LinkMonitor, percentiles_ms
+from bridge.protocol import (
     Arm,
     Fault,
     FaultCode,
@@ -138,3 +138,19 @@ def test_a_refused_frame_names_the_joint_and_its_range(monitor):
     monitor.note(FaultReported(Fault(FaultCode.OUT_OF_RANGE, 77, 4901)), 0.0)
     assert 'channel 77' in monitor.last_refusal
     assert monitor.refusals == 2
+
+
+def test_percentiles_are_milliseconds_under_telling_names():
+    report = percentiles_ms('trip', [k / 1000 for k in range(100)])
+    assert report == {'trip_p50_ms': 50.0, 'trip_p99_ms': 99.0}
+
+
+def test_nothing_measured_is_nothing_reported():
+    assert Latencies().report('trip') == {}
+
+
+def test_only_the_newest_count_and_negative_ones_are_zero():
+    latencies = Latencies(keep=3)
+    for seconds in (9.0, 0.001, -1.0, 0.002):
+        latencies.add(seconds)
+    assert latencies.report('trip') == {'trip_p50_ms': 1.0, 'trip_p99_ms': 2.0}

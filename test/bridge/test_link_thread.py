@@ -7,13 +7,12 @@ import time
 
 import pytest
 
-from bridge.board_thread import BoardThread, FakeMachine
 from bridge.events import Connected, Disconnected, StateReceived
-from bridge.fake_line import FakeLine
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.fake_line import FakeLine
 from bridge.link import Link, Ticket
-from bridge.link_thread import LinkThread
-from bridge.messages import Arm, Clear, Mode, ResetCause, Setpoint, Stop
-from bridge.serial_port import SerialPort
+from bridge.link_thread import LinkThread, SerialPort
+from bridge.protocol import Arm, Clear, Mode, ResetCause, Setpoint, Stop
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
 from hexarm import machines
@@ -61,11 +60,12 @@ class Rig:
 
     def arm(self):
         self.wait_for_event(Connected)
-        self.link.request(Arm(PARK)).result(2.0)
+        self.thread.request(Arm(PARK)).result(2.0)
         self.wait_for_mode(Mode.ARMED)
 
     def put(self, counts):
-        self.link.put_setpoint(Ticket(Setpoint(200, counts), time.monotonic()))
+        ticket = Ticket(Setpoint(200, counts), time.monotonic())
+        self.thread.post(lambda: self.link.put_setpoint(ticket))
 
     def close(self):
         self.thread.close()
@@ -86,7 +86,7 @@ def no_board(tmp_path):
     link = Link(Session(6), lambda event, now: events.append(event))
     thread = LinkThread(lambda: SerialPort(str(tmp_path / 'no'), 250_000), link)
     thread.start()
-    yield link, events
+    yield thread, events
     thread.close()
 
 
@@ -100,12 +100,12 @@ def test_setpoints_reach_the_servos(rig):
 
 def test_stop_is_answered_and_further_stops_too(rig):
     rig.arm()
-    futures = [rig.link.request(Stop()) for _ in range(5)]
+    futures = [rig.thread.request(Stop()) for _ in range(5)]
     assert [future.result(2.0) for future in futures] == [None] * 5
     rig.wait_for_mode(Mode.STOPPED)
     with pytest.raises(Refused, match='clear the stop first'):
-        rig.link.request(Arm(PARK)).result(2.0)
-    rig.link.request(Clear()).result(2.0)
+        rig.thread.request(Arm(PARK)).result(2.0)
+    rig.thread.request(Clear()).result(2.0)
 
 
 def test_an_unplugged_board_is_lost_and_found_again_disarmed(rig):
@@ -115,7 +115,7 @@ def test_an_unplugged_board_is_lost_and_found_again_disarmed(rig):
     assert 'has vanished' in rig.events[-1].reason
     assert not rig.path.exists()
     with pytest.raises(Refused, match='no board'):
-        rig.link.request(Arm(PARK)).result(2.0)
+        rig.thread.request(Arm(PARK)).result(2.0)
     line = FakeLine(rig.path)
     rig.board.do(lambda: rig.board.plug(line))
     rig.wait_for_event(Connected, 2)
@@ -181,20 +181,10 @@ def test_a_board_is_not_lost_because_this_thread_was_held_up(rig):
     assert not any(isinstance(event, Disconnected) for event in rig.events)
 
 
-def test_nobody_waits_for_a_thread_that_has_ended(tmp_path):
-    link = Link(Session(6), lambda event, now: None)
-    thread = LinkThread(lambda: SerialPort(str(tmp_path / 'no'), 250_000), link)
-    thread.start()
-    thread.close()
-    with pytest.raises(Refused, match='the thread of the serial link does not run'):
-        link.request(Stop()).result(2.0)
-    assert link.session.is_stop_wanted
-
-
 def test_a_missing_port_is_said_and_looked_for(no_board):
-    link, events = no_board
+    thread, events = no_board
     with pytest.raises(Refused, match='no board to talk to: no port'):
-        link.request(Stop()).result(2.0)
+        thread.request(Stop()).result(2.0)
     deadline = time.monotonic() + 5.0
     while len(events) < 3 and time.monotonic() < deadline:
         time.sleep(0.01)
@@ -220,7 +210,7 @@ def test_a_device_that_sends_noise_without_end_stalls_nothing(tmp_path):
         while link.session.reader.bad_frames < 1000 and time.monotonic() < deadline:
             time.sleep(0.01)
         with pytest.raises(Refused, match='waiting for HELLO'):
-            link.request(Stop()).result(2.0)
+            thread.request(Stop()).result(2.0)
         assert link.session.reader.bad_frames >= 1000
     finally:
         is_over.set()

@@ -11,14 +11,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bridge.board import Board
-from bridge.board_modes import BoardSettings
 from bridge.events import StateReceived
+from bridge.fake.board import Board
+from bridge.fake.board_modes import BoardSettings
 from bridge.framing import FrameReader
 from bridge.link import Link
-from bridge.link_thread import LinkThread
-from bridge.messages import Mode, Stop
-from bridge.serial_port import SerialPort
+from bridge.link_thread import LinkThread, SerialPort
+from bridge.protocol import Mode, Stop
 from bridge.session import Phase, Session
 from manipulator.errors import Refused
 
@@ -114,7 +113,7 @@ def test_endless_noise_takes_little_of_the_processor_and_requests_are_heard(nois
         elapsed = time.monotonic() - begin
         cost = time.process_time() - total - (time.thread_time() - used)
         with pytest.raises(Refused):
-            link.request(Stop()).result(2.0)
+            thread.request(Stop()).result(2.0)
     finally:
         thread.close()
         os.close(ours)

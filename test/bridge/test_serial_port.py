@@ -2,8 +2,8 @@ import os
 
 import pytest
 
-from bridge.fake_line import FakeLine
-from bridge.serial_port import SerialPort
+from bridge.fake.fake_line import FakeLine
+from bridge.link_thread import SerialPort
 from manipulator.errors import LinkError
 
 

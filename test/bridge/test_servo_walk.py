@@ -5,8 +5,7 @@ import random
 import pytest
 
 from bridge.servo_config import BoardConfig
-from bridge.servo_stages import Stage
-from bridge.servo_walk import SPEED_US_S, STEPS_US, ServoWalk
+from bridge.servo_walk import SPEED_US_S, STEPS_US, ServoWalk, Stage
 from hexarm import machines
 
 SERVOS = BoardConfig.from_machine(machines.read('robocake')).servos.joints

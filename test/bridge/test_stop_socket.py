@@ -1,4 +1,4 @@
-import queue
+import select
 import socket
 
 import pytest
@@ -6,59 +6,62 @@ import pytest
 from bridge.stop_socket import StopSocket, domain_here, send_stop, stop_address
 
 BRIDGE = '/test_stop_socket/serial_bridge'
+ADDRESS = stop_address(BRIDGE, 7)
 
 
 @pytest.fixture
 def listening():
-    """Starts what listens at an address; a queue of what it heard."""
-    started = []
+    """Opens what receives at an address, and the list of what it received."""
+    opened = []
 
     def start(address):
-        heard = queue.Queue()
-        listener = StopSocket(address, lambda: heard.put('STOP'), heard.put)
-        started.append(listener)
-        listener.start()
-        return heard
+        received = []
+        opened.append(StopSocket(address, lambda: received.append('STOP')))
+        return opened[-1], received
 
     yield start
-    for listener in started:
-        listener.close()
+    for stops in opened:
+        stops.close()
 
 
-def await_listener(address):
-    while not send_stop(address):
-        pass
+def receive_all(stops):
+    while select.select([stops], [], [], 0)[0]:
+        stops.receive()
 
 
-def test_every_stop_is_heard_and_nothing_else(listening):
-    address = stop_address(BRIDGE, 7)
-    heard = listening(address)
-    await_listener(address)
+def test_every_stop_is_received_and_nothing_else(listening):
+    stops, received = listening(ADDRESS)
+    assert send_stop(ADDRESS)
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as stranger:
         for word in (b'', b'GO', b'STOPS' * 1000):
-            stranger.sendto(word, address)
-    assert send_stop(address)
-    assert [heard.get(timeout=10.0) for _ in range(3)] == ['STOP'] * 3  # b'STOPS…' begins with it
-    assert heard.empty()
+            stranger.sendto(word, ADDRESS)
+    assert send_stop(ADDRESS)
+    receive_all(stops)
+    assert received == ['STOP'] * 3  # b'STOPS…' begins with it
+
+
+def test_nothing_to_receive_is_no_error(listening):
+    stops, received = listening(ADDRESS)
+    stops.receive()
+    assert received == []
 
 
 def test_where_no_bridge_listens_it_is_known(listening):
-    address = stop_address(BRIDGE, 7)
-    heard = listening(address)
-    await_listener(address)
-    heard.get(timeout=10.0)
+    stops, received = listening(ADDRESS)
     assert not send_stop(stop_address(BRIDGE, 8))
     assert not send_stop(stop_address('/another/serial_bridge', 7))
     assert not send_stop(stop_address('/' + 'x' * 200, 7))
-    assert heard.empty()
+    receive_all(stops)
+    assert received == []
 
 
-def test_a_bridge_whose_address_is_taken_says_so_and_leaves_it_to_the_other(listening):
-    address = stop_address(BRIDGE, 7)
-    first = listening(address)
-    await_listener(address)
-    assert 'not heard but over ROS' in listening(address).get(timeout=10.0)
-    assert first.get(timeout=10.0) == 'STOP'
+def test_a_bridge_whose_address_is_taken_reports_it_and_leaves_it_to_the_other(listening):
+    first, received = listening(ADDRESS)
+    second, _ = listening(ADDRESS)
+    assert (first.trouble, 'over ROS only' in second.trouble) == ('', True)
+    assert send_stop(ADDRESS)
+    receive_all(first)
+    assert received == ['STOP']
 
 
 @pytest.mark.parametrize(('words', 'domain'), [('', 0), ('42', 42), ('x', 0), ('-1', 0)])

@@ -5,18 +5,27 @@ import dataclasses
 import numpy as np
 import pytest
 
-from bridge.board import Board
-from bridge.board_courses import table_crc
-from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
-from bridge.frames import encode
+from bridge.fake.board import Board
+from bridge.fake.board_settings import BoardSettings
+from bridge.frames import encode, table_crc
 from bridge.framing import FrameReader
-from bridge.messages import Ack, Arm, Fault, Hello, ResetCause, Result, State
-from bridge.program_messages import TableBegin, TableEnd, TableRow
+from bridge.protocol import (
+    Ack,
+    Arm,
+    Fault,
+    Hello,
+    ResetCause,
+    Result,
+    State,
+    TableBegin,
+    TableEnd,
+    TableRow,
+)
 from bridge.servo_config import BoardConfig
 from firmware.simulator.board import SimulatedBoard
 from hexarm import machines
-from hexarm.board_solver import board_solver
+from hexarm.board.solver import board_solver
 
 ROBOCAKE = BoardConfig.from_machine(machines.read('robocake'))
 RANGE = (1100, 4900)

@@ -6,11 +6,18 @@ import struct
 
 import pytest
 
-from bridge.messages import Ack, Arm, Clear, Disarm, Fault, Setpoint, State, Stop
-from bridge.program_messages import (
+from bridge.protocol import (
+    Ack,
+    Arm,
+    Clear,
     CycleAxis,
+    Disarm,
+    Fault,
     Finish,
     Play,
+    Setpoint,
+    State,
+    Stop,
     TableBegin,
     TableEnd,
     TableRow,

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from bridge.messages import Fault, FaultCode, Mode, Result, State
-from bridge.program_messages import CycleAxis, Finish, Play, Program
+from bridge.protocol import CycleAxis, Fault, FaultCode, Finish, Mode, Play, Program, Result, State
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
 HOME = (3000,) * 6

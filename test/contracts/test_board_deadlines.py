@@ -2,7 +2,7 @@
 
 import pytest
 
-from bridge.messages import Arm, Clear, Flag, Known, Mode, Setpoint, Stop
+from bridge.protocol import Arm, Clear, Flag, Known, Mode, Setpoint, Stop
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
 MOVED = tuple(count + 200 for count in PARK)

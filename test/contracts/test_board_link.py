@@ -8,7 +8,7 @@ import pytest
 from bridge import cobs
 from bridge.frames import checksum, encode
 from bridge.framing import FrameReader
-from bridge.messages import (
+from bridge.protocol import (
     NO_JOINT,
     Ack,
     Arm,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bridge.messages import Arm, Disarm, Fault, FaultCode, Flag, Mode, Result, Setpoint, State
+from bridge.protocol import Arm, Disarm, Fault, FaultCode, Flag, Mode, Result, Setpoint, State
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
 MOVED = tuple(count + 200 for count in PARK)

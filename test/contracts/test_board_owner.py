@@ -2,8 +2,20 @@
 
 import pytest
 
-from bridge.messages import Arm, Clear, Disarm, Mode, Result, Setpoint, State, Stop
-from bridge.program_messages import CycleAxis, Finish, Play, Program
+from bridge.protocol import (
+    Arm,
+    Clear,
+    CycleAxis,
+    Disarm,
+    Finish,
+    Mode,
+    Play,
+    Program,
+    Result,
+    Setpoint,
+    State,
+    Stop,
+)
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
 START = tuple(count + 50 for count in PARK)

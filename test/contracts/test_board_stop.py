@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bridge.messages import (
+from bridge.protocol import (
     NO_JOINT,
     Arm,
     Clear,

@@ -5,9 +5,22 @@ import math
 import numpy as np
 import pytest
 
-from bridge.board_courses import table_crc
-from bridge.messages import Arm, Disarm, FaultCode, Mode, Result, Setpoint, Stop
-from bridge.program_messages import Finish, Play, Program, TableBegin, TableEnd, TableRow
+from bridge.frames import table_crc
+from bridge.protocol import (
+    Arm,
+    Disarm,
+    FaultCode,
+    Finish,
+    Mode,
+    Play,
+    Program,
+    Result,
+    Setpoint,
+    Stop,
+    TableBegin,
+    TableEnd,
+    TableRow,
+)
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
 MOVED = tuple(count + 20 for count in PARK)

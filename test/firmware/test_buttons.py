@@ -1,6 +1,6 @@
 """The stop button: a contact that opens, so that a broken wire stops too."""
 
-from bridge.messages import Arm, Clear, Mode, Result, Setpoint
+from bridge.protocol import Arm, Clear, Mode, Result, Setpoint
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
 FAR = (4800, 1200, 4800, 1200, 4800, 1200)

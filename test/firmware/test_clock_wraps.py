@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bridge.messages import Arm, Disarm, Fault, FaultCode, Hello, Mode, Setpoint, State
+from bridge.protocol import Arm, Disarm, Fault, FaultCode, Hello, Mode, Setpoint, State
 from firmware.simulator.chip import CLOCK_HZ
 from firmware.simulator.uptime import MS_WRAP, PERIODS_WRAP, US_WRAP, put_forward
 

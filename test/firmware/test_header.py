@@ -5,12 +5,13 @@ import re
 
 import pytest
 
-from bridge.board_settings import BoardSettings
 from bridge.calibration import Calibration
+from bridge.fake.board_settings import BoardSettings
 from bridge.servo_config import BoardConfig
-from hexarm import firmware_build, machines
-from hexarm.firmware_header import header, header_of
-from hexarm.main import main
+from hexarm import machines
+from hexarm.board import build as firmware_build
+from hexarm.board.header import header, header_of
+from hexarm.cli.main import main
 from manipulator.errors import ConfigError
 
 

@@ -8,8 +8,9 @@ import pytest
 from bridge.calibration import Calibration
 from bridge.servo_config import BoardConfig
 from hexapod_control.workspace import sample
-from hexarm import firmware_build, machines
-from hexarm.firmware_header import header_of
+from hexarm import machines
+from hexarm.board import build as firmware_build
+from hexarm.board.header import header_of
 from manipulator import rotation
 from manipulator.pose import Pose
 

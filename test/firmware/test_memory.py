@@ -4,14 +4,14 @@ import dataclasses
 import random
 
 from bridge.calibration import Calibration
-from bridge.messages import Arm, Mode, Setpoint
-from bridge.program_messages import CycleAxis, Play, Program
+from bridge.protocol import Arm, CycleAxis, Mode, Play, Program, Setpoint
 from bridge.servo_config import BoardConfig
 from firmware.simulator.fuzz import mutants
 from firmware.simulator.host import SETTINGS, Host
-from hexarm import firmware_build, machines
-from hexarm.board_solver import board_solver
-from hexarm.firmware_header import header_of
+from hexarm import machines
+from hexarm.board import build as firmware_build
+from hexarm.board.header import header_of
+from hexarm.board.solver import board_solver
 
 RAM_START, RAM_END = 0x200, 0x21FF
 PAINT = 0xC5

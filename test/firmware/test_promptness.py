@@ -5,10 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from bridge.board_courses import table_crc
 from bridge.calibration import Calibration
-from bridge.messages import Ack, Arm, Mode, Result
-from bridge.program_messages import Play, Program, TableBegin, TableEnd, TableRow
+from bridge.frames import table_crc
+from bridge.protocol import Ack, Arm, Mode, Play, Program, Result, TableBegin, TableEnd, TableRow
 from bridge.servo_config import BoardConfig
 from firmware.simulator.host import PARK, Host
 from hexarm import machines

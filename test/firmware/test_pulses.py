@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bridge.frames import encode
-from bridge.messages import Disarm, Setpoint, Stop
+from bridge.protocol import Disarm, Setpoint, Stop
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
 COUNT = 8

@@ -5,9 +5,9 @@ import ctypes
 import numpy as np
 import pytest
 
-from arm_control.paper import PaperArm, projection_rates, projections
-from hexarm import firmware_build
-from hexarm.firmware_header import header_of
+from hexarm.board import build as firmware_build
+from hexarm.board.header import header_of
+from hexarm.papers.paper_arm import PaperArm, projection_rates, projections
 
 ARM = PaperArm(0.3, 0.4, 0.35)
 FLOATS = ctypes.POINTER(ctypes.c_float)

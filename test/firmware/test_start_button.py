@@ -6,17 +6,26 @@ import math
 import numpy as np
 import pytest
 
-from bridge.board_courses import table_crc
 from bridge.calibration import Calibration
-from bridge.count_table import CountTable
-from bridge.messages import Arm, Mode, Result, Setpoint, State
-from bridge.program_messages import CycleAxis, TableBegin, TableEnd, TableRow
+from bridge.frames import table_crc
+from bridge.programs import CountTable
+from bridge.protocol import (
+    Arm,
+    CycleAxis,
+    Mode,
+    Result,
+    Setpoint,
+    State,
+    TableBegin,
+    TableEnd,
+    TableRow,
+)
 from bridge.servo_config import BoardConfig
 from firmware.simulator.host import SETTINGS, Host
 from hexarm import machines
-from hexarm.board_solver import board_solver
-from hexarm.firmware_table import flash_header, read_table
-from hexarm.main import main
+from hexarm.board.solver import board_solver
+from hexarm.board.table import flash_header, read_table
+from hexarm.cli.main import main
 from manipulator.errors import ConfigError
 
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)

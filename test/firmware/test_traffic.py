@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from bridge.messages import Flag, Hello, Mode, Setpoint, State
+from bridge.protocol import Flag, Hello, Mode, Setpoint, State
 from firmware.simulator.chip import CLOCK_HZ
 from firmware.simulator.fuzz import fuzz, mutants
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from bridge.messages import Hello, Known, Mode, ResetCause
+from bridge.protocol import Hello, Known, Mode, ResetCause
 from firmware.simulator.chip import CLOCK_HZ
 
 

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bridge import cobs, messages
+from bridge import cobs, protocol
 from bridge.frames import MAX_WIRE_BYTES, checksum
-from bridge.program_messages import Program
-from hexarm import firmware_build
-from hexarm.firmware_header import header_of
+from bridge.protocol import Program
+from hexarm.board import build as firmware_build
+from hexarm.board.header import header_of
 from manipulator.errors import ProtocolError
 
 GOLDEN = Path(__file__).parents[1] / 'bridge' / 'golden_frames.txt'
@@ -90,11 +90,11 @@ def test_every_single_bit_error_is_noticed(wire):
 
 
 ENUMS = {
-    'MODE': messages.Mode,
-    'KNOWN': messages.Known,
-    'FLAG': messages.Flag,
-    'RESULT': messages.Result,
-    'FAULT': messages.FaultCode,
+    'MODE': protocol.Mode,
+    'KNOWN': protocol.Known,
+    'FLAG': protocol.Flag,
+    'RESULT': protocol.Result,
+    'FAULT': protocol.FaultCode,
     'PROGRAM': Program,
 }
 
@@ -116,4 +116,4 @@ def test_protocol_h_says_what_the_messages_say():
         'MAX_DEADLINE_MS',
     ):
         (value,) = re.findall(rf'#define {name} (\d+)', text)
-        assert getattr(messages, name) == int(value)
+        assert getattr(protocol, name) == int(value)

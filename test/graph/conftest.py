@@ -10,8 +10,8 @@ import pytest
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 from hexarm import panel_process
+from hexarm.cli.up import check_alive
 from hexarm.graph import Graph, machine_graph
-from hexarm.up import check_alive
 from patient_user import PatientUser
 
 MARK = f'HEXARM_TEST_RUN={os.getpid()}'
@@ -88,7 +88,7 @@ def robocake_with_deadline(ms, tmp_path_factory):
 def hexapod_graph(patient_robocake, tmp_path_factory):
     """The hexapod's five processes with the fake board; not enabled."""
     link = tmp_path_factory.mktemp('port') / 'board'
-    with Graph(machine_graph('hexapod', patient_robocake, 'fake', link), 'hexapod') as graph:
+    with Graph(machine_graph(patient_robocake, 'fake', link), 'hexapod') as graph:
         yield graph
 
 

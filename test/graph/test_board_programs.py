@@ -8,7 +8,7 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from hexarm import firmware_build
+from hexarm.board import build as firmware_build
 from hexarm.graph import Executable, Graph
 from manipulator.errors import Refused
 from manipulator.nodes.qos import COMMAND, LATCHED
@@ -57,14 +57,14 @@ def swing(rows=20, step_ms=100):
 @pytest.fixture(scope='module', params=['fake', 'chip'])
 def rig(request, tmp_path_factory):
     link = tmp_path_factory.mktemp('port') / 'board'
-    board = Executable('bridge', 'fake_hardware', {'machine': 'robocake', 'link': str(link)})
+    board = Executable('fake_hardware', {'machine': 'robocake', 'link': str(link)})
     if request.param == 'chip':
         request.getfixturevalue('chip_tools')
         command = firmware_build.chip_process('robocake', link)
-        board = Executable('firmware', 'chip', command=command)
+        board = Executable('chip', command=command)
     parameters = {'machine': 'robocake', 'port': str(link), 'board_cycle.amplitude': AMPLITUDE}
     parameters['board_cycle.frequency'] = '[1.0,1.0,1.0,1.0,1.0,1.0]'
-    bridge = Executable('bridge', 'serial_bridge', parameters, needs=link)
+    bridge = Executable('serial_bridge', parameters, needs=link)
     with Graph([board, bridge], SPACE), Rig() as rig:
         rig.wait_for_state('disarmed')
         yield rig

@@ -10,8 +10,8 @@ import pytest
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
 
+from hexarm.cli.up import check_alive
 from hexarm.graph import Graph, machine_graph
-from hexarm.up import check_alive
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
 from patient_user import PatientUser
 
@@ -73,7 +73,7 @@ def clock(tmp_path, monkeypatch):
 
 @pytest.fixture
 def user(clock, patient_robocake, tmp_path, monkeypatch):
-    nodes = machine_graph('hexapod', patient_robocake, 'fake', tmp_path / 'board')
+    nodes = machine_graph(patient_robocake, 'fake', tmp_path / 'board')
     with Graph(nodes, SPACE) as graph:
         monkeypatch.delenv('LD_PRELOAD')
         with User(lambda: check_alive(graph)) as user:

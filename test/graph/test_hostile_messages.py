@@ -22,7 +22,6 @@ pytestmark = pytest.mark.graph
 
 NODES = (
     'trajectory',
-    'path_listener',
     'ik',
     'pose',
     'serial_bridge',

@@ -8,8 +8,8 @@ from rcl_interfaces.srv import ListParameters
 pytestmark = pytest.mark.graph
 
 NODES = ('trajectory', 'ik', 'pose', 'serial_bridge', 'fake_hardware')
-THREADS = ('serial_bridge_stop', 'serial_bridge_programs')
-"""Nodes in the process of another one, without parameters and diagnostics."""
+THREADS = ('serial_bridge_stop',)
+"""Nodes beside another one, without parameters and diagnostics."""
 ROS_PARAMETERS = ('use_sim_time', 'start_type_description_service')
 
 

@@ -78,8 +78,8 @@ def monitor(request):
 def nodes(tmp_path_factory):
     port = str(tmp_path_factory.mktemp('line') / 'board')
     nodes = [
-        Executable('bridge', 'fake_hardware', {'link': port}),
-        Executable('bridge', 'serial_bridge', {'port': port}),
+        Executable('fake_hardware', {'link': port}),
+        Executable('serial_bridge', {'port': port}),
     ]
     with Graph(nodes, SPACE) as graph:
         yield graph
@@ -97,7 +97,7 @@ def test_it_shows_the_link_and_leaves_the_terminal_as_it_was(nodes, monitor, key
 def test_without_rich_it_says_how_to_get_it(request):
     without = (
         'import sys; sys.modules["rich"] = None\n'
-        'from hexarm.main import main; sys.exit(main(["monitor"]))'
+        'from hexarm.cli.main import main; sys.exit(main(["monitor"]))'
     )
     done = subprocess.run(
         [sys.executable, '-c', without],

@@ -5,10 +5,10 @@ import re
 import pytest
 
 from hexarm import client
+from hexarm.cli.up import check_alive
 from hexarm.client import Client
 from hexarm.graph import Graph, machine_graph
 from hexarm.machines import find
-from hexarm.up import check_alive
 from manipulator.errors import Refused
 
 pytestmark = pytest.mark.graph
@@ -24,7 +24,7 @@ def module_user(tmp_path_factory):
     slow = re.sub('arm_interval_ms: .*', 'arm_interval_ms: 1000', find('robocake').read_text())
     machine = folder / 'slow.yaml'
     machine.write_text(slow)
-    nodes = machine_graph('hexapod', str(machine), 'fake', folder / 'board')
+    nodes = machine_graph(str(machine), 'fake', folder / 'board')
     with Graph(nodes, SPACE) as graph, Client(SPACE, lambda: check_alive(graph)) as user:
         yield user
 

@@ -8,13 +8,12 @@ from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from bridge.board_thread import BoardThread, FakeMachine
 from bridge.calibration import Calibration
-from bridge.messages import Stop
-from bridge.program_messages import CycleAxis, Play, TableRow
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.protocol import CycleAxis, Play, Stop, TableRow
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.board_solver import board_solver
+from hexarm.board.solver import board_solver
 from hexarm.graph import Executable, Graph
 from hexarm.tapped_line import Tap, TappedLine
 from manipulator.nodes.qos import EVERY_WORD, LATCHED
@@ -80,7 +79,7 @@ def user(tap, tmp_path_factory):
     board.start()
     parameters = {'machine': 'robocake', 'port': str(path)}
     try:
-        with Graph([Executable('bridge', 'serial_bridge', parameters)], SPACE), User() as user:
+        with Graph([Executable('serial_bridge', parameters)], SPACE), User() as user:
             yield user
     finally:
         board.close()
@@ -149,10 +148,10 @@ def test_a_program_does_not_spoil_an_upload(calm, tap):
     )
 
 
-def test_a_table_of_megabytes_is_not_even_decoded(calm):
-    rows = [JointTrajectoryPoint(positions=[2.1] * 6)] * 20_000
+def test_a_table_beyond_what_a_board_holds_is_not_even_decoded(calm):
+    rows = [JointTrajectoryPoint(positions=[2.1] * 6)] * 2_000
     calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
-    calm.wait('a refusal', lambda: any('at most 1000000' in text for text in calm.said))
+    calm.wait('a refusal', lambda: any('at most 100000' in text for text in calm.said))
 
 
 def test_bytes_that_are_no_table_are_refused(calm):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from std_msgs.msg import Bool
 
-from bridge.messages import Setpoint, Stop
+from bridge.protocol import Setpoint, Stop
 from hexarm.rig import Rig
 from manipulator.nodes.qos import COMMAND
 

@@ -55,7 +55,7 @@ def pose_node():
     started = []
 
     def start(space, modules=None, **parameters):
-        command = [sys.executable, '-m', 'hexapod_control', 'pose', '--ros-args']
+        command = [sys.executable, '-m', 'hexarm.nodes', 'pose', '--ros-args']
         command += ['-r', f'__ns:=/{space}']
         for name, value in parameters.items():
             command += ['-p', f'{name}:={value}']

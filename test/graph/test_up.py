@@ -38,8 +38,8 @@ def node_of(words, processes_left):
 def test_up_enables_runs_and_parks_on_ctrl_c(hexarm, processes_left):
     process = hexarm('up', 'hexapod')
     said = read_until(process, 'is up on fake and enabled')
-    assert said.count(f'machine robocake: {ROBOCAKE} (rotary hexapod; RoboCake, crank') == 5
-    assert len(processes_left()) == 7  # up, five nodes, the trajectory node's path_listener
+    assert said.count(f'machine robocake: {ROBOCAKE} (rotary hexapod; RoboCake, crank') == 2
+    assert len(processes_left()) == 2  # up, the board
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()
     assert process.wait(60) == 0
@@ -61,9 +61,11 @@ def test_up_with_a_panel_tells_where_its_page_is(hexarm, processes_left):
     wait_until_none_is_left(processes_left)
 
 
-@pytest.mark.parametrize('node', ['trajectory', 'serial_bridge'])
-def test_up_says_which_node_died_stops_the_rest_and_fails(hexarm, processes_left, node):
-    process = hexarm('up', 'hexapod')
+@pytest.mark.parametrize(
+    ('node', 'words'), [('fake_hardware', ()), ('trajectory', ('--separate',))]
+)
+def test_up_says_which_process_died_stops_the_rest_and_fails(hexarm, processes_left, node, words):
+    process = hexarm('up', 'robocake', *words)
     read_until(process, 'is up on fake and enabled')
     os.kill(node_of(node, processes_left), signal.SIGKILL)
     rest = process.stdout.read()

@@ -15,15 +15,15 @@ from pathlib import Path
 
 import numpy as np
 
-from bridge.board_thread import BoardThread, FakeMachine
 from bridge.calibration import Calibration
-from bridge.fake_line import FakeLine
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.fake_line import FakeLine
 from bridge.framing import FrameReader
-from bridge.messages import Setpoint
+from bridge.protocol import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
+from hexarm.cli.up import check_alive
 from hexarm.graph import Graph, machine_graph
-from hexarm.up import check_alive
 from manipulator.pose import Pose
 
 sys.path.insert(0, str(Path(__file__).parents[1] / 'support'))
@@ -118,7 +118,7 @@ def main(namespace, interface, *prefix):
         board.start()
         pulses = Pulses(machine.board)
         pulses.start()
-        bridge, *nodes = machine_graph('hexapod', MACHINE, str(line.path), line.path)
+        *nodes, bridge = machine_graph(MACHINE, str(line.path), line.path, is_separate=True)
         far = dataclasses.replace(bridge, prefix=prefix)
         graph = Graph([*nodes, far], SPACE)
         with graph, PatientUser(SPACE, lambda: check_alive(graph)) as user:

@@ -5,7 +5,7 @@ from hexapod_control.euler import from_zxz
 from hexapod_control.forward import ForwardByLengths
 from hexapod_control.leg_motion import LegMotion, leg_motion, level_pose, paper_motion
 from hexapod_control.linear_geometry import LinearGeometry, PlatesConfig
-from hexapod_control.plane_method import PlaneMethod
+from hexarm.papers.plane_method import PlaneMethod
 from manipulator import rotation as so3
 from manipulator.arrays import frozen
 from manipulator.errors import ConfigError, InvalidInput, Unreachable

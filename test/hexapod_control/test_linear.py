@@ -7,8 +7,8 @@ from hexapod_control import load
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.linear_geometry import LinearGeometry, PlatesConfig
 from hexapod_control.modes import all_modes
-from hexapod_control.plane_method import PlaneMethod
 from hexapod_control.workspace import sample
+from hexarm.papers.plane_method import PlaneMethod
 from manipulator.config import build
 from manipulator.errors import LimitViolated, NoSolution
 from manipulator.machine import MachineFile

@@ -5,7 +5,6 @@ import pytest
 
 from hexapod_control import load
 from hexapod_control.stack import Stack
-from hexapod_control.stack_descent import descend
 from hexapod_control.workspace import sample
 from manipulator.config import build
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
@@ -169,12 +168,3 @@ def test_a_stack_needs_sections_and_as_many_transforms(stewart):
     for sections, transforms in (((), ()), ((stewart,), ())):
         with pytest.raises(ConfigError, match='transforms of a stack'):
             Stack(sections, transforms)
-
-
-def test_descent_finds_the_minimum_of_a_curved_valley():
-    """Rosenbrock's function, whose minimum lies at (1, 1)."""
-
-    def residuals(x):
-        return np.stack([10.0 * (x[..., 1] - x[..., 0] ** 2), 1.0 - x[..., 0]], axis=-1)
-
-    np.testing.assert_allclose(descend(residuals, np.array([-1.2, 1.0])), [1.0, 1.0], atol=1e-6)

@@ -5,7 +5,7 @@ import socket
 
 import pytest
 
-from hexarm.main import main
+from hexarm.cli.main import main
 from hexarm.panel_process import offered_panel, panel_address, panel_process
 
 

@@ -13,17 +13,22 @@ import pytest
 TOOLS = {'hexarm', 'hexapod_ik', 'hexapod_pose', 'hexapod_trajectory', 'serial_bridge'}
 
 
+def install(run, environment, source, folder):
+    """A wheel of a source tree, made in a folder, into an environment."""
+    offline = ('--disable-pip-version-check', '--no-deps', '--no-index')
+    build = (sys.executable, '-m', 'pip', 'wheel', *offline, '--no-build-isolation')
+    run(*build, '-w', folder, source)
+    (wheel,) = folder.glob('*.whl')
+    run(environment / 'bin' / 'pip', 'install', *offline, wheel)
+
+
 @pytest.fixture(scope='module')
 def scratch(source, run, tmp_path_factory):
     """A virtual environment with hexarm from a wheel; dependencies come from ours."""
     folder = tmp_path_factory.mktemp('pip')
-    pip = (sys.executable, '-m', 'pip')
-    offline = ('--disable-pip-version-check', '--no-deps', '--no-index')
-    run(*pip, 'wheel', *offline, '--no-build-isolation', '-w', folder, source)
-    (wheel,) = folder.glob('hexarm-*.whl')
     environment = folder / 'environment'
     venv.create(environment, symlinks=True, with_pip=True)
-    run(environment / 'bin' / 'pip', 'install', *offline, wheel)
+    install(run, environment, source, folder)
     (packages,) = environment.glob('lib/python3*/site-packages')
     (packages / 'dependencies.pth').write_text(sysconfig.get_path('purelib') + '\n')
     return environment
@@ -65,6 +70,30 @@ def test_installed_kinematics_answers(scratch, run, nowhere):
     assert joints['positions'] == pytest.approx([2.0945] * 6, abs=1e-3)
 
 
+STRANGER = """
+[project]
+name = "panel"
+version = "1.0"
+[project.scripts]
+panel = "panel:main"
+[tool.setuptools]
+packages = ["panel"]
+"""
+
+
+def test_another_project_called_panel_and_this_one_leave_each_other_alone(
+    scratch, run, nowhere, tmp_path
+):
+    """HoloViz Panel's import name and command; a stand-in for it, installed after ours."""
+    (tmp_path / 'panel').mkdir()
+    (tmp_path / 'panel' / '__init__.py').write_text('def main():\n    print("a stranger")\n')
+    (tmp_path / 'pyproject.toml').write_text(STRANGER)
+    install(run, scratch, tmp_path, tmp_path)
+    assert run(scratch / 'bin' / 'panel', **nowhere) == 'a stranger\n'
+    code = 'import panel, hexarm.panel; print(panel.__file__ != hexarm.panel.__file__)'
+    assert run(scratch / 'bin' / 'python', '-c', code, **nowhere) == 'True\n'
+
+
 def test_source_tree_runs_without_installation(source, machines, run):
     answer = json.loads(run(sys.executable, '-m', 'hexarm', 'machines', '--json', cwd=source))
     assert {entry['path'] for entry in answer['machines']} == {
@@ -86,16 +115,14 @@ def refusal(source, *words, **variables):
     return done.returncode, done.stderr.strip()
 
 
-@pytest.mark.parametrize(
-    ('room', 'names'),
-    [('hexapod_control', 'ik, pose, trajectory'), ('bridge', 'fake_hardware, serial_bridge')],
-)
-def test_room_without_an_executable_lists_its_own(source, room, names):
-    assert refusal(source, room, 'ink') == (2, f'needs one of the names {names}')
+def test_an_unknown_node_is_answered_with_the_known_ones(source):
+    status, reason = refusal(source, 'hexarm.nodes', 'ink')
+    assert status == 2
+    assert reason.startswith('needs one of the names machine, trajectory, ik, pose, serial_bridge')
 
 
 def test_node_of_the_source_tree_names_the_machines_that_it_ships(source):
-    words = ('hexapod_control', 'ik', '--ros-args', '-p', 'machine:=robocale')
+    words = ('hexarm.nodes', 'ik', '--ros-args', '-p', 'machine:=robocale')
     status, said = refusal(source, *words)
     assert status == 1
     assert said.startswith("ik: no machine is called 'robocale', did you mean 'robocake'?")
@@ -105,7 +132,7 @@ def test_node_of_the_source_tree_names_the_machines_that_it_ships(source):
 def test_missing_ruckig_is_said_in_one_sentence(source, tmp_path):
     (tmp_path / 'ruckig.py').write_text('raise ModuleNotFoundError("gone", name="ruckig")\n')
     paths = os.pathsep.join([str(tmp_path), os.environ.get('PYTHONPATH', '')])
-    assert refusal(source, 'hexapod_control', 'trajectory', PYTHONPATH=paths) == (
+    assert refusal(source, 'hexarm.nodes', 'trajectory', PYTHONPATH=paths) == (
         1,
         'trajectory: needs the Python module ruckig: python3 -m pip install ruckig',
     )

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from bridge.board_thread import FakeMachine
 from bridge.driver import BoardDriver
-from bridge.messages import Arm
+from bridge.fake.board_thread import FakeMachine
+from bridge.protocol import Arm
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from manipulator.command_check import CommandCheck

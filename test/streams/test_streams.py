@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 
 from arm_control.arm import SerialArm
-from bridge.messages import Clear, Disarm, Stop
+from bridge.protocol import Clear, Disarm, Stop
 from manipulator.errors import ManipulatorError
 from manipulator.pose import Pose
 from manipulator.teleop.arbiter import SOURCES

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bridge.faults import FaultKind
-from bridge.messages import Setpoint
+from bridge.fake.faults import FaultKind
+from bridge.protocol import Setpoint
 from manipulator.pose import Pose
 from world.faulty_line import FaultyLine
 

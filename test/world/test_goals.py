@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from bridge.messages import Setpoint
+from bridge.protocol import Setpoint
 from manipulator.pose import Pose
 
 NEAR = {

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from bridge.messages import Setpoint
+from bridge.protocol import Setpoint
 from world.requests import Requests
 
 FORWARD = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])

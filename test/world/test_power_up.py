@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from bridge.messages import Arm, ResetCause, Setpoint
+from bridge.protocol import Arm, ResetCause, Setpoint
 from manipulator.pose import Pose
 from world.world import World
 

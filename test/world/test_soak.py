@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bridge.driver import BoardDriver
-from bridge.messages import Clear, Setpoint, Stop
+from bridge.protocol import Clear, Setpoint, Stop
 from manipulator.errors import Refused
 from world.faulty_line import FaultyLine
 from world.requests import Requests

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bridge.messages import Setpoint
+from bridge.protocol import Setpoint
 from manipulator.pose import Pose
 
 FAR = Pose.from_xyz_rpy((0.010, 0.0, 0.0412))

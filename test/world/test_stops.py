@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bridge.driver import BoardDriver
-from bridge.messages import Clear, Setpoint, Stop
+from bridge.protocol import Clear, Setpoint, Stop
 from manipulator.pose import Pose
 
 FAR = Pose.from_xyz_rpy((0.010, 0.0, 0.0412))
@@ -127,3 +127,26 @@ def test_a_stop_along_the_way_brakes_and_the_next_goal_is_driven(world, ask):
     assert 0.001 < world.pose.position[0] < 0.009
     assert world.state == 'enabled'
     assert world.go_to(FAR).result == 'reached'
+
+
+def test_a_stop_that_board_and_bridge_have_lost_leaves_a_machine_that_nothing_moves(world):
+    world.send_goal(FAR)
+    world.run(0.12)
+    world.cable.pull()
+    world.run(0.5)
+    world.ask(BoardDriver.stop)
+    world.restart('bridge')
+    world.cable.plug()  # the board is reset
+    world.wait('board', lambda: world.state == 'disarmed')
+    world.run(1.0)
+    assert np.isnan(world.pulses(world.now - 0.5)).all()
+    assert not world.frames(Setpoint, since=world.now - 1.0)
+
+
+def test_a_board_keeps_a_stop_for_the_next_bridge(world):
+    world.emergency_stop()
+    world.wait('stop', lambda: world.state == 'stopped')
+    world.restart('bridge')
+    world.wait('stop', lambda: world.state == 'stopped')
+    assert 'clear the stop first' in world.ask(lambda driver: driver.enable(True))
+    assert world.clear() == ''

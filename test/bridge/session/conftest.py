@@ -2,11 +2,11 @@
 
 import pytest
 
-from bridge.board import Board
-from bridge.board_settings import BoardSettings
 from bridge.events import StateReceived
+from bridge.fake.board import Board
+from bridge.fake.board_settings import BoardSettings
 from bridge.framing import FrameReader
-from bridge.messages import Arm, Setpoint
+from bridge.protocol import Arm, Setpoint
 from bridge.session import Session
 
 PARK = (3000,) * 6

@@ -8,8 +8,19 @@ import pytest
 from bridge.events import Acknowledged, CommandFailed, Disconnected
 from bridge.frames import encode
 from bridge.framing import FrameReader
-from bridge.messages import Ack, Arm, Clear, Disarm, Hello, Mode, ResetCause, Result, Stop
-from bridge.program_messages import Finish, Play
+from bridge.protocol import (
+    Ack,
+    Arm,
+    Clear,
+    Disarm,
+    Finish,
+    Hello,
+    Mode,
+    Play,
+    ResetCause,
+    Result,
+    Stop,
+)
 from manipulator.errors import Refused
 
 PARK = (3000,) * 6

@@ -4,7 +4,7 @@ import pytest
 
 from bridge.events import CommandFailed, Connected, Disconnected, Incompatible, Phase
 from bridge.frames import encode
-from bridge.messages import Arm, Disarm, Hello, Mode, ResetCause
+from bridge.protocol import Arm, Disarm, Hello, Mode, ResetCause
 from manipulator.errors import Refused
 
 PARK = (3000,) * 6
@@ -105,7 +105,7 @@ def test_the_idle_hellos_of_a_board_are_no_restart(line):
 def test_a_wrapped_uptime_is_no_restart(line):
     line.run(0.4)
     line.session.hello = Hello(1, ResetCause.POWER_ON, 6, 0xFFFF_FFFF - 100)
-    line.session._greeted_at = line.now
+    line.session._hello_at = line.now
     line.now += 0.2
     wrapped = encode(Hello(1, ResetCause.POWER_ON, 6, 99), 1)
     assert line.session.receive(wrapped, line.now) == []

@@ -4,7 +4,7 @@ import pytest
 
 from bridge.events import FaultReported, Phase
 from bridge.frames import encode
-from bridge.messages import Disarm, FaultCode, Setpoint, Stop
+from bridge.protocol import Disarm, FaultCode, Setpoint, Stop
 from bridge.session import Session
 from manipulator.errors import Refused
 

@@ -7,8 +7,7 @@ import pytest
 from bridge.events import Acknowledged, CommandFailed
 from bridge.frames import encode
 from bridge.framing import FrameReader
-from bridge.messages import Ack, Arm, Clear, Mode, ResetCause, Result, Stop
-from bridge.session import Session
+from bridge.protocol import Ack, Arm, Clear, Mode, ResetCause, Result, Stop
 from manipulator.errors import Refused
 
 PARK = (3000,) * 6
@@ -18,8 +17,8 @@ def test_a_stop_is_repeated_until_the_board_hears_it(armed):
     armed.loses = True
     armed.command(Stop())
     failed, *again = armed.run(3.0)
-    assert len(again) > 3  # and it is said so each time that four tries more were in vain
-    assert failed == CommandFailed(Stop(), 'no answer from the board after 4 tries yet')
+    assert len(again) > 3  # reported after every four tries
+    assert failed == CommandFailed(Stop(), 'no answer from the board after 4 tries')
     with pytest.raises(Refused):
         armed.setpoint()
     armed.loses = False
@@ -58,17 +57,6 @@ def test_a_stop_outlives_a_restart_of_the_board(armed):
     armed.run(0.5)
     assert armed.board.mode is Mode.DISARMED
     assert armed.sent.count(Stop()) == 2
-
-
-def test_a_stop_that_an_earlier_bridge_was_asked_for_is_said(line):
-    line.session = Session(6, is_stop_wanted=True)
-    line.session.opened(line.now)
-    line.run(0.6)
-    assert line.session.state.mode is Mode.STOPPED
-    line.command(Clear())
-    line.run(0.2)
-    assert not line.session.is_stop_wanted
-    assert line.session.state.mode is Mode.DISARMED
 
 
 def test_hammering_stop_and_clear_ends_as_the_last_one_says(armed):

@@ -9,9 +9,9 @@ from geometry_msgs.msg import TwistStamped
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
+from hexarm.cli.up import check_alive
 from hexarm.graph import Graph, machine_graph
 from hexarm.machines import load
-from hexarm.up import check_alive
 from manipulator.nodes.messages import joints_of, seconds
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
 from patient_user import PatientUser
@@ -104,7 +104,7 @@ def arm_graph(tmp_path_factory):
     shipped = Path(__file__).resolve().parents[3] / 'config' / 'arm_6r_stepper.yaml'
     patient = re.sub('setpoint_deadline_ms: .*', 'setpoint_deadline_ms: 1000', shipped.read_text())
     (folder / 'arm.yaml').write_text(patient)
-    nodes = machine_graph('arm', str(folder / 'arm.yaml'), 'fake', folder / 'board')
+    nodes = machine_graph(str(folder / 'arm.yaml'), 'fake', folder / 'board')
     with Graph(nodes, 'arm') as graph:
         yield graph
 

@@ -22,7 +22,7 @@ def words():
     """The command line of one executable."""
 
     def join(executable, namespace, **parameters):
-        found = [sys.executable, '-m', 'manipulator', executable, '--ros-args']
+        found = [sys.executable, '-m', 'hexarm.nodes', executable, '--ros-args']
         found += ['-r', f'__ns:=/{namespace}']
         for name, value in parameters.items():
             found += ['-p', f'{name}:={value}']

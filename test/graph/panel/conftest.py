@@ -23,9 +23,9 @@ HELD = 'moving while you hold'
 
 
 def circling(nodes, cycle):
-    """The same nodes; the trajectory node has other parameters for its cycle."""
+    """The same processes; the trajectory node has other parameters for its cycle."""
     return [
-        replace(node, parameters=node.parameters | cycle) if node.entry == 'trajectory' else node
+        replace(node, parameters=node.parameters | cycle) if node.name == 'machine' else node
         for node in nodes
     ]
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from std_msgs.msg import Float64
 
+from hexarm.cli.up import check_alive
 from hexarm.graph import Graph, machine_graph
 from hexarm.panel_process import panel_process
-from hexarm.up import check_alive
 from manipulator.nodes.qos import LATCHED
 from patient_user import PatientUser
 
@@ -36,7 +36,7 @@ def arm_panel(browser, tmp_path_factory):
 @pytest.fixture(scope='module')
 def user(arm_panel, with_cycle, tmp_path_factory):
     link = tmp_path_factory.mktemp('port') / 'board'
-    nodes = machine_graph('arm', arm_panel.parameters['machine'], 'fake', link)
+    nodes = machine_graph(arm_panel.parameters['machine'], 'fake', link)
     with (
         Graph([*with_cycle(nodes, CIRCLE), arm_panel], 'arm') as graph,
         PatientUser('arm', lambda: check_alive(graph)) as client,

@@ -138,8 +138,8 @@ def processes(port, tmp_path_factory):
     machine = tmp_path_factory.mktemp('machine') / 'hasty.yaml'
     machine.write_text(hasty)
     nodes = [
-        Executable('bridge', 'fake_hardware', {'link': str(port), 'machine': str(machine)}),
-        Executable('bridge', 'serial_bridge', {'port': str(port), 'machine': str(machine)}),
+        Executable('fake_hardware', {'link': str(port), 'machine': str(machine)}),
+        Executable('serial_bridge', {'port': str(port), 'machine': str(machine)}),
     ]
     with Graph(nodes, SPACE) as graph:
         yield graph

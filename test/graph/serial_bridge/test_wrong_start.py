@@ -20,7 +20,7 @@ def state_in(space, word):
 
 
 def test_a_second_bridge_on_the_port_says_that_it_is_in_use(rig, port):
-    second = Executable('bridge', 'serial_bridge', {'port': str(port)})
+    second = Executable('serial_bridge', {'port': str(port)})
     with Graph([second], 'second') as graph:
         assert 'in use by another program' in state_in('second', 'disconnected')
         assert graph.dead() is None
@@ -33,8 +33,8 @@ def test_a_board_with_another_joint_count_is_a_fault(tmp_path):
     path.write_text('\n'.join(five).replace(', 120.0]', ']'))
     port = str(tmp_path / 'board')
     nodes = [
-        Executable('bridge', 'fake_hardware', {'link': port}),
-        Executable('bridge', 'serial_bridge', {'port': port, 'machine': str(path)}),
+        Executable('fake_hardware', {'link': port}),
+        Executable('serial_bridge', {'port': port, 'machine': str(path)}),
     ]
     with Graph(nodes, 'five'):
         assert 'the board has 6 joints, the machine 5' in state_in('five', 'fault')
@@ -50,7 +50,7 @@ def test_a_board_with_another_joint_count_is_a_fault(tmp_path):
     ],
 )
 def test_what_is_wrong_at_the_start_is_one_line_and_status_1(entry, parameter, said):
-    command = [sys.executable, '-m', 'bridge', entry, '--ros-args', '-p', parameter]
+    command = [sys.executable, '-m', 'hexarm.nodes', entry, '--ros-args', '-p', parameter]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 1
     assert said in done.stderr

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from bridge.board_thread import BoardThread, FakeMachine
-from bridge.fake_line import FakeLine
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.fake_line import FakeLine
 from bridge.servo_config import BoardConfig
 from bridge.servo_walk import STEPS_US
 from hexarm import machines

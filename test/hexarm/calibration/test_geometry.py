@@ -12,8 +12,8 @@ from hexapod_control.identification.leg_model import Tolerances
 from hexarm.calibration.campaign import NOISE, some_frames, true_values
 from hexarm.calibration.machine_model import machine_model
 from hexarm.calibration.pose_table import measurements
+from hexarm.cli.main import main
 from hexarm.machines import load, read
-from hexarm.main import main
 from manipulator.pose import Pose
 
 COLUMNS = 7

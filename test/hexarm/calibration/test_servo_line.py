@@ -1,8 +1,8 @@
 from dataclasses import replace
 
-from bridge.board_thread import BoardThread, FakeMachine
-from bridge.fake_line import FakeLine
-from bridge.messages import Mode
+from bridge.fake.board_thread import BoardThread, FakeMachine
+from bridge.fake.fake_line import FakeLine
+from bridge.protocol import Mode
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.calibration import servo_line

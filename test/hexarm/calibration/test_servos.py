@@ -7,12 +7,12 @@ import signal
 import numpy as np
 import pytest
 
-from bridge.messages import Arm, Mode
+from bridge.protocol import Arm, Mode
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.calibration.fake_servos import FakeServos, mounted_wrongly
 from hexarm.calibration.servo_values import changed_values
-from hexarm.main import main
+from hexarm.cli.main import main
 
 WRONG = {
     0: {'sign': -1, 'centre_us': 1540.0},

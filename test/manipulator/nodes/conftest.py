@@ -9,8 +9,6 @@ import rclpy
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 
-from manipulator.nodes.discovery import fresh_address
-
 PATIENCE = 20.0
 
 
@@ -24,8 +22,7 @@ class Graph:
     def node(self, name, namespace='here'):
         context = rclpy.Context()
         rclpy.init(context=context, domain_id=1 + os.getpid() % 100)
-        with fresh_address():
-            node = Node(name, namespace=namespace, context=context)
+        node = Node(name, namespace=namespace, context=context)
         executor = self._executor_class(context=context)
         executor.add_node(node)
         self._executors.append(executor)

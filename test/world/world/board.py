@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from bridge.board_thread import LONGEST_STEP, STEP
+from bridge.fake.board_thread import LONGEST_STEP, STEP
 from bridge.framing import FrameReader
-from bridge.messages import ResetCause
+from bridge.protocol import ResetCause
 from world.timeline import Link, Process
 
 

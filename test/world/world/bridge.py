@@ -1,11 +1,11 @@
-"""The serial bridge (bridge/serial_bridge_node.py, link_thread.py) without ROS, port or threads.
+"""The serial bridge (bridge/nodes/, bridge/link_thread.py) without ROS, port or threads.
 
 The driver and its link are the real ones; here stands what the node and the thread do around them.
 """
 
 import numpy as np
 
-from bridge.driver import ANSWER_WITHIN, BoardDriver
+from bridge.driver import BoardDriver
 from bridge.framing import FrameReader
 from manipulator.errors import ManipulatorError
 from world.timeline import Process
@@ -26,9 +26,9 @@ class Bridge(Process):
     of what the session had written, whatever becomes of it on the cable.
     """
 
-    def __init__(self, timeline, config, names, cable, words, joints, is_stop_wanted=False):
+    def __init__(self, timeline, config, names, cable, words, joints):
         super().__init__(timeline)
-        self.driver = BoardDriver(config, self, self.stamp - self.now, is_stop_wanted)
+        self.driver = BoardDriver(config, self, self.stamp - self.now)
         self.monitor, self._link = self.driver.monitor, self.driver.link
         self.admitted, self.refusals, self.sent, self.troubles = [], [], [], []
         self.states = []
@@ -37,7 +37,6 @@ class Bridge(Process):
         self._order = [self.driver.calibration.names.index(name) for name in names]
         self._received, self._reader = b'', FrameReader()
         self._due_at = self.now
-        self._link.wake = self._wake
         self._wake()
         self.every(SAY_AGAIN, self._say_again)
 
@@ -57,6 +56,7 @@ class Bridge(Process):
             self.refusals.append((self.now, str(error)))
         else:
             self.admitted.append((self.now, joints))
+            self._wake()
 
     def on_joints(self, joints):
         positions = joints.positions[self._order]
@@ -77,13 +77,12 @@ class Bridge(Process):
     def _ask(self, question, answer):
         asked = question(self.driver)
 
-        def settle(future=None):
-            if answer.said is None:
-                is_obeyed, text = self.driver.answer(asked)
-                answer.said = '' if is_obeyed else text
+        def settle(future):
+            is_obeyed, text = self.driver.answer(asked)
+            answer.said = '' if is_obeyed else text
 
         asked.future.add_done_callback(settle)
-        self.timeline.after(ANSWER_WITHIN, lambda: self.handle(settle))
+        self._wake()
 
     def _say_again(self):
         if self.states:

@@ -1,8 +1,8 @@
-"""A line and a board that fail at random, from a seed (bridge/faults.py)."""
+"""A line and a board that fail at random, from a seed (bridge/fake/faults.py)."""
 
-from bridge.board_faults import BoardFaults
-from bridge.board_thread import STEP
-from bridge.faults import Faults
+from bridge.fake.board_faults import BoardFaults
+from bridge.fake.board_thread import STEP
+from bridge.fake.faults import Faults
 
 
 class FaultyLine:

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from bridge.board_thread import FakeMachine
 from bridge.calibration import Calibration
 from bridge.driver import BoardDriver
-from bridge.messages import Setpoint
+from bridge.fake.board_thread import FakeMachine
+from bridge.protocol import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from manipulator.trajectory.path import Tolerance
@@ -71,8 +71,6 @@ class World:
         self.links['joints_pose'].lead_to(new, new.on_joints)
 
     def start_bridge(self):
-        """A STOP that the one before was asked for is known to it (bridge/stop_memory.py)."""
-        before = self.bridge
         new = self.bridge = Bridge(
             self.timeline,
             self._config,
@@ -80,7 +78,6 @@ class World:
             self.cable,
             self.links['words'],
             Fan([self.links[name] for name in ('joints', 'joints_ik', 'joints_pose')]),
-            before is not None and before.driver.session.is_stop_wanted,
         )
         self.links['commands'].lead_to(new, new.on_command)
         self.cable.lead_to(new)

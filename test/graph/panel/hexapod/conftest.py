@@ -21,7 +21,7 @@ def panel(browser, patient_robocake):
 def hexapod_graph(patient_robocake, panel, with_cycle, tmp_path_factory):
     """The hexapod's processes and its panel."""
     link = tmp_path_factory.mktemp('port') / 'board'
-    nodes = with_cycle(machine_graph('hexapod', patient_robocake, 'fake', link), CIRCLE)
+    nodes = with_cycle(machine_graph(patient_robocake, 'fake', link), CIRCLE)
     with Graph([*nodes, panel], 'hexapod') as graph:
         yield graph
 

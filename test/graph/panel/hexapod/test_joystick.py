@@ -1,6 +1,6 @@
 """The joystick of the page is a deadman: a hand that is gone stops the machine.
 
-What counts as gone, test/panel/test_joystick_page.py tries; here is one of each way out of it.
+test/hexarm/panel/test_joystick_page.py tries what counts as gone; here is one of each way out.
 """
 
 import time

@@ -33,13 +33,13 @@ def test_stop_stops_the_machine_and_nothing_resumes(page, machine):
 
 
 def test_a_node_that_does_not_answer_is_named(page, machine, hexapod_graph):
-    trajectory = hexapod_graph.pids()['trajectory']
-    os.kill(trajectory, signal.SIGSTOP)
+    machine_process = hexapod_graph.pids()['machine']
+    os.kill(machine_process, signal.SIGSTOP)
     try:
         page.page.get_by_role('button', name='Home').click()
         page.page.get_by_text('trajectory/home: no answer within').wait_for()
     finally:
-        os.kill(trajectory, signal.SIGCONT)
+        os.kill(machine_process, signal.SIGCONT)
         machine.client.spin(1.0)  # it takes the machine over anew
 
 

@@ -9,10 +9,12 @@ from manipulator.errors import InvalidInput, Refused
 from manipulator.pose import Pose
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.path import Tolerance
-from manipulator.trajectory.path_planning import OVERTAKEN, PathGoal
+from manipulator.trajectory.path_planning import PathGoal
 from manipulator.trajectory.path_timing import PathRequest
+from manipulator.trajectory.player import OVERTAKEN
 
 HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))
+FAR = Pose.from_xyz_rpy((0.008, 0.0, 0.045))
 RADIUS, HEIGHT = 0.004, 0.043
 TOLERANCE = Tolerance(1e-4, 1e-3)
 
@@ -108,11 +110,42 @@ def test_a_newer_path_takes_its_place(slow):
     slow.run(2000)
     assert (slow.status.result, slow.status.goal_stamp) == ('reached', 4.0)
     assert reads == [4.0]
-    assert not [s for s in slow.statuses if s.goal_stamp == 3.0 and s.result == 'moving']
+    older = [(s.result, s.reason) for s in slow.statuses if s.goal_stamp == 3.0]
+    assert older == [('planning', ''), ('stopped', OVERTAKEN)]
 
 
-@pytest.mark.parametrize('end', ['stop', 'fault', 'jog'])
-def test_what_ends_the_motion_ends_the_path_before_it_began(slow, end):
+def test_a_path_that_a_newer_goal_has_overtaken_does_not_displace_it(slow):
+    slow.pursue(Goal(HIGHER, 100.2))
+    slow.run(2)
+    with pytest.raises(Refused, match=r'stamped 0\.200 s before the last goal or path'):
+        slow.follow(path(circle(), 100.0))
+    slow.run(300)
+    assert (slow.status.result, slow.status.goal_stamp) == ('reached', 100.2)
+
+
+@pytest.mark.parametrize(('stamp', 'ticks'), [(99.0, 2), (100.0, 60), (0.0, 2)])
+def test_a_path_with_the_stamp_of_another_clock_or_none_is_driven(slow, stamp, ticks):
+    slow.pursue(Goal(HIGHER, 100.2))
+    slow.run(ticks)
+    slow.follow(path(circle(), stamp))
+    slow.run(2000)
+    assert (slow.status.result, slow.status.goal_stamp) == ('reached', stamp)
+
+
+@pytest.mark.parametrize(
+    ('end', 'reason'),
+    [
+        ('stop', 'stopped before it began'),
+        ('fault', 'the machine is fault: clear the fault first'),
+        ('jog', 'cmd_vel/joy took the machine over'),
+    ],
+)
+@pytest.mark.parametrize('is_moving', [False, True])
+def test_what_ends_the_motion_ends_the_path_before_it_began(slow, end, reason, is_moving):
+    if is_moving:
+        slow.pursue(Goal(FAR, 2.0))
+        slow.run(10)
+        assert slow.status.result == 'moving'
     slow.follow(path(circle()))
     slow.run(1)
     if end == 'stop':
@@ -124,9 +157,18 @@ def test_what_ends_the_motion_ends_the_path_before_it_began(slow, end):
     slow.run(10)
     slow.state = 'enabled'
     slow.run(300)
-    results = [s.result for s in slow.statuses if s.goal_stamp == 3.0]
-    assert 'stopped' in results
-    assert 'moving' not in results
+    results = {s.result: s.reason for s in slow.statuses if s.goal_stamp == 3.0}
+    assert results == {'planning': '', 'stopped': reason}
+
+
+def test_a_stop_at_rest_is_the_last_that_is_said_of_the_path(slow):
+    slow.follow(path(circle()))
+    slow.run(1)
+    slow.core.stop()
+    slow.run(10)
+    assert [(s.result, s.goal_stamp) for s in slow.statuses if s.result == 'stopped'] == [
+        ('stopped', 3.0)
+    ]
 
 
 def test_a_path_while_somebody_jogs_is_refused(slow):

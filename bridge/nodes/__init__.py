@@ -1,0 +1,1 @@
+"""The nodes of serial_bridge: messages in, what `driver.py` does with them, messages out."""

@@ -1,0 +1,1 @@
+"""The board's program for a machine: its header, its build, its stand-in."""

@@ -1,0 +1,130 @@
+"""Building the board's program and its simulated chip with make, where the tools are."""
+
+import contextlib
+import fcntl
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from bridge.servo_config import BoardConfig
+from hexarm import machines
+from hexarm.board.header import header_of
+from manipulator.errors import ManipulatorError
+
+FIRMWARE = Path(__file__).resolve().parents[2] / 'firmware'
+TOOLS = ('make', 'avr-gcc', 'avr-objcopy', 'avr-size', 'cc')
+HEADER_OF_SIMAVR = Path('/usr/include/simavr/sim_avr.h')
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Bytes of a program on the chip; `ram` without the stack."""
+
+    flash: int
+    ram: int
+
+
+class CannotBuild(ManipulatorError):
+    """A tool is missing, or the compiler said no."""
+
+
+def missing_tools() -> list[str]:
+    """What must be there before anything here works."""
+    if not FIRMWARE.is_dir():
+        return ['the source tree of hexarm']
+    missing = [tool for tool in TOOLS if shutil.which(tool) is None]
+    if not HEADER_OF_SIMAVR.exists():
+        missing.append('libsimavr-dev')
+    return missing
+
+
+def simulator() -> Path:
+    """The folder of chip.so and pty_chip, up to date."""
+    with _alone():
+        _make('simulator')
+    return FIRMWARE / 'build' / 'simulator'
+
+
+def firmware(header: str, table: Path | None = None) -> Path:
+    """The program for a machine.h, up to date; `table` is a CSV for robocake's flash."""
+    if table is None:
+        return _built(header, 'firmware.elf')
+    return _built(header + f'/* {table.read_text()} */\n', 'firmware.elf', f'TABLE={table}')
+
+
+def bench(header: str) -> Path:
+    """The program that marks how long the kinematics take."""
+    return _built(header, 'bench.elf')
+
+
+def host_library(header: str) -> Path:
+    """The parts of that program that know no hardware, as a library for this computer."""
+    return _built(header, 'host.so')
+
+
+def chip_process(machine: str, link: Path) -> tuple[str, ...]:
+    """The command that runs a machine's board in real time, its port at `link`."""
+    config = BoardConfig.from_machine(machines.read(machine), str(machines.find(machine)))
+    battery_mv = round(1000 * config.simulation.battery_v)
+    program, pty_chip = firmware(header_of(machine)), simulator() / 'pty_chip'
+    return str(pty_chip), str(program), str(config.link.baud), str(link), str(battery_mv)
+
+
+def step_times() -> dict[str, float]:
+    """How long one call takes on the simulated chip at most, in ms, by what is called."""
+    command = [sys.executable, '-m', 'firmware.simulator.cycles', '--json']
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=False, cwd=FIRMWARE.parent
+    )
+    if done.returncode:
+        raise CannotBuild(f'{" ".join(command)}:\n{done.stderr}')
+    return dict(json.loads(done.stdout))
+
+
+def sizes(program: Path) -> Sizes:
+    """How much of the chip a program takes."""
+    command = ['avr-size', str(program)]
+    table = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    text, initialised, zeroed = (int(number) for number in table.splitlines()[1].split()[:3])
+    return Sizes(text + initialised, initialised + zeroed)
+
+
+def _built(header: str, what: str, *words: str) -> Path:
+    """A file made with this header, in a folder of its own: machines never mix."""
+    out = f'build/{hashlib.sha256(header.encode()).hexdigest()[:12]}'
+    machine_h = FIRMWARE / out / 'machine.h'
+    with _alone():
+        if not machine_h.exists():
+            machine_h.parent.mkdir(parents=True, exist_ok=True)
+            machine_h.write_text(header)
+        # -o: the header is as it shall be, whatever stands in config/.
+        _make(f'OUT={out}', '-o', f'{out}/machine.h', *words, f'{out}/{what}')
+    return FIRMWARE / out / what
+
+
+@contextlib.contextmanager
+def _alone() -> Iterator[None]:
+    """While no other process builds: make would write a file that another is about to load."""
+    missing = missing_tools()
+    if missing:
+        raise CannotBuild(f'not there: {", ".join(missing)} (docs/firmware.md)')
+    folder = FIRMWARE / 'build'
+    folder.mkdir(exist_ok=True)
+    with (folder / '.lock').open('w') as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def _make(*words: str) -> None:
+    command = ['make', '-s', '-C', str(FIRMWARE), f'PYTHON={sys.executable}', *words]
+    # A make above this one must not hand its options down.
+    environment = {k: v for k, v in os.environ.items() if k not in ('MAKEFLAGS', 'MAKELEVEL')}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    if done.returncode:
+        raise CannotBuild(f'{" ".join(command)}:\n{done.stdout}{done.stderr}')

@@ -1,0 +1,111 @@
+"""`hexarm firmware-header`: what the board's program takes from a machine file, as a C header."""
+
+import argparse
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from bridge.calibration import Calibration
+from bridge.fake.board_modes import PULSE_PERIOD_US
+from bridge.fake.board_settings import BoardSettings
+from bridge.servo_config import BoardConfig
+from hexarm import machines
+from hexarm.board.kinematics import WITHOUT, kinematics_of
+from hexarm.board.table import flash_header, read_table
+from manipulator.errors import ConfigError
+
+WIDEST_COUNT = 36_000
+"""18 ms: a wider pulse would still be under way when the board prepares the next one."""
+BAUD_STEP, WORST_BAUD = 2_000_000, 0.025
+"""Bits per second at the chip's fastest; 115200 is 2.1 % off, and still understood."""
+HIGHEST_BATTERY_MV = 9_990
+BOOT_S = 0.0
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommand."""
+    parser = commands.add_parser('firmware-header', help="a machine file as the board's C header")
+    parser.add_argument('machine', help='a shipped name or a path')
+    parser.add_argument('--table', type=Path, help='a CSV of joint positions, for flash_table.h')
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Prints machine.h, or flash_table.h where a table is given."""
+    if arguments.table is None:
+        print(header_of(arguments.machine), end='')
+    else:
+        calibration = Calibration.from_config(_board_config(arguments.machine).servos)
+        table = read_table(arguments.table, calibration)
+        print(flash_header(table, arguments.table.name, calibration), end='')
+    return 0
+
+
+def header_of(machine: str) -> str:
+    """machine.h of a machine file; ConfigError where the machine does not fit the board."""
+    config = _board_config(machine)
+    calibration = Calibration.from_config(config.servos)
+    kinematics = kinematics_of(machines.load(machine), calibration)
+    settings = BoardSettings.from_config(config, BOOT_S)
+    return header(settings, config.link.baud, machines.find(machine).name, kinematics)
+
+
+def _board_config(machine: str) -> BoardConfig:
+    return BoardConfig.from_machine(machines.read(machine), str(machines.find(machine)))
+
+
+def header(
+    settings: BoardSettings, baud: int, name: str, kinematics: Mapping[str, object] = WITHOUT
+) -> str:
+    """machine.h; counts are half microseconds of pulse, by channel."""
+    _refuse_wide_pulses(settings)
+    _refuse_baud(baud)
+    _refuse_battery(settings)
+    lows, highs = zip(*settings.count_ranges, strict=True)
+    steps = (f'{speed * PULSE_PERIOD_US * 1e-6:.8e}f' for speed in settings.count_speeds)
+    definitions = {
+        'JOINT_COUNT': len(lows),
+        'BAUD': f'{baud}UL',
+        'LOWEST_COUNTS': _row(lows),
+        'HIGHEST_COUNTS': _row(highs),
+        'STEP_COUNTS': _row(steps),
+        'ARM_INTERVAL_MS': settings.arm_interval_us // 1000,
+        'MINIMUM_BATTERY_MV': settings.minimum_battery_mv,
+        'RELEASE_ON_LINK_LOSS': int(settings.on_link_loss == 'release'),
+        **kinematics,
+    }
+    lines = [f'#define {key} {value}' for key, value in definitions.items()]
+    top = f'/* Made by `hexarm firmware-header` from {name}: change that file instead. */'
+    return '\n'.join([top, '#pragma once', '', *lines, ''])
+
+
+def _refuse_wide_pulses(settings: BoardSettings) -> None:
+    for channel, (_, high) in enumerate(settings.count_ranges):
+        if high > WIDEST_COUNT:
+            raise ConfigError(
+                [
+                    f'servos: the pulses of channel {channel} reach {high / 2:g} us, '
+                    f'the board makes at most {WIDEST_COUNT / 2:g} us'
+                ]
+            )
+
+
+def _refuse_baud(baud: int) -> None:
+    """The chip divides its crystal by 8 and a whole number."""
+    made = BAUD_STEP / max(round(BAUD_STEP / baud), 1)
+    if abs(made / baud - 1) > WORST_BAUD:
+        nearest = f'the board makes {made:.0f} instead'
+        raise ConfigError([f'link.baud: {baud} bit/s; {nearest}, 250000 is exact'])
+
+
+def _refuse_battery(settings: BoardSettings) -> None:
+    if settings.minimum_battery_mv >= HIGHEST_BATTERY_MV:
+        raise ConfigError(
+            [
+                f'servos.minimum_battery_v: {settings.minimum_battery_mv / 1000:g} V, the board '
+                f'measures below {HIGHEST_BATTERY_MV / 1000:g} V and would never arm'
+            ]
+        )
+
+
+def _row(values: Iterable[object]) -> str:
+    return f'{{{", ".join(map(str, values))}}}'

@@ -1,0 +1,1 @@
+"""The subcommands of the `hexarm` command, one file each."""

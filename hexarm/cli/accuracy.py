@@ -1,0 +1,200 @@
+"""`hexarm accuracy MACHINE`: pose errors from servos and geometry, by law and by chance."""
+
+import argparse
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from bridge.servo_config import BoardConfig
+from hexapod_control.geometry_errors import GeometryErrors
+from hexapod_control.parallel_platform import ParallelPlatform
+from hexarm.cli.answers import Answer, add_machine, answering, picture_file
+from hexarm.machines import load, read
+from manipulator.accuracy.joint_errors import JointErrors
+from manipulator.accuracy.spread import Spread, drawn_spread, linear_spread
+from manipulator.arrays import Array
+from manipulator.errors import InvalidInput
+from manipulator.kinematics import Kinematics
+from manipulator.machine import Machine, MachineFile
+from manipulator.pose import Pose
+from manipulator.reach.way import admits
+from manipulator.workspace.volume import bounding_box, with_orientation
+
+NOISE = {'rad': math.radians(1.0), 'm': 2e-4}
+"""SG90: 1° (Prokopovich 2019); for linear servos ours."""
+TOLERANCE = 1e-4
+DRAWS, FEWEST_DRAWS = 4000, 100
+MACHINES = 400
+MAP_POSITIONS = 4000
+PAPER_UM = {'noise, all joints': 9.9, 'noise, joint 1': 24.7, 'noise, joints 1, 3, 5': 30.0}
+"""Prokopovich 2019, section on accuracy, with 1° of noise on the RoboCake."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One cause of errors, and the spread that it makes at home; paper in metres."""
+
+    cause: str
+    linear: Spread
+    drawn: Spread
+    paper: float | None = None
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommand."""
+    parser = commands.add_parser('accuracy', help='pose errors from servos and geometry')
+    add_machine(parser)
+    parser.add_argument(
+        '--noise', type=float, metavar='A',
+        help='uniform servo noise within ±A, rad or m (default 1° or 0.2 mm)',
+    )  # fmt: skip
+    parser.add_argument(
+        '--tolerance', type=float, default=TOLERANCE, metavar='M',
+        help='standard deviation of joint coordinates and lengths, m (default 0.0001)',
+    )  # fmt: skip
+    parser.add_argument(
+        '--draws', type=int, default=DRAWS, metavar='N', help=f'for each cause (default {DRAWS})'
+    )
+    parser.add_argument(
+        '--picture',
+        type=picture_file,
+        metavar='FILE',
+        help='a map of the error over the workspace',
+    )
+    parser.set_defaults(run=answering(answer))
+
+
+def answer(arguments: argparse.Namespace) -> Answer:
+    """The spread of the pose at home by each cause, and over the positions reached unturned."""
+    machine, file = load(arguments.machine), read(arguments.machine)
+    noise = NOISE[machine.kinematics.joint_unit] if arguments.noise is None else arguments.noise
+    for name, value in (('--noise', noise), ('--tolerance', arguments.tolerance)):
+        if not 0.0 <= value < 1.0:
+            raise InvalidInput(f'{name} {value:g} is outside [0, 1)')
+    if arguments.draws < FEWEST_DRAWS:
+        raise InvalidInput(f'--draws {arguments.draws} is below {FEWEST_DRAWS}')
+    is_papers = file.kind == 'rotary_hexapod' and math.isclose(noise, NOISE['rad'])
+    errors = servo_errors(machine.kinematics, file, noise)
+    found = list(rows(machine.kinematics, errors, arguments.tolerance, arguments.draws, is_papers))
+    everywhere = error_map(machine, errors)
+    lines = [*_in_words(found), *_map_in_words(everywhere)]
+    for_programs: dict[str, Any] = {
+        'noise': noise,
+        'rows': [_for_programs(row) for row in found],
+        'map': {name: _summary(values) for name, values in everywhere.items()},
+    }
+    if arguments.picture is not None:
+        from hexarm.pictures.accuracy import draw  # noqa: PLC0415 (matplotlib is an extra)
+
+        draw(machine, errors, arguments.picture, arguments.machine)
+        lines.append(str(arguments.picture))
+    return for_programs, lines
+
+
+def servo_errors(kinematics: Kinematics, file: MachineFile, noise: float) -> JointErrors:
+    """The noise asked for, dead band and play of the machine file's simulated servos."""
+    config = BoardConfig.from_machine(file)
+    count = len(kinematics.joint_names)
+    servos = config.servos.joints[:count]  # an arm's gripper comes after its joints
+    per_unit = [servo.us_per_mm or servo.us_per_deg or math.inf for servo in servos]
+    unit = 1e-3 if kinematics.joint_unit == 'm' else math.radians(1.0)
+    return JointErrors(
+        np.full(count, noise),
+        unit * config.simulation.dead_band_us / np.array(per_unit),
+        np.full(count, config.hysteresis),
+    )
+
+
+def rows(
+    kinematics: Kinematics, errors: JointErrors, tolerance: float, draws: int, is_papers: bool
+) -> Iterator[Row]:
+    """Each cause alone at home, then all together."""
+    home, zero = kinematics.home, np.zeros(len(errors.noise))
+    noise = JointErrors(errors.noise, zero, zero)
+    causes = {
+        'noise, all joints': noise,
+        'noise, joint 1': noise.on((0,)),
+        'noise, joints 1, 3, 5': noise.on((0, 2, 4)),
+        'dead band, all joints': JointErrors(zero, errors.dead_band, zero),
+        'hysteresis, all joints': JointErrors(zero, zero, errors.hysteresis),
+        'all of the servos': errors,
+    }
+    for cause, some in causes.items():
+        paper = 1e-6 * PAPER_UM[cause] if is_papers and cause in PAPER_UM else None
+        drawn = drawn_spread(kinematics, home, some, draws, np.random.default_rng(1))
+        yield Row(cause, linear_spread(kinematics, home, some), drawn, paper)
+    if isinstance(kinematics, ParallelPlatform):
+        geometry = GeometryErrors(tolerance)
+        generator = np.random.default_rng(2)
+        built = geometry.drawn_spread(kinematics, home, min(draws, MACHINES), generator)
+        yield Row('geometry', geometry.linear_spread(kinematics, home), built)
+
+
+def error_map(machine: Machine, errors: JointErrors) -> dict[str, Array]:
+    """Rms position (m) and angle (rad) by all servo errors, linear, over unturned positions."""
+    home = machine.kinematics.home
+    reached = with_orientation(machine, home.rotation)
+    box = bounding_box(reached, home.position, machine.kinematics.characteristic_length)
+    places = box.lattice(MAP_POSITIONS, np.full(3, 0.5))
+    poses = Pose(places, np.broadcast_to(home.rotation, (len(places), 3, 3)))
+    spread = linear_spread(machine.kinematics, poses[admits(machine, poses)], errors)
+    return {'position': spread.position_rms, 'angle': spread.angle_rms}
+
+
+def _for_programs(row: Row) -> dict[str, Any]:
+    return {
+        'cause': row.cause,
+        'position_rms': float(row.linear.position_rms),
+        'angle_rms': float(row.linear.angle_rms),
+        'drawn': {
+            'position_rms': float(row.drawn.position_rms),
+            'angle_rms': float(row.drawn.angle_rms),
+            'draws': row.drawn.draws,
+            'relative_error': row.drawn.relative_error,
+        },
+        'paper_position_rms': row.paper,
+    }
+
+
+def _summary(values: Array) -> dict[str, float]:
+    return {
+        'least': float(values.min()),
+        'median': float(np.median(values)),
+        'largest': float(values.max()),
+    }
+
+
+def _in_words(found: list[Row]) -> list[str]:
+    line = '{:<24} {:>10} {:>16} {:>10} {:>14}'
+    head = ('rms at home', 'position', 'drawn', 'angle', 'drawn')
+    lines = [line.format(*head) + ('   paper' if found[0].paper else '')]
+    for row in found:
+        share = row.drawn.relative_error
+        place, turn = 1e3 * row.drawn.position_rms, np.degrees(row.drawn.angle_rms)
+        numbers = (
+            f'{1e3 * row.linear.position_rms:.4f} mm',
+            f'{place:.4f} ± {share * place:.4f}',
+            f'{np.degrees(row.linear.angle_rms):.4f}°',
+            f'{turn:.4f} ± {share * turn:.4f}',
+        )
+        paper = f'   {1e3 * row.paper:.4f} mm' if row.paper else ''
+        lines.append(line.format(row.cause, *numbers) + paper)
+    if found[0].paper:
+        lines += [
+            'The paper (Prokopovich 2019) has errors that cancel: less on all six servos than on',
+            'one. Independent errors do not: their squares add, by law and by drawing alike.',
+        ]
+    return lines
+
+
+def _map_in_words(everywhere: dict[str, Array]) -> list[str]:
+    place = {k: 1e3 * v for k, v in _summary(everywhere['position']).items()}
+    turn = {k: math.degrees(v) for k, v in _summary(everywhere['angle']).items()}
+    return [
+        'all of the servos, over the positions reached unturned: '
+        f'{place["least"]:.3f} … {place["largest"]:.3f} mm (median {place["median"]:.3f}), '
+        f'{turn["least"]:.3f} … {turn["largest"]:.3f}° (median {turn["median"]:.3f})'
+    ]

@@ -1,0 +1,100 @@
+"""`hexarm enable|disable|clear [NAMESPACE]`: a machine's services, without `ros2`."""
+
+import argparse
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+from hexarm.cli.statuses import INTERRUPTED, REFUSED
+from hexarm.cli.up import Interrupted, StopSignal
+from hexarm.namespaces import NobodyThere, namespace_of, nobody_in
+from manipulator.errors import Refused
+
+if TYPE_CHECKING:
+    from hexarm.client import Client
+
+HEARD_WITHIN = 8.0
+"""Seconds in which the bridge of a machine that is there says its state."""
+
+SETTLES = 0.5
+"""Seconds in which the new state is heard, too."""
+
+
+@dataclass(frozen=True)
+class Call:
+    """One subcommand: what it asks of the machine, and gets for an answer, if any."""
+
+    name: str
+    help: str
+    act: 'Callable[[Client], object]'
+
+
+CALLS = (
+    Call(
+        'enable',
+        'servos on, one by one, to the park pose',
+        lambda client: client.enable(),
+    ),
+    Call(
+        'disable',
+        'servos off: they hold nothing any more',
+        lambda client: client.disable(),
+    ),
+    Call(
+        'clear',
+        'end a stop or a fault; nothing moves',
+        lambda client: client.trigger('serial_bridge/clear_fault'),
+    ),
+)
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommands."""
+    for call in CALLS:
+        parser = commands.add_parser(call.name, help=call.help)
+        parser.add_argument(
+            'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
+        )
+        parser.set_defaults(run=partial(run, call))
+
+
+def run(call: Call, arguments: argparse.Namespace) -> int:
+    """Asks, and prints the machine's state; status 1 when nobody answers, 2 for a refusal."""
+    from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
+
+    stop = StopSignal()
+    try:
+        with Client(arguments.namespace, stop.check) as client:
+            await_machine(client)
+            said = call.act(client)
+            client.spin(SETTLES)
+            words = f' ({said})' if said else ''
+            space = arguments.namespace
+            print(f'/{space}: {client.summary}{words}{way_out(client, space)}')
+    except Refused as error:
+        print(f'hexarm: {error}{way_out(client, arguments.namespace)}', file=sys.stderr)
+        return REFUSED
+    except Interrupted:
+        return INTERRUPTED
+    return 0
+
+
+def way_out(client: 'Client', namespace: str) -> str:
+    """What ends a stop or a fault, where the machine has one."""
+    if client.machine_state.message not in ('stopped', 'fault'):
+        return ''
+    return f'. Look at the machine, then: hexarm clear {namespace}'
+
+
+def await_machine(client: 'Client') -> None:
+    """Waits until the machine has said its state; NobodyThere tells where it was looked for."""
+    from hexarm.client import UNHEARD, NotReady  # noqa: PLC0415 (needs ROS)
+
+    try:
+        client.wait('a machine', lambda: client.machine_state.message != UNHEARD, HEARD_WITHIN)
+    except NotReady as error:
+        raise NobodyThere(
+            nobody_in(client.node.get_namespace(), client.topics, client.domain)
+        ) from error

@@ -1,0 +1,132 @@
+"""The `hexarm` command: picks the subcommand and turns errors into one line and a status."""
+
+import argparse
+import contextlib
+import difflib
+import os
+import re
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import NoReturn
+
+from hexarm.cli.statuses import INTERRUPTED, PIPE_CLOSED, REFUSED
+from manipulator.errors import ManipulatorError
+from manipulator.requirements import missing
+
+EXAMPLES = """\
+examples:
+  hexarm demo                                          the whole graph on a fake board
+  hexarm up hexapod                                    the graph, until Ctrl-C
+  hexarm up hexapod --port /dev/ttyACM0                the same with a real board
+  hexarm ik robocake --xyz 0 0 0.045 --rpy 0 0 0.1     metres and radians
+  hexarm check my_machine.yaml                         what is wrong with a machine file
+  hexarm calibrate servos robocake --output mine.yaml  signs and centres, on a fake board
+
+MACHINE is a shipped name (hexarm machines) or the path of a YAML file. Exit status: 0 good,
+1 failed, 2 refused or not understood, 3 out of reach (hexarm reach), 130 Ctrl-C, 141 nobody
+reads the output any more. `hexarm COMMAND --help` tells more of a command.
+"""
+
+
+MOST_OF_AN_ERROR = 400
+"""Characters of a wrong argument's message, which has room for the names of all commands."""
+
+
+class Parser(argparse.ArgumentParser):
+    """Names the nearest command for one that does not exist."""
+
+    def error(self, message: str) -> NoReturn:
+        """Usage, the message, status 2."""
+        found = re.search(r"invalid choice: '(.*?)' \(choose from (.*)\)", message)
+        if found is not None:
+            choices = re.findall(r'[\w-]+', found[2])
+            near = difflib.get_close_matches(found[1], choices, n=1)
+            message = f'{found[1]!r} is not one of {", ".join(choices)}'
+            message += f', did you mean {near[0]!r}?' if near else ''
+        super().error(message[:MOST_OF_AN_ERROR])
+
+
+def main(words: list[str] | None = None) -> int:
+    """Runs one subcommand; see hexarm/cli/statuses.py for what it returns."""
+    try:
+        try:
+            return _explained(words)
+        finally:
+            if sys.stdout is not None:
+                sys.stdout.flush()
+    except BrokenPipeError:
+        _silence()
+        return PIPE_CLOSED
+
+
+def _explained(words: list[str] | None) -> int:
+    """Runs one subcommand; an error is one line and status 1."""
+    try:
+        return _run(words)
+    except ManipulatorError as error:
+        print(f'hexarm: {error}', file=sys.stderr)
+    except ModuleNotFoundError as error:
+        print(f'hexarm: {missing(error)}', file=sys.stderr)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return 1
+
+
+def _silence() -> None:
+    """Lets what is still buffered vanish: at its end Python would flush it, and complain."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(AttributeError, OSError, ValueError):
+            os.dup2(nowhere, stream.fileno())
+
+
+def _run(words: list[str] | None) -> int:
+    parser = _parser(sys.argv[1:] if words is None else words)
+    arguments = parser.parse_args(words)
+    if arguments.run is None:
+        parser.print_help(sys.stderr)
+        return REFUSED
+    return int(arguments.run(arguments))
+
+
+def _parser(words: list[str]) -> Parser:
+    parser = Parser(
+        prog='hexarm',
+        description='Six-axis manipulators, from a pose target to servo pulses.',
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument('--version', action='version', version=f'hexarm {_version()}')
+    parser.set_defaults(run=None)
+    commands = parser.add_subparsers(metavar='COMMAND', title='commands')
+    for command in _commands(words):
+        command.add_parser(commands)
+    return parser
+
+
+def _commands(words: list[str]) -> 'tuple[ModuleType, ...]':
+    """The modules of the subcommands; of `stop` its own alone, it waits for no other's import."""
+    if words[:1] == ['stop']:
+        from hexarm.cli import stop  # noqa: PLC0415
+
+        return (stop,)
+    # Imported here, where Ctrl-C is caught: it takes a third of a second.
+    from hexarm.cli.commands import COMMANDS  # noqa: PLC0415
+
+    return COMMANDS
+
+
+def _version() -> str:
+    """Of the installation, or of setup.py in a source tree that is not installed."""
+    from importlib.metadata import PackageNotFoundError, version  # noqa: PLC0415 (slow, as above)
+
+    try:
+        return str(version('hexarm'))
+    except PackageNotFoundError:
+        setup = Path(__file__).resolve().parents[2] / 'setup.py'
+        return str(re.findall(r"version='(.*?)'", setup.read_text())[0])
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,91 @@
+"""`hexarm monitor`: what the nodes of a machine say of themselves, live in the terminal."""
+
+import argparse
+import contextlib
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from hexarm.cli.up import Interrupted, StopSignal
+from hexarm.namespaces import namespace_of, nobody_in
+from manipulator.nodes.terminal import Terminal
+
+if TYPE_CHECKING:
+    from rich.console import Group
+
+    from hexarm.client import Client
+
+REDRAW = 0.25
+SILENT = 3.0
+"""Seconds after which a node that reports every second is said to be silent."""
+
+COLOURS = {b'\0': 'green', b'\1': 'yellow', b'\2': 'red', b'\3': 'red'}
+"""By the level of a DiagnosticStatus: OK, WARN, ERROR, STALE."""
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommand."""
+    parser = commands.add_parser('monitor', help='show live what the nodes say of themselves')
+    parser.add_argument(
+        'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Draws until q or Ctrl-C; needs a terminal and rich."""
+    from rich.live import Live  # noqa: PLC0415 (other commands do without)
+
+    from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
+
+    stop = StopSignal()
+    namespace = arguments.namespace
+    view = View(namespace)
+    with (
+        Terminal() as terminal,
+        Client(namespace, stop.check) as client,
+        Live(screen=True, auto_refresh=False) as live,
+        contextlib.suppress(Interrupted),
+    ):
+        while terminal.read() not in (b'q', None):
+            view.note(client, time.monotonic())
+            live.update(view.drawn(client, time.monotonic()), refresh=True)
+            client.spin(REDRAW)
+    return 0
+
+
+@dataclass
+class View:
+    """The last report of each node in `namespace`, and when it came (s, monotonic)."""
+
+    namespace: str
+    heard: dict[str, tuple[Any, float]] = field(default_factory=dict)
+
+    def note(self, client: 'Client', now: float) -> None:
+        """Keeps the reports that are new."""
+        for name, report in client.diagnostics.items():
+            space, _, node = name.rpartition('/')
+            if space == self.namespace and self.heard.get(node, (None,))[0] is not report:
+                self.heard[node] = report, now
+
+    def drawn(self, client: 'Client', now: float) -> 'Group':
+        """One head line for the machine, then a block for each node."""
+        from rich.columns import Columns  # noqa: PLC0415
+        from rich.console import Group  # noqa: PLC0415
+        from rich.text import Text  # noqa: PLC0415
+
+        blocks: list[Text | Columns] = [
+            Text(f'/{self.namespace}: {client.summary}', style='bold'),
+            Text('q or Ctrl-C ends this', style='dim'),
+        ]
+        for node, (report, at) in sorted(self.heard.items()):
+            age = now - at
+            said = f'silent for {age:.0f} s' if age > SILENT else report.message
+            colour = 'red' if age > SILENT else COLOURS[bytes(report.level)]
+            blocks.append(Text.assemble('\n', (node, f'bold {colour}'), f'  {said}'))
+            values = [f'{pair.key} {pair.value}' for pair in report.values if pair.value]
+            blocks.append(Columns([Text(value) for value in values], equal=True, padding=(0, 3)))
+        if not self.heard:
+            said = nobody_in(self.namespace, client.topics, client.domain)
+            blocks.append(Text(f'\nnothing heard yet: {said}'))
+        return Group(*blocks)

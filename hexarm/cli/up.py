@@ -1,0 +1,280 @@
+"""`hexarm up robocake`: a whole graph, servos enabled, until Ctrl-C; then it parks."""
+
+import argparse
+import contextlib
+import signal
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hexarm.graph import (
+    Executable,
+    Graph,
+    board_process,
+    link_folder,
+    node_processes,
+    ros_arguments,
+    wait_for,
+)
+from hexarm.machines import described, family, load, read
+from hexarm.namespaces import NAMESPACE
+from hexarm.panel_process import panel_process, panel_words
+from manipulator.errors import ManipulatorError, Refused
+
+if TYPE_CHECKING:
+    from hexarm.client import Client
+
+SETTLES = 1.0
+"""Seconds within which a STOP from before is said to the board, and obeyed."""
+LOOKS = 1.0
+"""Seconds in which a graph that runs already is found."""
+OURS = ('trajectory', 'ik', 'pose', 'serial_bridge')
+"""Nodes of which a namespace has one; a fake board may be there for `--port` to name."""
+SERVOS_OFF = ('not heard of', 'disconnected', 'booting', 'disarmed')
+MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
+NAME = 'a shipped name or the path of a machine file'
+SHORT = ', '.join(f'{kind} is short for {name}' for kind, name in MACHINES.items())
+
+
+class NodeDied(ManipulatorError):
+    """A node of the graph has ended by itself."""
+
+
+class Interrupted(ManipulatorError):
+    """Somebody pressed Ctrl-C, or asked the process to end."""
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommand."""
+    parser = commands.add_parser('up', help='start a whole graph and enable the servos')
+    parser.add_argument('name', metavar='MACHINE', help=f'{NAME}; {SHORT}')
+    parser.add_argument('--machine', help=f'{NAME}, after hexapod or arm')
+    parser.add_argument('--port', default='fake', help="a device, 'fake' (default) or 'simavr'")
+    parser.add_argument('--namespace', help='default: hexapod or arm, as the machine is')
+    parser.add_argument('--separate', action='store_true', help='one process for each node')
+    parser.add_argument('--panel', action='store_true', help='with a web page to look and drive')
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Runs the graph; status 0 after Ctrl-C, 1 when a part of it ended or did not get ready."""
+    from hexarm.client import Client  # noqa: PLC0415 (needs ROS, which `hexarm ik` does not)
+
+    machine = arguments.machine or MACHINES.get(arguments.name, arguments.name)
+    check(arguments.name, machine, arguments.namespace)
+    namespace = arguments.namespace or family(machine)
+    pages = [panel_process(machine)] if arguments.panel else []
+    stop, parts = StopSignal(), Parts(machine, namespace, arguments.port)
+
+    def interrupt() -> None:
+        stop.check()
+        parts.check_alive()
+
+    with parts, Client(namespace, interrupt) as client:
+        parts.start_processes([*parts.board, *pages])
+        refuse_second(client, namespace)
+        print(described(machine), flush=True)
+        parts.start_nodes(arguments.separate)
+        try:
+            enable(client, namespace)
+            print(_welcome(namespace, machine, arguments.port), flush=True)
+            for page in pages:
+                print(f'The panel is on {panel_words(page)}', flush=True)
+            _watch(client)
+        except Interrupted:
+            stop.is_set = False
+            park(client, stop)
+    return 0
+
+
+class Parts:
+    """Everything that runs for one machine: processes, and nodes in this one.
+
+    A context manager that leaves none behind. The context of ROS that nodes and client share is
+    made when it is entered.
+    """
+
+    def __init__(self, machine: str, namespace: str, port: str) -> None:
+        self._stack = contextlib.ExitStack()
+        self._machine, self._namespace, self._port = machine, namespace, port
+        self._link: Path | None = None
+        self._graphs: list[Graph] = []
+        self._are_nodes_alive: Callable[[], bool] = lambda: True
+        self.board: list[Executable] = []
+
+    def __enter__(self) -> 'Parts':
+        """Makes the folder of the board's port, and the context."""
+        from manipulator.nodes.run import context  # noqa: PLC0415 (needs ROS)
+
+        link = Path(self._stack.enter_context(link_folder())) / 'board'
+        self.board = board_process(self._machine, self._port, link)
+        self._link = link if self.board else None
+        parameters = {'machine': self._machine, 'port': str(self._link or self._port)}
+        self._stack.enter_context(context(ros_arguments(self._namespace, parameters)))
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        """Ends them, the ones that were started last first."""
+        self._stack.close()
+
+    def start_processes(self, processes: list[Executable]) -> None:
+        """Starts processes that are watched from now on."""
+        self._graphs.append(self._stack.enter_context(Graph(processes, self._namespace)))
+
+    def start_nodes(self, is_separate: bool) -> None:
+        """The machine's four nodes: in this process, or as one process each."""
+        if is_separate:
+            self.start_processes(node_processes(self._machine, self._port, self._link))
+            return
+        from hexarm.nodes import machine_nodes  # noqa: PLC0415 (as above)
+        from manipulator.nodes.run import spinning  # noqa: PLC0415
+
+        wait_for(self._link)
+        self._are_nodes_alive = self._stack.enter_context(spinning(machine_nodes()))
+
+    def check_alive(self) -> None:
+        """Raises NodeDied when one of them has ended."""
+        for graph in self._graphs:
+            check_alive(graph)
+        if not self._are_nodes_alive():
+            raise NodeDied('the nodes ended by an error; stopping the others')
+
+
+def check(name: str, machine: str, namespace: str | None) -> None:
+    """Raises Refused or ConfigError for what would only fail once the nodes have started.
+
+    `name` is what the user called the machine, or 'hexapod' or 'arm' for one of the kind.
+    """
+    if namespace is not None and NAMESPACE.fullmatch(namespace) is None:
+        raise Refused(f'namespace {namespace!r} is not a ROS name: letters, digits, _ and /')
+    load(machine)
+    if name not in MACHINES and machine != name:
+        raise Refused(f'both {name!r} and --machine {machine}: name one machine')
+    if name in MACHINES and family(machine) != name:
+        raise Refused(f'{machine} is a {read(machine).kind}: hexarm up {machine}')
+
+
+def refuse_second(client: 'Client', namespace: str) -> None:
+    """Raises Refused where a graph runs in this namespace: both would receive every call."""
+    client.spin(LOOKS)
+    found = client.node.get_node_names_and_namespaces()
+    if any(name in OURS and space.strip('/') == namespace.strip('/') for name, space in found):
+        raise Refused(
+            f'a graph runs in /{namespace.strip("/")} already: end it, or take another '
+            '--namespace or ROS_DOMAIN_ID (other computers on the network count)'
+        )
+
+
+class StopSignal:
+    """SIGINT and SIGTERM as a flag, and as an exception at the next `check`."""
+
+    def __init__(self) -> None:
+        self.is_set = False
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, self._set)
+
+    def check(self) -> None:
+        """Raises Interrupted after a signal."""
+        if self.is_set:
+            raise Interrupted('interrupted')
+
+    def _set(self, number: int, frame: object) -> None:
+        self.is_set = True
+
+
+def check_alive(graph: Graph) -> None:
+    """Raises NodeDied when a process of the graph has ended."""
+    dead = graph.dead()
+    if dead is not None:
+        raise NodeDied(f'{dead}; stopping the others')
+
+
+def enable(client: 'Client', namespace: str) -> None:
+    """Energises the servos; a machine that is stopped waits until somebody has cleared it."""
+    space = namespace.strip('/')
+    while True:
+        print('energising the servos, one by one', flush=True)
+        try:
+            client.enable()
+            return
+        except Refused:
+            client.spin(SETTLES)
+            if client.machine_state.message != 'stopped':
+                raise
+        print(
+            f'{client.summary}. It is enabled once you have looked at it and called\n'
+            f'  hexarm clear {space}\n'
+            f'or  ros2 service call /{space}/serial_bridge/clear_fault std_srvs/srv/Trigger',
+            flush=True,
+        )
+        while client.machine_state.message == 'stopped':
+            client.spin(0.2)
+
+
+def park(client: 'Client', stop: StopSignal) -> None:
+    """Goes to park and switches the servos off; where it cannot, asks before it lets go.
+
+    In a terminal the answer is another Ctrl-C. Without one the servos stay on: what the board then
+    does is what the machine file says of a lost link.
+    """
+    if client.machine_state.message in SERVOS_OFF:
+        return
+    try:
+        _go_to_park(client)
+    except Interrupted:
+        print('not parked: interrupted again', flush=True)
+    except ManipulatorError as error:
+        print(f'not parked: {error}', flush=True)
+        if not _may_let_go(client, stop):
+            return
+    stop.is_set = False
+    try:
+        client.disable()
+    except ManipulatorError as error:
+        print(f'the servos are still on: {error}')
+
+
+def _go_to_park(client: 'Client') -> None:
+    """Raises Refused, Stopped or NotReady where it does not get there."""
+    from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
+
+    if client.machine_state.message != 'enabled':
+        raise Refused(f'the machine is {client.machine_state.message}')
+    print('parking; Ctrl-C again switches the servos off where they are', flush=True)
+    with contextlib.suppress(NotReady):
+        client.wait('the pose', lambda: client.motion('mode') not in ('', 'disabled'), 1.0)
+    client.park()
+
+
+def _may_let_go(client: 'Client', stop: StopSignal) -> bool:
+    """Whether somebody at a terminal confirms that the servos may be switched off here."""
+    if not sys.stdin.isatty():
+        print('the servos stay on: the board does what on_link_loss says', flush=True)
+        return False
+    print('The servos hold. Ctrl-C switches them off here: an arm may fall.', flush=True)
+    stop.is_set = False
+    try:
+        while client.machine_state.message not in SERVOS_OFF:
+            client.spin(0.2)
+    except Interrupted:
+        return True
+    return False
+
+
+def _watch(client: 'Client') -> None:
+    """Prints every change of the machine's state until something ends it."""
+    last = client.machine_state.message
+    while True:
+        client.spin(0.2)
+        if client.machine_state.message != last:
+            last = client.machine_state.message
+            print(client.summary, flush=True)
+
+
+def _welcome(namespace: str, machine: str, port: str) -> str:
+    return (
+        f'{machine} is up on {port} and enabled, in namespace /{namespace}. Ctrl-C parks it.\n'
+        f'Publish geometry_msgs/PoseStamped on /{namespace}/goal_pose and watch '
+        f'/{namespace}/pose and /{namespace}/motion_status.'
+    )

@@ -1,0 +1,56 @@
+"""`hexarm urdf MACHINE [--output FILE]`: an arm as URDF, for RViz, Foxglove, MoveIt."""
+
+import argparse
+from pathlib import Path
+
+from arm_control.arm import SerialArm
+from arm_control.urdf import urdf
+from hexarm import machines
+from hexarm.cli.answers import Answer, add_machine, answering
+from hexarm.simulation.dynamics_config import ArmDynamicsConfig
+from manipulator.config import build
+from manipulator.errors import InvalidInput, Refused
+from manipulator.machine import MachineFile
+from manipulator.words import counted, reason
+
+THICKNESS = 0.06
+"""Radius of a rod, in characteristic lengths, where the file has no section `dynamics`."""
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommand."""
+    parser = commands.add_parser('urdf', help='write an arm as URDF')
+    add_machine(parser)
+    parser.add_argument('--output', type=Path, metavar='FILE', help='instead of the terminal')
+    parser.set_defaults(run=answering(answer))
+
+
+def answer(arguments: argparse.Namespace) -> Answer:
+    """The document, or where it was written; Refused for a platform, whose legs are loops."""
+    arm = machines.load(arguments.machine).kinematics
+    if not isinstance(arm, SerialArm):
+        raise Refused(
+            f'{arguments.machine} is a parallel platform, and URDF has no closed loops: '
+            f'hexarm mjcf {arguments.machine}'
+        )
+    radii, torques = _drawn(machines.read(arguments.machine), arm)
+    text = urdf(machines.find(arguments.machine).stem, arm, radii, torques)
+    if arguments.output is None:
+        return {'urdf': text}, [text.rstrip('\n')]
+    try:
+        arguments.output.write_text(text, encoding='utf-8')
+    except OSError as error:
+        raise InvalidInput(f'cannot write {arguments.output}: {reason(error)}') from error
+    joints = len(arm.joint_names)
+    return {'output': str(arguments.output), 'joints': joints}, [
+        f'{arguments.output}: {counted(joints, "joint")}'
+    ]
+
+
+def _drawn(machine_file: MachineFile, arm: SerialArm) -> tuple[list[float], list[float]]:
+    """Radius (m) and torque (N m) of each joint; the torque is 0 where nobody told it."""
+    if machine_file.dynamics is None:
+        count = len(arm.joint_names)
+        return [THICKNESS * arm.characteristic_length] * count, [0.0] * count
+    told = build(ArmDynamicsConfig, machine_file.dynamics, 'dynamics').links
+    return [1e-3 * link.radius_mm for link in told], [link.drive.torque_n_m for link in told]

@@ -1,0 +1,1 @@
+"""What `hexarm demo` shows of both machines."""

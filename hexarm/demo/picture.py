@@ -1,0 +1,88 @@
+"""The picture of the demonstration: for both machines path, joint angles, errors over time."""
+
+from pathlib import Path
+
+import matplotlib as mpl
+
+mpl.use('Agg')
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from mpl_toolkits.mplot3d import Axes3D
+
+from hexarm.demo.arm_picture import draw_arm, draw_held
+from hexarm.demo.arm_report import ArmResult
+from hexarm.demo.report import Result
+from manipulator.arrays import Array
+from manipulator.machine import Machine
+
+ASKED, DONE = '#9aa5b1', '#0b6e99'
+CRANKS = ('#0b6e99', '#3aa6b9', '#6a994e', '#d4a017', '#d1603d', '#8e4162')
+
+
+def draw(result: Result, arm_result: ArmResult, arm: Machine, picture: Path) -> None:
+    """Saves the picture."""
+    plt.rcParams.update({'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False})
+    figure = plt.figure(figsize=(12, 12.8), dpi=110)
+    _path(figure.add_axes((0.01, 0.51, 0.46, 0.43), projection='3d'), result)
+    _joints(figure.add_axes((0.56, 0.775, 0.37, 0.155)), 'crank of leg', *_angles(result))
+    _errors(figure.add_axes((0.56, 0.545, 0.37, 0.165)), result)
+    draw_arm(figure.add_axes((0.01, 0.01, 0.46, 0.43), projection='3d'), arm_result, arm)
+    _joints(figure.add_axes((0.56, 0.275, 0.37, 0.155)), 'joint', *_angles(arm_result))
+    draw_held(figure.add_axes((0.56, 0.045, 0.37, 0.165)), arm_result)
+    for y, title, source in (
+        (0.975, 'RoboCake: goal moves and a tilted circle', "the fake board's servos"),
+        (0.475, 'Six-axis arm: driven by a gamepad through joy_teleop', 'its stepper drives'),
+    ):
+        figure.text(0.02, y, title, size=14, weight='bold')
+        figure.text(0.02, y - 0.0175, f'from the true joint angles of {source}', color='#4a5a6a')
+    figure.savefig(picture)
+    plt.close(figure)
+
+
+def _angles(result: Result | ArmResult) -> tuple[Array, Array]:
+    seen = result.observation
+    return seen.times - seen.times[0], np.degrees(seen.joints)
+
+
+def _path(axes: Axes3D, result: Result) -> None:
+    curve = result.observation.curve
+    asked = [curve.pose_at(t).position for t in np.linspace(0, curve.duration, 400)]
+    corners = [result.poses.position[0], *(g.position for _, g in result.observation.corners)]
+    for points in (asked, corners):
+        axes.plot(*(1e3 * np.array(points).T), color=ASKED, lw=5, solid_capstyle='round')
+    done = 1e3 * result.poses.position
+    axes.plot(*done.T, color=DONE, lw=1.2)
+    axes.plot([], [], color=ASKED, lw=5, label='asked for')
+    axes.plot([], [], color=DONE, lw=1.2, label='done')
+    axes.plot(*done[0], 'o', color='#d1603d', ms=6, label='park')
+    axes.set(
+        xlabel='x (mm)',
+        ylabel='y (mm)',
+        zlabel='z (mm)',
+    )
+    axes.set_aspect('equal', adjustable='box')
+    axes.set_box_aspect(None, zoom=0.95)
+    axes.view_init(elev=28, azim=-55)
+    axes.legend(loc='upper left', frameon=False)
+
+
+def _joints(axes: Axes, title: str, t: Array, angles: Array) -> None:
+    for k, colour in enumerate(CRANKS):
+        axes.plot(t, angles[:, k], color=colour, lw=1.1, label=f'{k + 1}')
+    axes.set(ylabel='angle (°)', xlim=(0, t[-1]))
+    axes.legend(title=title, ncols=6, frameon=False, loc='lower left', bbox_to_anchor=(0, 1.0))
+    axes.grid(alpha=0.25)
+
+
+def _errors(axes: Axes, result: Result) -> None:
+    t = result.observation.times - result.observation.times[0]
+    axes.plot(t, 1e3 * result.contour, color=DONE, lw=1.1)
+    axes.set(xlabel='time (s)', xlim=(0, t[-1]), ylim=(0, None))
+    axes.set_ylabel('contour error (mm)', color=DONE)
+    axes.grid(alpha=0.25)
+    other = axes.twinx()
+    other.plot(t, np.degrees(result.orientation), color='#d1603d', lw=1.1)
+    other.set_ylabel('orientation error (°)', color='#d1603d')
+    other.set_ylim(0, None)

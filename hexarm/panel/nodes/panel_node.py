@@ -1,0 +1,174 @@
+"""One web page for one machine: hears the graph, draws the page, sends what hands ask for."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.node import Node
+from std_msgs.msg import Float64
+
+from hexarm.panel.gripper import gripper_of
+from hexarm.panel.meshes import sphere
+from hexarm.panel.nodes.asking import Asking
+from hexarm.panel.nodes.hearing import Hearing
+from hexarm.panel.nodes.joystick_socket import JoystickSocket
+from hexarm.panel.nodes.newest_worker import NewestWorker
+from hexarm.panel.nodes.web_server import address, start_server, stop_server
+from hexarm.panel.page import Page
+from hexarm.panel.reachable import reachable_ranges
+from hexarm.panel.view import View
+from manipulator.arrays import Array
+from manipulator.machine import Machine
+from manipulator.nodes.diagnostics import Diagnostics, Report
+from manipulator.nodes.jog_topics import NO_TWIST, JogTopics
+from manipulator.nodes.parameters import declare
+from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.steady_timer import SteadyTimer
+from manipulator.pose import Pose
+from manipulator.reach.words import explained
+from manipulator.words import counted
+from manipulator.workspace.inside import surface
+
+TICK = 0.02
+DRAW_EVERY, SAMPLE_EVERY, GOAL_EVERY, REDRAW_EVERY = 3, 5, 5, 20
+"""Ticks between scene updates, plot samples, goals of the sliders, and all the rest."""
+
+HAND_RESTS = 2.0
+"""Seconds after the last move of a slider in which the sliders stay where the hand left them."""
+
+FOLLOWED = ('hold', 'jog', 'cycle', 'path')
+"""Modes in which the machine goes where the sliders did not ask it to."""
+
+ELSEWHERE = 1e-4
+REACH_GRID = (13, 24)
+HOST = 'address to serve the page on; 0.0.0.0 for every network: there is no login'
+PORT = 'port number of the page; where it is taken, the next free one'
+
+
+class PanelNode(Node):
+    """Everything of a machine on http://host:port; see docs/panel.md."""
+
+    def __init__(self, load: Callable[[str], Machine], default_machine: str) -> None:
+        super().__init__('panel')
+        name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
+        host = declare(self, 'host', '127.0.0.1', HOST)
+        port = declare(self, 'port', 8080, PORT, (1, 65535))
+        self._machine = load(name)
+        gripper = gripper_of(name)
+        self._joystick = JoystickSocket(self._why_still)
+        self._hearing = Hearing(self, self._machine, gripper)
+        self._topics = JogTopics(self, 'panel')
+        self._asking = Asking(self, self._joystick.stop, self._topics.choose, self._grip)
+        limits = self._machine.motion
+        self._full = np.repeat([limits.linear.speed, limits.angular.speed], 3)
+        label = f'{Path(name).stem} · {self.get_namespace()}'
+        self._server = start_server(host, port, label, self._joystick.serve)
+        joystick = Path(__file__).parents[1].joinpath('joystick.html').read_text(encoding='utf-8')
+        self._page = Page(
+            self._server, self._machine, gripper is not None, label, joystick,
+            self._asking.wishes, self._wish_goal,
+        )  # fmt: skip
+        self._reach = NewestWorker[tuple[Pose, Array | None]](self._show_reach)
+        self._moved_at = self._gripped_at = float('-inf')
+        self._ticks = 0
+        self._reach_at = self._machine.kinematics.home
+        self._is_reach_asked = self._is_hull_drawn = False
+        self._view = View()
+        self.create_subscription(Float64, 'speed_override', self._on_speed, COMMAND)
+        self._timer = SteadyTimer(self, TICK, self._tick)
+        self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/panel',))
+        self.address = address(host, self._server.get_port())
+        self.get_logger().info(f'the page is on {self.address}')
+
+    def close(self) -> None:
+        """Lets go of the machine, then of the pages."""
+        self._topics.close()
+        stop_server(self._server)
+
+    def _tick(self) -> None:
+        self._asking.put()
+        stick = self._joystick.stick()
+        twist = NO_TWIST if stick is None else stick * self._full * self._page.joystick_share
+        self._topics.drive(twist, '', stick is not None)
+        self._ticks += 1
+        if self._is_time_for(GOAL_EVERY):
+            self._asking.send_goal()
+        is_watched = bool(self._server.get_clients())
+        self._hearing.listen(is_watched)
+        if is_watched:
+            self._draw()
+
+    def _draw(self) -> None:
+        if self._is_time_for(DRAW_EVERY):
+            self._view = self._hearing.view()
+            self._page.show(self._view, self._asking.said)
+        if self._is_time_for(SAMPLE_EVERY):
+            self._page.note(self._view, time.monotonic())
+        if self._is_time_for(REDRAW_EVERY):
+            self._page.redraw(self._view)
+            self._follow(self._view)
+
+    def _follow(self, view: View) -> None:
+        """Sliders show where the machine is, unless a hand has just moved one."""
+        if not self._is_reach_asked:
+            self._is_reach_asked = True
+            self._ask_reach(self._page.sliders.pose)
+        now = time.monotonic()
+        if now - self._gripped_at > HAND_RESTS:
+            self._page.follow_gripper(view.measured)
+        if view.commanded is None or now - self._moved_at < HAND_RESTS:
+            return
+        pose = view.commanded.pose
+        if view.mode in FOLLOWED and self._is_elsewhere(pose):
+            self._page.sliders.follow(pose)
+            self._page.scene.show_goal(pose)
+        if view.mode == 'hold' and np.abs(self._reach_at.twist_to(pose)).max() > ELSEWHERE:
+            self._ask_reach(pose)
+
+    def _is_elsewhere(self, pose: Pose) -> bool:
+        return bool(np.abs(self._page.sliders.pose.twist_to(pose)).max() > ELSEWHERE)
+
+    def _wish_goal(self, pose: Pose) -> None:
+        self._moved_at = time.monotonic()
+        self._asking.wish_goal(pose)
+        self._ask_reach(pose)
+
+    def _grip(self, opening: float) -> None:
+        self._gripped_at = time.monotonic()
+        self._topics.open_to(opening)
+
+    def _ask_reach(self, pose: Pose) -> None:
+        self._page.scene.show_goal(pose)
+        self._reach_at = pose
+        commanded = self._view.commanded
+        self._reach.ask((pose, None if commanded is None else commanded.joints))
+
+    def _show_reach(self, question: tuple[Pose, Array | None]) -> None:
+        """In the worker's thread: the range of each slider, and once the hull."""
+        pose, near = question
+        ranges = reachable_ranges(self._machine, pose, near)
+        reason = '' if ranges.any() else explained(self._machine, pose, near)
+        self._page.sliders.show_reach(pose, ranges, reason)
+        if not self._is_hull_drawn:
+            self._is_hull_drawn = True
+            self._page.show_reach(surface(self._machine, sphere(*REACH_GRID)))
+
+    def _why_still(self) -> str:
+        """What a hand on the joystick should know."""
+        state = self._hearing.machine_state.message
+        return '' if state == 'enabled' else f'the machine is {state}'
+
+    def _on_speed(self, message: Float64) -> None:
+        if 0.0 <= message.data <= 1.0:
+            self._page.show_speed(message.data)
+
+    def _is_time_for(self, every: int) -> bool:
+        return self._ticks % every == 0
+
+    def _report(self) -> Report:
+        pages = len(self._server.get_clients())
+        holds = self._joystick.stick() is not None
+        values = {'address': self.address, 'pages': pages, 'joystick_held': holds}
+        return DiagnosticStatus.OK, counted(pages, 'page'), values

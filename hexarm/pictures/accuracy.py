@@ -1,0 +1,57 @@
+"""A map of the position error that servos cause, in three planes through home."""
+
+from pathlib import Path
+
+import matplotlib as mpl
+
+mpl.use('Agg')
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.figure import Figure
+
+from hexarm.pictures.workspace import INK, PLANES, SOFT, draw_section
+from manipulator.accuracy.joint_errors import JointErrors
+from manipulator.accuracy.spread import linear_spread
+from manipulator.arrays import Array
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+from manipulator.workspace.inside import Section, section
+from manipulator.workspace.volume import bounding_box, with_orientation
+
+GRID = 141
+
+
+def draw(machine: Machine, errors: JointErrors, picture: Path, name: str) -> None:
+    """Saves the picture."""
+    plt.rcParams.update(
+        {'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False, 'text.color': INK}
+    )
+    home, length = machine.kinematics.home, machine.kinematics.characteristic_length
+    box = bounding_box(with_orientation(machine, home.rotation), home.position, length)
+    planes = [section(machine, axes, box.low, box.high, GRID) for axes in PLANES]
+    values = [1e3 * _position_rms(machine, plane, errors) for plane in planes]
+    limits = np.quantile(np.concatenate([v[np.isfinite(v)] for v in values]), [0.0, 0.98])
+    figure: Figure = plt.figure(figsize=(11, 4.2), dpi=100)
+    figure.text(0.02, 0.93, f'{name}: position error by all servo errors', size=13, weight='bold')
+    figure.text(0.02, 0.87, 'rms in mm, to first order; unturned, planes through home', color=SOFT)
+    for column, (plane, value) in enumerate(zip(planes, values, strict=True)):
+        axes = figure.add_axes((0.06 + 0.3 * column, 0.11, 0.24, 0.68))
+        drawn = draw_section(axes, plane, value, ('viridis_r', *limits), machine)
+    figure.colorbar(drawn, cax=figure.add_axes((0.94, 0.15, 0.012, 0.6)))
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(picture)
+    plt.close(figure)
+
+
+def _position_rms(machine: Machine, plane: Section, errors: JointErrors) -> Array:
+    """Metres, NaN outside the workspace, on the section's grid."""
+    inside = plane.conditions.admitted
+    home = machine.kinematics.home
+    places = np.tile(home.position, (*inside.shape, 1))
+    places[..., plane.axes[0]], places[..., plane.axes[1]] = plane.across[None], plane.up[:, None]
+    chosen = places[inside]
+    poses = Pose(chosen, np.broadcast_to(home.rotation, (len(chosen), 3, 3)))
+    values = np.full(inside.shape, np.nan)
+    values[inside] = linear_spread(machine.kinematics, poses, errors).position_rms
+    return values

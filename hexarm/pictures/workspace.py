@@ -1,0 +1,151 @@
+"""The pictures of a workspace: its shape with sections, and joint speeds along an axis."""
+
+from pathlib import Path
+
+import matplotlib as mpl
+
+mpl.use('Agg')
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D
+
+from hexarm.demo.picture import CRANKS
+from manipulator.arrays import Array
+from manipulator.machine import Machine
+from manipulator.workspace.inside import AXES, Section, joint_rates, section, surface
+from manipulator.workspace.survey import Survey
+
+GRID = 161
+RINGS, SECTORS = 37, 73
+SPEED = 0.03
+INK, SOFT = '#22313f', '#4a5a6a'
+PLANES = ((0, 1), (0, 2), (1, 2))
+SHAPE, SPEEDS = 'workspace', 'joint_speeds'
+
+
+def draw(machine: Machine, found: Survey, path: Path, name: str) -> list[Path]:
+    """Saves both pictures: under these names in a folder, or as FILE and beside it."""
+    plt.rcParams.update(
+        {'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False, 'text.color': INK}
+    )
+    if path.suffix:
+        files = [path, path.with_name(f'{path.stem}_{SPEEDS}{path.suffix}')]
+    else:
+        files = [path / f'{SHAPE}.png', path / f'{SPEEDS}.png']
+    files[0].parent.mkdir(parents=True, exist_ok=True)
+    for file, figure in zip(
+        files, (_shape(machine, found, name), _speeds(machine, found, name)), strict=True
+    ):
+        figure.savefig(file)
+        plt.close(figure)
+    return files
+
+
+def _shape(machine: Machine, found: Survey, name: str) -> Figure:
+    """The surface, and three planes through home by σmin and by joint speed."""
+    figure: Figure = plt.figure(figsize=(12.6, 6.6), dpi=100)
+    volume = found.constant_orientation
+    figure.text(
+        0.02, 0.95, f'{name}: where the platform goes without turning', size=14, weight='bold'
+    )
+    figure.text(
+        0.02, 0.915,
+        f'{1e3 * volume.value:.4g} ± {1e3 * volume.error:.1g} dm³ within all limits; '
+        'sections through home', color=SOFT,
+    )  # fmt: skip
+    _surface(figure.add_axes((-0.025, 0.02, 0.37, 0.88), projection='3d'), machine)
+    planes = [section(machine, axes, found.box.low, found.box.high, GRID) for axes in PLANES]
+    rows = (
+        ('sigma_min', 'singularity margin σmin', 'viridis', 1.0),
+        ('joint_speed', _speed_label(machine), 'magma_r', _speed_factor(machine)),
+    )
+    for row, (field, label, colours, factor) in enumerate(rows):
+        values = [factor * getattr(plane.conditions, field) for plane in planes]
+        inside = np.concatenate([v[np.isfinite(v)] for v in values])
+        limits = np.quantile(inside, [0.0, 0.98])
+        for column, (plane, value) in enumerate(zip(planes, values, strict=True)):
+            box = (0.385 + 0.185 * column, 0.535 - 0.445 * row, 0.15, 0.32)
+            drawn = draw_section(figure.add_axes(box), plane, value, (colours, *limits), machine)
+        bar = figure.add_axes((0.945, 0.55 - 0.445 * row, 0.01, 0.28))
+        figure.colorbar(drawn, cax=bar)
+        figure.text(0.385, 0.875 - 0.445 * row, label, color=SOFT)
+    return figure
+
+
+def _surface(axes: Axes3D, machine: Machine) -> None:
+    polar, turn = np.meshgrid(
+        np.linspace(0, np.pi, RINGS), np.linspace(0, 2 * np.pi, SECTORS), indexing='ij'
+    )
+    directions = np.stack(
+        [np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar)], axis=-1
+    )
+    x, y, z = np.moveaxis(1e3 * surface(machine, directions), -1, 0)
+    axes.plot_surface(
+        x, y, z, cmap='YlGnBu_r', rstride=1, cstride=1, lw=0.15, edgecolor='#ffffff90'
+    )
+    axes.set(xlabel='x (mm)', ylabel='y (mm)', zlabel='z (mm)')
+    axes.set_box_aspect([float(np.ptp(v)) for v in (x, y, z)], zoom=0.9)
+    axes.view_init(elev=18, azim=-60)
+
+
+def draw_section(
+    axes: Axes, plane: Section, values: Array, scale: tuple[str, float, float], machine: Machine
+) -> QuadMesh:
+    """One map, with the workspace's edge and home."""
+    colours, low, high = scale
+    across, up = 1e3 * plane.across, 1e3 * plane.up
+    drawn = axes.pcolormesh(
+        across, up, values, cmap=colours, vmin=low, vmax=high, shading='nearest', rasterized=True
+    )
+    axes.contour(across, up, plane.conditions.admitted, levels=[0.5], colors=INK, linewidths=0.9)
+    home = 1e3 * machine.kinematics.home.position
+    axes.plot(home[plane.axes[0]], home[plane.axes[1]], '+', color=INK, ms=7, mew=1.2)
+    axes.set_xlabel(f'{AXES[plane.axes[0]]} (mm)', labelpad=1)
+    axes.set_ylabel(f'{AXES[plane.axes[1]]} (mm)', labelpad=1)
+    axes.set_aspect('equal', adjustable='box')
+    return drawn
+
+
+def _speed_factor(machine: Machine) -> float:
+    """From rad/m to degrees per millimetre; m/m stays."""
+    return float(np.degrees(1e-3)) if machine.kinematics.joint_unit == 'rad' else 1.0
+
+
+def _speed_label(machine: Machine) -> str:
+    unit = '°/s per mm/s' if machine.kinematics.joint_unit == 'rad' else 'mm/s per mm/s'
+    return f'fastest joint per platform speed, worst direction ({unit})'
+
+
+def _speeds(machine: Machine, found: Survey, name: str) -> Figure:
+    """Joint positions and speeds while x moves at 30 mm/s: Prokopovich 2019, fig. 9."""
+    low, high = found.ranges['x']
+    x = np.linspace(low, high, 803)[1:-1]
+    home, kinematics = machine.kinematics.home, machine.kinematics
+    poses = home.moved(x[:, None] * np.eye(6)[0])
+    factor, unit = (np.degrees(1.0), '°') if kinematics.joint_unit == 'rad' else (1e3, 'mm')
+    joints = factor * kinematics.inverse_or_nan(poses)
+    rates = factor * SPEED * joint_rates(machine, poses)[..., 0]
+    figure: Figure = plt.figure(figsize=(11, 4.4), dpi=100)
+    left, right = figure.subplots(1, 2)
+    figure.subplots_adjust(left=0.07, right=0.98, bottom=0.13, top=0.8, wspace=0.2)
+    figure.text(0.02, 0.93, f'{name}: x moves at 30 mm/s through home', size=13, weight='bold')
+    for k, joint in enumerate(kinematics.joint_names):
+        colour = CRANKS[k % len(CRANKS)]
+        left.plot(1e3 * x, joints[:, k], color=colour, lw=1.3, label=joint)
+        right.plot(1e3 * x, rates[:, k], color=colour, lw=1.3)
+    left.set(xlabel='x from home (mm)', ylabel=f'joint position ({unit})')
+    fastest = float(factor * np.max(machine.motion.joint.speed))
+    bound = 1.15 * float(np.quantile(np.abs(rates), 0.985))
+    if np.isfinite(fastest) and fastest < bound * 1.5:
+        for side in (-1.0, 1.0):
+            right.axhline(side * fastest, color=SOFT, lw=0.8, ls=':')
+        bound = max(bound, 1.1 * fastest)
+    right.set(xlabel='x from home (mm)', ylabel=f'joint speed ({unit}/s)', ylim=(-bound, bound))
+    left.legend(ncols=6, frameon=False, loc='lower left', bbox_to_anchor=(0, 1.0), fontsize=8)
+    for axes in (left, right):
+        axes.grid(alpha=0.25)
+    return figure

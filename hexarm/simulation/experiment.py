@@ -1,0 +1,101 @@
+"""A periodic motion in simulation, with ideal sensors: Prokopovich 2019, figs 12 and 13."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from hexarm.simulation.simulation import Reading, Simulation
+from manipulator.arrays import Array, frozen
+from manipulator.errors import InvalidInput
+from manipulator.kinematics import Kinematics
+from manipulator.pose import Pose
+from manipulator.trajectory.cycle import Cycle
+
+SHOWN_STEPS = 4
+Shift = Callable[[Pose, Array], Array]
+"""What is added to the joints (N, n) that poses (N) ask for, before drives get them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """What the sensors showed, one row every 2 ms; wanted are the poses asked for.
+
+    closure is how far the worst loop's ends are apart, metres.
+    """
+
+    times: Array
+    joints: Array
+    rates: Array
+    efforts: Array
+    poses: Pose
+    twists: Array
+    accelerations: Array
+    closure: Array
+    wanted: Pose
+
+    @property
+    def errors(self) -> Array:
+        """The twist (N, 6) from each pose to the one asked for at that moment, m and rad."""
+        return self.poses.twist_to(self.wanted)
+
+
+def run(
+    simulation: Simulation, kinematics: Kinematics, cycle: Cycle, periods: float, shift: Shift
+) -> Recording:
+    """Drives the cycle with a new target at every step, after one period in which it swells.
+
+    Raises InvalidInput for a cycle that does not repeat or periods ≤ 0, Unreachable for one that
+    leaves the reach.
+    """
+    period = cycle.checked_duration
+    if not period > 0 or not periods > 0:
+        raise InvalidInput(f'{periods:g} periods of {period:g} s, both must be above 0')
+    dt = simulation.step_time
+    swelling, count = (round(t / dt) for t in (period, period * periods))
+    times = np.linspace((1 - swelling) * dt, count * dt, swelling + count)
+    poses = _swelling(cycle, times, period)
+    joints = kinematics.inverse(poses, simulation.joints)
+    targets = joints + shift(poses, joints)
+    readings, closure, shown = [], [], []
+    for k, target in enumerate(targets):
+        simulation.aim(target)
+        if k < swelling or (k - swelling + 1) % SHOWN_STEPS:
+            simulation.step()
+            continue
+        readings.append(simulation.watched())
+        shown.append(k)
+        closure.append(simulation.closure_errors().max(initial=0.0))
+    return _recording(readings, frozen(closure), poses[shown])
+
+
+def unshifted(pose: Pose, joints: Array) -> Array:
+    """Targets as the kinematics has them."""
+    return np.zeros(joints.shape)
+
+
+def _swelling(cycle: Cycle, times: Array, period: float) -> Pose:
+    """The cycle from time 0 on; in the period before that, its way out from the centre."""
+    part: Array = np.clip(1.0 + times / period, 0.0, 1.0)
+    part = part**3 * (10 - 15 * part + 6 * part**2)
+    return cycle.centre.moved(part[:, None] * cycle.centre.twist_to(cycle.at(times).pose))
+
+
+def _recording(readings: list[Reading], closure: Array, wanted: Pose) -> Recording:
+    def stacked(name: str) -> Array:
+        return frozen(np.array([getattr(reading, name) for reading in readings]))
+
+    times = stacked('time')
+    positions = np.array([reading.pose.position for reading in readings])
+    rotations = np.array([reading.pose.rotation for reading in readings])
+    return Recording(
+        frozen(times - times[0] + times[1] - times[0]),
+        stacked('joints'),
+        stacked('rates'),
+        stacked('effort'),
+        Pose(positions, rotations),
+        stacked('twist'),
+        stacked('acceleration'),
+        closure,
+        wanted,
+    )

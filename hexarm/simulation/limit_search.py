@@ -1,0 +1,130 @@
+"""The most that a crank platform's servos can do along a straight line through home.
+
+At every place of the line, going either way at any speed up to the one asked for, while
+speeding up or slowing down: a line without a beginning or an end, harder than any real motion.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from hexapod_control.rotary import RotaryHexapod
+from hexarm.simulation.drives import Drives
+from hexarm.simulation.dynamics_config import RotaryDynamicsConfig
+from hexarm.simulation.inverse_dynamics import InverseDynamics
+from manipulator.trajectory.plan import MotionState
+
+PLACES = 21
+RELATIVE = 1e-4
+
+
+@dataclass(frozen=True)
+class Demand:
+    """What is asked of a line: payload in kg, speed in m/s, acceleration in m/s²."""
+
+    payload: float
+    speed: float
+    acceleration: float
+
+
+@dataclass(frozen=True, eq=False)
+class Costs:
+    """The worst of a demand: the largest torque (N·m), crank rate (rad/s), and load.
+
+    load is the torque by what the motor has left at its speed; above 1 it stalls.
+    """
+
+    torque: float
+    rate: float
+    load: float
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A straight way through home along a base axis, level; from `low` to `high` metres."""
+
+    axis: int
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class LimitSearch:
+    """What one machine needs along a line; drives as its servos at some voltage."""
+
+    kinematics: RotaryHexapod
+    dynamics: RotaryDynamicsConfig
+    drives: Drives
+    line: Line
+    _by_payload: dict[float, InverseDynamics] = field(default_factory=dict, repr=False)
+
+    def costs(self, demand: Demand) -> Costs:
+        """The worst over all places, speeds up to the one asked for, and both accelerations."""
+        motion = self._motions(demand)
+        solver = self._solver(demand.payload)
+        cranks = solver.cranks(motion)
+        torques = solver.torques(motion, cranks)
+        rotor = self.drives.rotor * cranks.accelerations
+        helping = np.sign(torques + rotor) * cranks.rates
+        left = self.drives.effort * (1 - np.maximum(helping, 0.0) / self.drives.speed)
+        load = np.abs(torques + rotor) / np.maximum(left, 1e-9)
+        rate = float(np.abs(cranks.rates).max())
+        return Costs(float(np.abs(torques).max()), rate, float(load.max()))
+
+    def holds_separately(self, demand: Demand) -> bool:
+        """Torque below that at standstill, crank rate below the free speed; no rotors."""
+        costs = self.costs(demand)
+        is_slow = costs.rate <= float(self.drives.speed.min())
+        return is_slow and costs.torque <= float(self.drives.effort.min())
+
+    def holds_together(self, demand: Demand) -> bool:
+        """Rotors in it, and torque falling with speed as a motor's does."""
+        return self.costs(demand).load <= 1.0
+
+    def _solver(self, payload: float) -> InverseDynamics:
+        if payload not in self._by_payload:
+            load = replace(self.dynamics.payload, mass_g=1e3 * payload)
+            config = replace(self.dynamics, payload=load)
+            self._by_payload[payload] = InverseDynamics(self.kinematics, config)
+        return self._by_payload[payload]
+
+    def _motions(self, demand: Demand) -> MotionState:
+        """Every place, at rest and at full speed either way, with both accelerations."""
+        along = np.linspace(self.line.low, self.line.high, PLACES)
+        speeds = demand.speed * np.array([-1.0, 0.0, 1.0])
+        accelerations = np.array([-demand.acceleration, demand.acceleration])
+        grid = np.meshgrid(along, speeds, accelerations, indexing='ij')
+        place, speed, acceleration = (np.ravel(g) for g in grid)
+        unit = np.eye(6)[self.line.axis]
+        pose = self.kinematics.home.moved(place[:, None] * unit)
+        return MotionState(pose, speed[:, None] * unit, acceleration[:, None] * unit)
+
+
+def largest(holds: Callable[[float], bool], first: float) -> float:
+    """The largest value that holds, to a part in ten thousand; 0 where not even a trace does.
+
+    `holds` must be true up to some value and false above it.
+    """
+    low, high = 0.0, first
+    while holds(high):
+        low, high = high, 2 * high
+        if high > 1e9 * first:
+            return float('inf')
+    while high - low > RELATIVE * high:
+        middle = (low + high) / 2
+        low, high = (middle, high) if holds(middle) else (low, middle)
+        if high < 1e-9 * first:
+            return 0.0
+    return low
+
+
+def along(search: LimitSearch, demand: Demand, name: str, is_together: bool) -> float:
+    """The largest payload, speed or acceleration (by name), the other two as in `demand`."""
+    holds = search.holds_together if is_together else search.holds_separately
+    return largest(lambda value: holds(replace(demand, **{name: value})), getattr(demand, name))
+
+
+def lines(half_length: float) -> dict[str, Line]:
+    """Lines along x, y and z, half_length metres to either side of home."""
+    return {name: Line(axis, -half_length, half_length) for axis, name in enumerate('xyz')}

@@ -1,0 +1,75 @@
+"""From a machine file to its MuJoCo model: one function a kind of machine."""
+
+from collections.abc import Callable
+from typing import Any
+
+from hexapod_control.geometry import LEGS
+from hexarm.simulation.arm_model import arm_model
+from hexarm.simulation.drives import Drives, pushing, turning
+from hexarm.simulation.dynamics_config import (
+    SCHEMAS,
+    ArmDynamicsConfig,
+    LinearDynamicsConfig,
+    RotaryDynamicsConfig,
+)
+from hexarm.simulation.linear_model import linear_model
+from hexarm.simulation.mechanism import Mechanism
+from hexarm.simulation.rotary_model import rotary_model
+from manipulator.config import build
+from manipulator.errors import ConfigError
+from manipulator.kinematics import Kinematics
+from manipulator.machine import MachineFile
+
+Dynamics = RotaryDynamicsConfig | LinearDynamicsConfig | ArmDynamicsConfig
+
+
+def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dynamics:
+    """The section `dynamics`, checked; payload_g in place of its own payload.
+
+    Raises ConfigError where it is missing or wrong, or a payload is negative or not finite.
+    """
+    if machine_file.dynamics is None:
+        raise ConfigError(
+            ['dynamics: missing, the model needs masses and drives (see docs/physics.md)']
+        )
+    section: dict[str, Any] = dict(machine_file.dynamics)
+    if payload_g is not None and isinstance(section.get('payload'), dict):
+        section['payload'] = {**section['payload'], 'mass_g': float(payload_g)}
+    return build(SCHEMAS[machine_file.kind], section, 'dynamics')
+
+
+def drives_of(dynamics: Dynamics, machine_file: MachineFile) -> Drives:
+    """The servos of a machine, in the order of its joints."""
+    servos = machine_file.servos
+    if isinstance(dynamics, LinearDynamicsConfig):
+        return pushing(dynamics.drive, LEGS, servos)
+    if isinstance(dynamics, RotaryDynamicsConfig):
+        return turning((dynamics.drive,) * LEGS, servos)
+    return turning(tuple(link.drive for link in dynamics.links), servos)
+
+
+def mechanism(
+    name: str,
+    machine_file: MachineFile,
+    kinematics: Kinematics,
+    payload_g: float | None = None,
+    torque: float | None = None,
+) -> Mechanism:
+    """The model of one machine; kinematics is what its file makes, without frames of its own.
+
+    payload_g replaces the file's payload, torque (N·m or N) its drives' effort. ConfigError as
+    `dynamics_of`.
+    """
+    dynamics = dynamics_of(machine_file, payload_g)
+    drives = drives_of(dynamics, machine_file)
+    if torque is not None:
+        drives = drives.stronger(torque)
+    make = _MODELS[type(dynamics)]
+    return make(name, kinematics, dynamics, drives)
+
+
+_MODELS: dict[type[Dynamics], Callable[..., Mechanism]] = {
+    RotaryDynamicsConfig: rotary_model,
+    LinearDynamicsConfig: linear_model,
+    ArmDynamicsConfig: arm_model,
+}

@@ -1,0 +1,100 @@
+"""What crank and linear platforms have in common as MuJoCo models: plate, payload, drives."""
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+
+from hexapod_control.geometry import LEGS
+from hexarm.simulation.drives import Drives
+from hexarm.simulation.dynamics_config import PayloadConfig, PlateConfig
+from hexarm.simulation.rigid_body import RigidBody, payload, plate
+from hexarm.simulation.xml import BLUE, ORANGE, add, child, inertial
+from manipulator.arrays import Array
+
+PLATFORM = 'platform'
+
+
+def inradius(points: Array) -> float:
+    """Of the hexagon about joints (6, 3), with faces every 60°, the first towards +x."""
+    turns = np.arange(LEGS) * np.pi / 3
+    faces = np.stack([np.cos(turns), np.sin(turns)])
+    return float((points[:, :2] @ faces).max())
+
+
+def moving_bodies(
+    plate_config: PlateConfig, load: PayloadConfig, points: Array
+) -> tuple[RigidBody, ...]:
+    """The platform and, when it weighs anything, what it carries; in the platform's frame."""
+    bodies = [plate(plate_config, inradius(points))]
+    if load.mass_g > 0:
+        bodies.append(payload(load))
+    return tuple(bodies)
+
+
+def add_platform(
+    root: ET.Element, plate_config: PlateConfig, load: PayloadConfig, points: Array, height: float
+) -> None:
+    """The free body with the platform's frame, a site a joint, and the payload fixed to it."""
+    body = add(child(root, 'worldbody'), 'body', name=PLATFORM, pos=(0.0, 0.0, height))
+    add(body, 'freejoint', name=PLATFORM)
+    own, *carried = moving_bodies(plate_config, load, points)
+    inertial(body, own, np.zeros(3))
+    half = 0.5e-3 * plate_config.thickness_mm
+    add_hexagon(root, body, PLATFORM, inradius(points), (-half, half), BLUE)
+    for leg, point in enumerate(points, start=1):
+        add(body, 'site', name=f'joint_{leg}', pos=point)
+    for other in carried:
+        held = add(body, 'body', name='payload', pos=other.centre)
+        inertial(held, other, other.centre)
+        size = (1e-3 * load.radius_mm, 0.5e-3 * load.height_mm)
+        add(held, 'geom', type='cylinder', size=size, mass='0', rgba=ORANGE)
+
+
+def add_hexagon(
+    root: ET.Element,
+    body: ET.Element,
+    name: str,
+    radius: float,
+    heights: tuple[float, float],
+    rgba: str,
+) -> None:
+    """A hexagonal prism to look at, with faces every 60°."""
+    corners = (np.arange(LEGS) + 0.5) * np.pi / 3
+    outer = 2 * radius / np.sqrt(3)
+    ring = np.stack([outer * np.cos(corners), outer * np.sin(corners)], axis=1)
+    vertices = np.vstack([np.column_stack([ring, np.full(LEGS, z)]) for z in heights])
+    add(child(root, 'asset'), 'mesh', name=name, vertex=vertices)
+    middle = (0.0, 0.0, sum(heights) / 2)
+    add(body, 'geom', type='mesh', mesh=name, pos=middle, mass='0', rgba=rgba)
+
+
+def add_closure(root: ET.Element, leg: int) -> tuple[str, str]:
+    """The ball joint between a leg's end and the platform; returns the sites that meet."""
+    pair = (f'end_{leg}', f'joint_{leg}')
+    add(child(root, 'equality'), 'connect', name=f'ball_{leg}', site1=pair[0], site2=pair[1])
+    return pair
+
+
+def add_drives(root: ET.Element, joints: tuple[str, ...], drives: Drives) -> None:
+    """One actuator a joint: a spring towards its target that saturates at the drive's effort."""
+    for name, stiffness, effort in zip(joints, drives.stiffness, drives.effort, strict=True):
+        add(
+            child(root, 'actuator'), 'general', name=name, joint=name, gainprm=stiffness,
+            biastype='affine', biasprm=(0.0, -stiffness, 0.0), forcerange=(-effort, effort),
+        )  # fmt: skip
+
+
+def add_joint(
+    body: ET.Element, name: str, kind: str, axis: Array, home: float, drives: Drives, index: int
+) -> None:
+    """A driven joint whose coordinate is the kinematics' own."""
+    add(
+        body, 'joint', name=name, type=kind, axis=axis, ref=home,
+        damping=drives.damping[index], armature=drives.rotor[index],
+    )  # fmt: skip
+
+
+def add_hinges(body: ET.Element, leg: int, axes: tuple[Array, Array]) -> None:
+    """A universal joint without friction."""
+    for which, axis in zip('ab', axes, strict=True):
+        add(body, 'joint', name=f'universal_{leg}{which}', type='hinge', axis=axis)

@@ -1,0 +1,140 @@
+"""What the drives must hold against gravity, by virtual work.
+
+A drive's effort is how fast the potential energy grows with its joint: τ = Σ m g ∂z/∂q. A rod of
+even density counts half at either end.
+"""
+
+from typing import Protocol
+
+import numpy as np
+
+from arm_control.arm import SerialArm
+from hexapod_control.linear import LinearPlatform
+from hexapod_control.parallel_platform import ParallelPlatform
+from hexapod_control.rotary import RotaryHexapod
+from hexarm.simulation.arm_model import arm_links
+from hexarm.simulation.dynamics_config import (
+    ArmDynamicsConfig,
+    LinearDynamicsConfig,
+    RotaryDynamicsConfig,
+)
+from hexarm.simulation.model import Dynamics
+from hexarm.simulation.platform_parts import moving_bodies
+from hexarm.simulation.rigid_body import payload
+from hexarm.simulation.xml import GRAVITY
+from manipulator.arrays import Array
+from manipulator.errors import InvalidInput
+from manipulator.kinematics import Kinematics
+from manipulator.pose import Pose
+
+
+class StaticLoad(Protocol):
+    """Efforts (..., n) in N·m or N that hold poses (...) with joints (..., n) at rest."""
+
+    def __call__(self, pose: Pose, joints: Array) -> Array:
+        """NoSolution at a forward singularity, where no finite effort holds the platform."""
+        ...
+
+
+def static_load(kinematics: Kinematics, dynamics: Dynamics) -> StaticLoad:
+    """The static load of one machine; InvalidInput where kinematics and masses do not fit."""
+    if isinstance(kinematics, RotaryHexapod) and isinstance(dynamics, RotaryDynamicsConfig):
+        return _rotary(kinematics, dynamics)
+    if isinstance(kinematics, LinearPlatform) and isinstance(dynamics, LinearDynamicsConfig):
+        return _linear(kinematics, dynamics)
+    if isinstance(kinematics, SerialArm) and isinstance(dynamics, ArmDynamicsConfig):
+        return _arm(kinematics, dynamics)
+    raise InvalidInput(f'{type(kinematics).__name__} does not fit {type(dynamics).__name__}')
+
+
+def _platform_wrench(
+    kinematics: ParallelPlatform, bodies: tuple[Array, Array], joint_mass: float, pose: Pose
+) -> Array:
+    """∂E/∂twist (..., 6) of the moving bodies and of joint_mass (kg) at each platform joint."""
+    masses, centres = bodies
+    points = np.vstack([centres, kinematics.geometry.platform_points])
+    weights = GRAVITY * np.concatenate([masses, np.full(6, joint_mass)])
+    arms = points @ np.swapaxes(pose.rotation, -1, -2)
+    # A twist (v, ω) lifts the point at arm r by v_z + ω_x r_y − ω_y r_x.
+    lift = np.zeros((*arms.shape[:-1], 6))
+    lift[..., 2] = 1.0
+    lift[..., 3], lift[..., 4] = arms[..., 1], -arms[..., 0]
+    wrench: Array = np.einsum('k,...kj->...j', weights, lift)
+    return wrench
+
+
+def _bodies(kinematics: ParallelPlatform, dynamics: Dynamics) -> tuple[Array, Array]:
+    if isinstance(dynamics, ArmDynamicsConfig):
+        raise InvalidInput('an arm has no platform')
+    points = kinematics.geometry.platform_points
+    bodies = moving_bodies(dynamics.platform, dynamics.payload, points)
+    return np.array([b.mass for b in bodies]), np.array([b.centre for b in bodies])
+
+
+def _in_joints(kinematics: ParallelPlatform, pose: Pose, joints: Array, wrench: Array) -> Array:
+    jacobian = kinematics.jacobian(pose, joints)
+    result: Array = np.einsum('...ij,...i->...j', jacobian, wrench)
+    return result
+
+
+def _rotary(kinematics: RotaryHexapod, dynamics: RotaryDynamicsConfig) -> StaticLoad:
+    bodies, geometry = _bodies(kinematics, dynamics), kinematics.geometry
+    half_rod, half_crank = 0.5e-3 * dynamics.rod.mass_g, 0.5e-3 * dynamics.crank.mass_g
+
+    def load(pose: Pose, joints: Array) -> Array:
+        wrench = _platform_wrench(kinematics, bodies, half_rod, pose)
+        cosine, sine = np.cos(joints), np.sin(joints)
+        rise = geometry.crank_lengths * (
+            cosine * geometry.ups[:, 2] - sine * geometry.tangents[:, 2]
+        )
+        own: Array = GRAVITY * (half_rod + half_crank) * rise
+        return _in_joints(kinematics, pose, joints, wrench) + own
+
+    return load
+
+
+def _linear(kinematics: LinearPlatform, dynamics: LinearDynamicsConfig) -> StaticLoad:
+    bodies = _bodies(kinematics, dynamics)
+    cylinder, piston = dynamics.cylinder, dynamics.piston
+    masses = np.array([1e-3 * cylinder.mass_g, 1e-3 * piston.mass_g])
+    middle = np.array([0.5e-3 * cylinder.length_mm, -0.5e-3 * piston.length_mm])
+
+    def load(pose: Pose, joints: Array) -> Array:
+        rods = kinematics.unit_rods(pose, joints)
+        # A point s along a leg of length L whose end moves by w goes by (s/L)(w − u u·w) + ṡ u.
+        share = (masses[0] * middle[0] + masses[1] * (joints + middle[1])) / joints
+        arms = kinematics.geometry.platform_points @ np.swapaxes(pose.rotation, -1, -2)
+        across = np.array([0.0, 0.0, 1.0]) - rods[..., 2:] * rods
+        ends = GRAVITY * share[..., None] * across
+        wrench = _platform_wrench(kinematics, bodies, 0.0, pose)
+        wrench[..., :3] += ends.sum(axis=-2)
+        wrench[..., 3:] += np.cross(arms, ends).sum(axis=-2)
+        own: Array = GRAVITY * masses[1] * rods[..., 2]
+        return _in_joints(kinematics, pose, joints, wrench) + own
+
+    return load
+
+
+def _arm(arm: SerialArm, dynamics: ArmDynamicsConfig) -> StaticLoad:
+    links = arm_links(arm, dynamics)
+    carried = payload(dynamics.payload)
+    centres = np.vstack(
+        [*(link.centre for link in links), arm.chain.home.transform(carried.centre[None])]
+    )
+    weights = GRAVITY * np.array([*(link.mass for link in links), carried.mass])
+    holders = np.array([1, 2, 3, 4, 5, 6, 6])
+
+    def load(pose: Pose, joints: Array) -> Array:
+        moved = arm.chain.displacements(joints)
+        held = moved[..., holders, :3, :]
+        where = np.einsum('...kij,kj->...ki', held[..., :3], centres) + held[..., 3]
+        axes = np.einsum('...nij,nj->...ni', moved[..., :-1, :3, :3], arm.chain.axes)
+        points = np.einsum('...nij,nj->...ni', moved[..., :-1, :3, :3], arm.chain.points)
+        points = points + moved[..., :-1, :3, 3]
+        arms = where[..., None, :, :] - points[..., :, None, :]
+        rise = np.cross(axes[..., :, None, :], arms)[..., 2]
+        carries = np.arange(1, 7)[:, None] <= holders
+        result: Array = np.einsum('...nk,nk,k->...n', rise, carries, weights)
+        return result
+
+    return load

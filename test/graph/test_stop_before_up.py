@@ -1,0 +1,45 @@
+"""A board that is stopped stays so for the next bridge; `hexarm up` waits for the clear."""
+
+import signal
+
+import pytest
+from std_msgs.msg import Bool
+
+from hexarm.graph import Executable, Graph
+from manipulator.nodes.qos import EVERY_WORD
+from patient_user import PatientUser
+
+pytestmark = pytest.mark.graph
+
+SPACE = 'stop_before_up'
+
+
+def wait_for_state(user, word):
+    user.wait(word, lambda: user.machine_state.message == word)
+
+
+def stop_by_a_bridge_that_ends(port):
+    """The board obeys a STOP of a bridge that is no more when this returns."""
+    parameters = {'machine': 'robocake', 'port': str(port)}
+    bridge = Executable('serial_bridge', parameters, needs=port)
+    with Graph([bridge], 'before'), PatientUser('before') as user:
+        stops = user.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
+        user.wait('the bridge', lambda: stops.get_subscription_count() == 1)
+        wait_for_state(user, 'disarmed')
+        stops.publish(Bool(data=True))
+        wait_for_state(user, 'stopped')
+
+
+def test_up_waits_until_a_stop_from_before_is_cleared(hexarm, tmp_path):
+    port = tmp_path / 'board'
+    fake = {'machine': 'robocake', 'link': str(port)}
+    with Graph([Executable('fake_hardware', fake)], SPACE):
+        stop_by_a_bridge_that_ends(port)
+        process = hexarm('up', 'hexapod', '--port', str(port), '--namespace', SPACE)
+        assert any('clear_fault std_srvs' in line for line in process.stdout)
+        with PatientUser(SPACE) as user:
+            user.trigger('serial_bridge/clear_fault')
+        assert any('and enabled' in line for line in process.stdout)
+        process.send_signal(signal.SIGINT)
+        assert 'parking' in process.stdout.read()
+        assert process.wait(60) == 0

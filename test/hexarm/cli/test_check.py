@@ -1,0 +1,325 @@
+"""`hexarm check`: one sentence for each thing that is wrong with a machine file, all at once."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from unittest.mock import ANY
+
+import numpy as np
+import pytest
+
+from hexapod_control.geometry import HexagonConfig
+from hexarm.cli.main import main
+from hexarm.machine_check import problems_of, report_of
+from manipulator.config import build, parse_yaml
+
+CONFIG = Path(__file__).parents[3] / 'config'
+ROBOCAKE = (CONFIG / 'robocake.yaml').read_text()
+ARM = (CONFIG / 'arm_6r.yaml').read_text()
+STEWART = (CONFIG / 'stewart_6_3.yaml').read_text()
+UR5 = (CONFIG / 'ur5.yaml').read_text()
+
+
+def changed(text, *replacements):
+    for old, new in replacements:
+        assert old in text, old
+        text = text.replace(old, new)
+    return text
+
+
+def without(text, key):
+    return '\n'.join(line for line in text.splitlines() if not line.strip().startswith(f'{key}:'))
+
+
+def section_without(text, name):
+    kept, is_inside = [], False
+    for line in text.splitlines():
+        if not line.startswith(' '):
+            is_inside = line.startswith(f'{name}:')
+        if not is_inside:
+            kept.append(line)
+    return '\n'.join(kept)
+
+
+@pytest.mark.parametrize('file', sorted(CONFIG.glob('*.yaml')), ids=lambda file: file.stem)
+def test_shipped_files_are_good(file):
+    if 'kind:' in file.read_text():
+        report = report_of(parse_yaml(file.read_text()))
+        assert (report.problems, report.warnings) == ((), ())
+
+
+def test_misspelt_key_names_itself_and_the_nearest():
+    assert problems_of(changed(ROBOCAKE, ('rod_length_mm', 'rod_lenght_mm'))) == [
+        "geometry.rod_lenght_mm: unknown key, did you mean 'rod_length_mm'?",
+        'geometry.rod_length_mm: missing',
+    ]
+
+
+@pytest.mark.parametrize(
+    'place',
+    ['geometry.home_height_mm', 'limits.crank_range_deg', 'motion.linear_jerk_mm_s3', 'link.baud'],
+)
+def test_missing_key_is_named(place):
+    assert problems_of(without(ROBOCAKE, place.split('.')[1])) == [f'{place}: missing']
+
+
+@pytest.mark.parametrize('section', ['geometry', 'limits', 'motion', 'servos', 'link'])
+def test_missing_section_is_said_once(section):
+    assert problems_of(section_without(ROBOCAKE, section)) == [f'{section}: missing']
+
+
+def test_rod_shorter_than_its_gap_says_by_how_much():
+    (found,) = problems_of(changed(ROBOCAKE, ('rod_length_mm: 58.0', 'rod_length_mm: 20.0')))
+    assert 'home' in found
+    assert 'rod too short by' in found
+    assert 'mm' in found
+
+
+@pytest.mark.parametrize(
+    ('key', 'metres'),
+    [
+        ('body_radius_mm: 71.492', 'body_radius_mm: 0.071492'),
+        ('rod_length_mm: 58.0', 'rod_length_mm: 0.058'),
+        ('rod_length_mm: 58.0', 'rod_length_mm: 58000.0'),
+        ('linear_speed_mm_s: 50.0', 'linear_speed_mm_s: 0.05'),
+    ],
+)
+def test_a_factor_of_a_thousand_is_suspected_to_be_another_unit(key, metres):
+    (found,) = problems_of(changed(ROBOCAKE, (key, metres)))
+    assert key.split(':')[0] in found
+    assert 'a factor of 1000: is it in another unit?' in found
+
+
+def test_problems_of_all_sections_come_at_once():
+    found = problems_of(
+        changed(
+            ROBOCAKE,
+            ('rod_length_mm: 58.0', 'rod_length_mm: 0.058'),
+            ('crank_range_deg', 'crank_rang_deg'),
+            ('linear_speed_mm_s: 50.0', 'linear_speed_mm_s: fast'),
+            ('name: crank_3, channel: 2', 'name: crank_3, channel: 1'),
+            ('on_link_loss: hold', 'on_link_loss: hope'),
+            ('hysteresis_deg', 'hysteresis'),
+        )
+        + 'colour: red\n'
+    )
+    for words in (
+        'colour: unknown key',
+        "motion.linear_speed_mm_s: holds str 'fast', needs a number",
+        'geometry.rod_length_mm: 0.058 outside',
+        'limits.crank_rang_deg: unknown key',
+        'limits.crank_range_deg: missing',
+        'servos: joints: channels [0, 1, 1, 3, 4, 5]',
+        "link.on_link_loss: 'hope' is not one of",
+        'simulation.hysteresis: unknown key',
+    ):
+        assert sum(problem.startswith(words) for problem in found) == 1, (words, found)
+    assert len(found) == 8
+
+
+def test_home_beyond_a_limit_is_found_beside_a_faulty_section():
+    found = problems_of(
+        changed(ROBOCAKE, ('[30.0, 210.0]', '[130.0, 210.0]'), ('baud: 250000', 'baud: fast'))
+    )
+    assert sum('home has leg' in problem for problem in found) == 6
+    assert "link.baud: holds str 'fast', needs a whole number" in found
+
+
+@pytest.mark.parametrize('text', ['', '- 1', 'kind: [', 'kind: 7', 'geometry: 5\nservos: none'])
+def test_what_is_no_machine_file_is_refused_in_words(text):
+    found = problems_of(text)
+    assert found
+    assert all(problem.strip() for problem in found)
+
+
+def test_unknown_kind_names_the_nearest():
+    (found,) = problems_of(changed(ROBOCAKE, ('rotary_hexapod', 'rotary_hexpod')))
+    assert "did you mean 'rotary_hexapod'?" in found
+
+
+def test_servo_of_another_name_is_missed_and_found():
+    assert problems_of(changed(ROBOCAKE, ('name: crank_3', 'name: crnak_3'))) == [
+        "servos.joints: none is called 'crank_3', but 'crnak_3'"
+    ]
+
+
+def test_gripper_beside_the_six_joints_is_no_problem():
+    assert 'name: gripper' in ARM
+    assert problems_of(ARM) == []
+
+
+def test_linear_legs_on_rotary_servos_are_refused():
+    servos = ROBOCAKE[ROBOCAKE.index('servos:') : ROBOCAKE.index('link:')]
+    text = section_without(STEWART, 'servos') + '\n' + servos.replace('crank_', 'leg_')
+    (found,) = problems_of(text)
+    assert found.startswith('servos.joints: in degrees')
+
+
+def test_pulse_range_that_does_not_cover_the_joint_range_is_named():
+    narrow = (
+        'crank_2, channel: 1, sign: -1, centre_us: 1500.0',
+        'crank_2, channel: 1, sign: -1, centre_us: 1600.0',
+    )
+    (found,) = problems_of(changed(ROBOCAKE, narrow))
+    # (1600 − 550) / 10.5 = 100° above the centre of 120°, (2450 − 1600) / 10.5 = 80.95° below.
+    assert found == (
+        'servos.joints[1]: crank_2 reaches [39.05, 220] deg, its range in limits is [30, 210] deg'
+    )
+
+
+def test_park_beyond_a_limit_or_a_pulse_range_is_named():
+    park = 'park_deg: [120.0, 120.0, 120.0, 120.0, 120.0, 120.0]'
+    low = problems_of(changed(ROBOCAKE, (park, f'park_deg: [{", ".join(["40.0"] * 6)}]')))
+    assert low
+    assert all(problem.startswith('servos.park_deg: ') for problem in low)
+    (far,) = problems_of(changed(ROBOCAKE, (park, park.replace('[120.0', '[250.0'))))
+    assert far.startswith('servos.park: crank_1: 4.363 rad outside')
+
+
+def test_pivot_out_of_proportion_is_named():
+    (found,) = problems_of(ROBOCAKE + 'frames: {pivot_xyz_mm: [2000.0, 2000.0, 0.0]}\n')
+    assert found.startswith('pivot [2.0, 2.0, 0.0] is not within 2 m')
+
+
+def test_speed_beyond_the_servos_is_named():
+    (found,) = problems_of(changed(ROBOCAKE, ('joint_speed_deg_s: 480', 'joint_speed_deg_s: 700')))
+    assert found.startswith('motion.joint_speed_deg_s: 700 is more than the servos do')
+
+
+def test_command_prints_each_problem_on_a_line_and_fails(tmp_path, capsys):
+    bad = tmp_path / 'bad.yaml'
+    bad.write_text(changed(ROBOCAKE, ('rod_length_mm', 'rod_lenght_mm')))
+    assert main(['check', str(bad)]) == 2
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == f'{bad}: 2 problems'
+    assert len(lines) == 3
+
+
+def test_command_answers_programs(tmp_path, capsys):
+    assert main(['check', 'robocake', '--json']) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found['problems'], found['warnings']) == ([], [])
+    assert found['joints_at_home']['names'] == [f'crank_{i}' for i in range(1, 7)]
+    assert found['joints_at_home']['positions'] == pytest.approx([np.radians(120.0)] * 6, abs=1e-4)
+    assert main(['check', str(tmp_path / 'none.yaml'), '--json']) == 2
+    assert 'does not exist' in json.loads(capsys.readouterr().out)['problems'][0]
+
+
+def test_file_that_is_no_machine_file_is_one_line_with_its_name(tmp_path, capsys):
+    urdf = '<?xml version="1.0"?>\n<robot name="arm">' + '<link name="l"/>' * 800 + '</robot>\n'
+    files = {
+        'arm.urdf': (urdf.encode(), 'is a URDF, which cannot be imported yet'),
+        'huge.urdf': (urdf.encode() * 20, 'is a URDF, which cannot be imported yet'),
+        'page.yaml': (b'<html>' + b'x' * 20_000, 'is XML or HTML, needs YAML'),
+        'mesh.yaml': (bytes(range(256)) * 100, 'cannot be read: it is no text'),
+        'text.yaml': (b'just words ' * 2000, "holds str 'just words"),
+        'list.yaml': (b'- 1\n' * 2000, 'holds a list, needs a mapping'),
+        'tag.yaml': (b'a: !' + b'x' * 20_000 + b' 1', 'could not determine a constructor'),
+        'log.yaml': (b'a' * 500_000, '500000 bytes, a machine file has at most'),
+    }
+    for name, (content, reason) in files.items():
+        path = tmp_path / name
+        path.write_bytes(content)
+        for command in (['check', str(path)], ['fk', str(path), *'000000']):
+            assert main(command) == 2
+            said = ''.join(capsys.readouterr())
+            assert said.count('\n') == 1, said
+            assert f'{path}: {reason}' in said
+            assert len(said) - len(str(path)) < 300, said
+
+
+def test_long_values_and_names_are_not_repeated_whole():
+    long = 'x' * 1000
+    text = changed(
+        ROBOCAKE,
+        ('baud: 250000', f'baud: {long}'),
+        ('on_link_loss: hold', f'on_link_loss: {long}'),
+        ('name: crank_3', f'name: {long}'),
+        ('hysteresis_deg', long),
+        ('rotary_hexapod', long),
+    )
+    found = problems_of(text)
+    assert len(found) == 5
+    assert max(map(len, found)) < 300
+
+
+def test_path_that_is_too_long_is_refused_in_words(capsys):
+    assert main(['check', '/' + 'x/' * 20_000]) == 2
+    said = ''.join(capsys.readouterr())
+    assert 'does not exist' in said
+    assert len(said) < 300
+
+
+def with_level_cranks(is_mirrored):
+    """RoboCake with longer cranks whose angles at home are 0 and about 110°, either the wrong one.
+
+    The rods are as long as it takes from the tips of level cranks.
+    """
+    config = build(HexagonConfig, parse_yaml(ROBOCAKE)['geometry'])
+    joints = replace(config, home_height_mm=51.0, crank_length_mm=30.0).geometry()
+    tips = joints.crank_centres + joints.crank_lengths[:, None] * joints.tangents
+    rod = np.linalg.norm(joints.platform_points[0] + [0.0, 0.0, 0.051] - tips[0])
+    middle = 45.0 if is_mirrored else 120.0
+    return changed(
+        ROBOCAKE,
+        ('crank_length_mm: 17.5', 'crank_length_mm: 30.0'),
+        ('home_height_mm: 41.19', 'home_height_mm: 51.0'),
+        ('rod_length_mm: 58.0', f'rod_length_mm: {1e3 * rod:.6f}'),
+        ('[30.0, 210.0]', f'[{middle - 90.0}, {middle + 90.0}]'),
+        ('centre_deg: 120.0', f'centre_deg: {middle}'),
+        ('minimum_height_mm: 23.39', 'minimum_height_mm: 20.0'),
+        ('park_deg: [120.0, 120.0, 120.0, 120.0, 120.0, 120.0]', f'park_deg: {[110.0] * 6}'),
+    )
+
+
+def test_home_on_the_wrong_bend_is_a_warning_with_both_values():
+    report = report_of(parse_yaml(with_level_cranks(is_mirrored=True)))
+    assert report.problems == ()
+    (warning,) = report.warnings
+    assert 'crank_1, crank_2, crank_3, crank_4, crank_5, crank_6 at 109.9°' in warning
+    assert 'bent the other way: 0.0°, 0.0°' in warning
+
+
+def test_tilted_home_in_the_middle_of_its_range_is_no_warning():
+    report = report_of(parse_yaml(with_level_cranks(is_mirrored=False)))
+    assert (report.problems, report.warnings) == ((), ())
+
+
+@pytest.mark.parametrize(('text', 'scale'), [(ROBOCAKE, 10.5), (UR5, 2.7), (ARM, 8.0)])
+def test_half_a_pulse_scale_is_a_warning_and_none_of_the_file_itself(text, scale):
+    assert report_of(parse_yaml(text)).warnings == ()
+    halved = changed(text, (f'us_per_deg: {scale}', f'us_per_deg: {scale / 2}'))
+    report = report_of(parse_yaml(halved))
+    assert report.problems == ()
+    (warning,) = report.warnings
+    assert f'{scale / 2:.3g} µs/deg' in warning
+
+
+def test_pulses_beyond_what_servos_take_are_a_warning():
+    wide = changed(
+        ROBOCAKE,
+        ('us_per_deg: 10.5', 'us_per_deg: 15.0'),
+        ('[550.0, 2450.0]', '[100.0, 2900.0]'),
+    )
+    report = report_of(parse_yaml(wide))
+    assert report.problems == ()
+    (warning,) = report.warnings
+    assert '150 to 2850 µs' in warning
+
+
+def test_counts_of_other_drives_than_servos_are_not_judged():
+    text = (CONFIG / 'arm_6r_stepper.yaml').read_text()
+    halved = changed(text, ('us_per_deg: 60.0', 'us_per_deg: 30.0'))
+    assert report_of(parse_yaml(halved)) == replace(report_of(parse_yaml(text)), machine=ANY)
+
+
+def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
+    path = tmp_path / 'mine.yaml'
+    path.write_text(changed(ROBOCAKE, ('us_per_deg: 10.5', 'us_per_deg: 5.25')))
+    assert main(['check', str(path)]) == 0
+    head, warning, home = capsys.readouterr().out.splitlines()
+    assert head == f'{path}: no problems, 1 warning'
+    assert warning.startswith('warning: servos.joints: crank_1, crank_2')
+    assert home == 'joints at home: 120.0  120.0  120.0  120.0  120.0  120.0°'
+    assert main(['check', 'stewart_6_6']) == 0
+    assert '190.0  190.0 mm' in capsys.readouterr().out

@@ -1,0 +1,121 @@
+"""`hexarm fk` and `hexarm ik`: one answer, and with --all every one."""
+
+import json
+
+import numpy as np
+import pytest
+
+from hexarm.cli.main import main
+from hexarm.machines import load
+from manipulator.pose import Pose
+
+LEGS = ['0.19', '0.2', '0.19', '0.18', '0.19', '0.19']
+
+
+@pytest.fixture
+def ask(capsys):
+    """Runs a subcommand with --json; its answer."""
+
+    def ask(*words):
+        assert main([*words, '--json']) == 0
+        return json.loads(capsys.readouterr().out)
+
+    return ask
+
+
+def as_pose(told):
+    return Pose.from_xyz_quaternion(told['xyz'], told['quaternion_xyzw'])
+
+
+def test_cold_start_counts_the_modes_that_all_lists(ask):
+    cold = ask('fk', 'stewart_6_6', *LEGS)
+    listed = ask('fk', 'stewart_6_6', *LEGS, '--all')
+    assert listed['is_complete']
+    assert cold['other_modes'] == len(listed['modes']) - 1
+    assert cold['other_modes_reachable'] == 0
+    (reachable,) = [mode for mode in listed['modes'] if mode['is_reachable']]
+    assert np.abs(as_pose(cold['pose']).twist_to(as_pose(reachable['pose']))).max() < 1e-8
+    assert reachable['sigma_min'] == pytest.approx(cold['sigma_min'])
+    assert reachable['violations'] == []
+
+
+def test_every_mode_listed_has_the_joints_asked_for(ask):
+    kinematics = load('stewart_6_6').kinematics
+    modes = ask('fk', 'stewart_6_6', *LEGS, '--all')['modes']
+    assert len(modes) > 2
+    for mode in modes:
+        legs = kinematics.inverse(as_pose(mode['pose']))
+        np.testing.assert_allclose(legs, [float(leg) for leg in LEGS], atol=1e-10)
+
+
+def test_table_of_modes_tells_which_the_machine_can_be_in(capsys):
+    assert main(['fk', 'robocake', *['2.09'] * 6, '--all']) == 0
+    header, *rows, last = capsys.readouterr().out.splitlines()
+    assert 'margin' in header
+    assert len([row for row in rows if row.endswith('reachable')]) == 1
+    assert last == f'{len(rows)} modes, 1 reachable within all limits'
+
+
+def test_serial_arms_have_one_mode(ask):
+    angles = ['0.1', '0.2', '0.3', '0.4', '0.5', '0.6']
+    assert ask('fk', 'arm_6r', *angles)['other_modes'] == 0
+    assert len(ask('fk', 'arm_6r', *angles, '--all')['modes']) == 1
+
+
+def test_all_eight_branches_of_an_arm_give_the_pose(ask):
+    kinematics = load('ur5').kinematics
+    words = ['--xyz', '-0.3', '0.2', '0.3', '--rpy', '0.1', '0.2', '0.3']
+    branches = ask('ik', 'ur5', *words, '--all')['branches']
+    assert len(branches) == 8
+    wanted = Pose.from_xyz_rpy([-0.3, 0.2, 0.3], [0.1, 0.2, 0.3])
+    sets = np.array([branch['positions'] for branch in branches])
+    assert len(np.unique(np.round(sets, 6), axis=0)) == 8
+    for joints in sets:
+        assert np.abs(wanted.twist_to(kinematics.forward(joints).pose)).max() < 1e-9
+    first = ask('ik', 'ur5', *words)['joints']['positions']
+    assert np.abs(sets - first).max(axis=1).min() < 1e-9
+
+
+def test_every_elbow_of_a_crank_platform_is_listed_the_usual_one_first(ask):
+    words = ['--xyz', '0.002', '0.001', '0.042']
+    listed = ask('ik', 'robocake', *words, '--all')
+    usual, *others = listed['branches']
+    assert usual['positions'] == pytest.approx(
+        ask('ik', 'robocake', *words)['joints']['positions']
+    )
+    assert usual['violations'] == []
+    assert len(others) == 63
+    assert all(branch['violations'] for branch in others)
+    kinematics = load('robocake').kinematics
+    pose = Pose.from_xyz_rpy([0.002, 0.001, 0.042])
+    for branch in others:
+        np.testing.assert_allclose(
+            pose.transform(kinematics.geometry.platform_points)
+            - kinematics.unit_rods(pose, np.array(branch['positions'])) * 0.058,
+            kinematics.crank_tips(np.array(branch['positions'])),
+            atol=1e-12,
+        )
+
+
+def test_linear_legs_have_one_branch(ask):
+    assert len(ask('ik', 'stewart_6_3', '--xyz', '0', '0', '0.19', '--all')['branches']) == 1
+
+
+@pytest.mark.parametrize('words', [('0.19',) * 5, ('0.19',) * 5 + ('-0.1',)])
+def test_joints_that_no_machine_has_are_refused_with_status_2(capsys, words):
+    assert main(['fk', 'stewart_6_6', *words, '--all', '--json']) == 2
+    assert 'error' in json.loads(capsys.readouterr().out)
+
+
+def test_ik_asks_whether_millimetres_or_degrees_were_meant(capsys):
+    assert main(['ik', 'ur5', '--xyz', '300', '0', '400']) == 2
+    assert 'are these millimetres?' in capsys.readouterr().err
+    assert main(['ik', 'ur5', '--xyz', '0.3', '0', '0.4', '--rpy', '0', '90', '0']) == 2
+    assert 'pitch: 90 rad is more than a turn; are these degrees?' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('machine', ['robocake', 'ur5'])
+def test_degrees_are_told_from_radians(machine, capsys):
+    assert main(['fk', machine, '0', '0', '90', '0', '0', '0']) == 2
+    assert '90 rad is more than a turn' in capsys.readouterr().err
+    assert main(['fk', 'ur5', '0', '-6.28', '0', '0', '0', '0']) == 0

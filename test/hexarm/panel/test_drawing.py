@@ -1,0 +1,83 @@
+"""Bars, meshes, margins and words: what the page draws, without a page."""
+
+import numpy as np
+import pytest
+
+from hexarm.machines import load
+from hexarm.panel.bars import bars_between
+from hexarm.panel.buttons import state_line
+from hexarm.panel.margins import GOOD, NARROW, NONE_LEFT, colour, shares
+from hexarm.panel.meshes import bar, hull, plate, sphere
+from hexarm.panel.pieces import pieces
+from hexarm.panel.readout import diagnostics_text
+from hexarm.panel.view import NodeReport, View
+from manipulator.rotation import from_quaternion
+
+
+def volume(mesh):
+    """Enclosed by outward faces; wrong where one is missing or inside out."""
+    vertices, faces = mesh
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    return float(np.einsum('ni,ni->', a, np.cross(b, c)) / 6)
+
+
+def test_solids_are_closed_and_face_outwards():
+    n = 20
+    disc = n / 2 * np.sin(2 * np.pi / n)
+    assert volume(bar()) == pytest.approx(disc)
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
+    assert volume(plate(square, 0.5)) == pytest.approx(0.5)
+    assert volume(hull(sphere(41, 80))) == pytest.approx(4 / 3 * np.pi, rel=0.01)
+
+
+def test_a_bar_reaches_from_its_start_to_its_end():
+    starts = np.array([[0.0, 0, 0], [1, 2, 3], [0, 0, 1], [0, 0, 0]])
+    ends = np.array([[0.3, -0.2, 0.5], [1, 2, 5], [0, 0, -1], [0, 0, 0]])
+    found = bars_between(starts, ends, np.full(4, 0.1))
+    for start, end, wxyz, size in zip(starts, ends, found.wxyz, found.sizes, strict=True):
+        turn = from_quaternion(np.roll(wxyz, -1))
+        np.testing.assert_allclose(start + turn @ [0, 0, size[2]], end, atol=1e-8)
+
+
+@pytest.mark.parametrize('name', ['robocake', 'stewart_6_6', 'arm_6r', 'puma560'])
+def test_every_leg_or_joint_shows_its_margin(name):
+    machine = load(name)
+    home = machine.kinematics.home
+    joints = machine.kinematics.inverse(home)
+    found = pieces(machine.kinematics.skeleton(home, joints))
+    owners = {o for o in (*found.owners, *found.ball_owners) if o}
+    assert len(owners) == 6
+    assert owners <= set(shares(machine, home, joints))
+
+
+def test_margins_shrink_towards_a_limit():
+    machine = load('robocake')
+    home = machine.kinematics.home
+    low = home.moved([0.0, 0.0, -0.0177, 0.0, 0.0, 0.0])
+    left = [shares(machine, pose, machine.kinematics.inverse(pose)) for pose in (home, low)]
+    assert left[0][''] > 0.5
+    assert 0.0 < left[1][''] < 0.01
+    assert all(share > 0.0 for share in left[0].values())
+
+
+def test_colours_go_from_red_over_amber_to_green():
+    assert colour(-1.0) == colour(0.0) == NONE_LEFT
+    assert colour(0.175) == NARROW
+    assert colour(1.0) == GOOD
+
+
+def test_what_a_node_says_cannot_become_markup():
+    report = NodeReport('ik', 1, 'a|b <img src=x>', {'last_refusal': '**leg** 3 |'}, 0.2)
+    text = diagnostics_text((report,))
+    assert '⚠' in text
+    assert '\\<img' in text
+    assert '\\*\\*leg\\*\\* 3 \\|' in text
+    silent = NodeReport('ik', 0, 'running', {}, 5.0)
+    assert 'silent for 5 s' in diagnostics_text((silent,))
+
+
+def test_the_state_line_escapes_reasons():
+    line = state_line(View(machine_state='fault', machine_reason='<script>'), 'home: a & b')
+    assert '<script>' not in line
+    assert '&lt;script' in line
+    assert 'a &amp; b' in line
