@@ -1,10 +1,10 @@
 """Mutation testing: changes the code at one place after another and looks whether a test fails.
 
 MODULE is a file or a pattern, by default those of bench/mutants.yaml. Each mutant runs in a
-scratch copy of the tree, against the fast in-process tests that cover its line: the quickest
-first, and one parametrisation of each before the others. Coverage is measured once; `--coverage
-DIR` keeps it for the next run of the same code. A survivor needs a test, or an entry in
-bench/mutants.yaml that says why no test can notice it.
+scratch copy of the tree, against the tests that cover its line and start no other program: the
+quickest first, and one parametrisation of each before the others. Coverage is measured once;
+`--coverage DIR` keeps it for the next run of the same code. A survivor needs a test, or an entry
+in bench/mutants.yaml that says why no test can notice it.
 """
 
 import argparse
@@ -31,14 +31,16 @@ from bench.mutations import Mutation, mutations
 ROOT = Path(__file__).resolve().parents[1]
 SETTINGS = yaml.safe_load((ROOT / 'bench' / 'mutants.yaml').read_text())
 PYTEST = (sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', '--hypothesis-seed=0')
+FAST = ('-m', 'not processes', '-k', 'not chip', '--ignore=test/firmware')
 EQUIVALENT = {
     (module, row['before'], row['after']): row['reason']
     for module, rows in SETTINGS['equivalent'].items()
     for row in rows
 }
 OUTCOMES = ('killed', 'survived', 'not covered', 'equivalent')
-PATIENCE, LOADING = 4.0, 30.0
-"""How many times as long as before a mutant's tests may take, and seconds besides."""
+PATIENCE, LOADING, BUSY = 4.0, 30.0, 8.0
+"""How many times as long as before a mutant's tests may compute, and seconds besides; how many
+times as long as they compute they may wait, as on a busy computer."""
 
 
 @dataclass(frozen=True)
@@ -56,13 +58,13 @@ class Mutant:
 class Tests:
     """Which tests run a line, and how long each takes, measured in one run of them all."""
 
-    def __init__(self, folder: Path, tree: Path, modules: list[str]) -> None:
+    def __init__(self, folder: Path, tree: Path, modules: list[str], jobs: int) -> None:
         if not (folder / 'data').exists():
             folder.mkdir(parents=True, exist_ok=True)
             rooms = sorted({f'--cov={module.split("/")[0]}' for module in modules})
-            options = ['--cov-context=test', '--cov-report=', '-k', 'not chip', '-m', 'not graph']
+            options = ['--cov-context=test', '--cov-report=', '-n', str(jobs), '--dist=loadfile']
             report = ['-o', 'junit_family=xunit1', f'--junitxml={folder}/times.xml']
-            run([*PYTEST, *rooms, *options, *report, *SETTINGS['tests']], tree, 3600.0)
+            run([*PYTEST, *FAST, *rooms, *options, *report], tree, 3600.0)
             shutil.move(tree / '.coverage', folder / 'data')
         self._data = CoverageData(str(folder / 'data'))
         self._data.read()
@@ -106,10 +108,15 @@ class Tests:
 
 
 def run(command: list[str], folder: Path, seconds: float) -> int | None:
-    """The status of a command that sees the tree in `folder`; None when it takes too long."""
-    environment = os.environ | {'PYTHONPATH': str(folder), 'PYTHONDONTWRITEBYTECODE': '1'}
+    """The status of a command that sees the tree in `folder`, and may compute for some seconds.
+
+    None where it waits for something that does not come.
+    """
+    alone = {'OMP_NUM_THREADS': '1', 'OPENBLAS_NUM_THREADS': '1', 'PYTHONDONTWRITEBYTECODE': '1'}
+    environment = os.environ | alone | {'PYTHONPATH': str(folder)}
+    limited = ('sh', '-c', f'ulimit -t {round(seconds)}; exec nice "$@"', 'sh')
     with subprocess.Popen(
-        ['nice', *command],
+        [*limited, *command],
         cwd=folder,
         env=environment,
         stdout=subprocess.DEVNULL,
@@ -117,7 +124,7 @@ def run(command: list[str], folder: Path, seconds: float) -> int | None:
         start_new_session=True,
     ) as process:
         try:
-            return process.wait(seconds)
+            return process.wait(BUSY * seconds)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             return None
@@ -219,7 +226,7 @@ def main(arguments: list[str]) -> None:
     with tempfile.TemporaryDirectory(prefix='hexarm_mutants_') as scratch:
         trees = [copy_tree(Path(scratch) / f'tree_{k}') for k in range(options.jobs)]
         folder = options.coverage or Path(scratch) / 'coverage'
-        tests = Tests(folder.absolute(), trees[0], [mutant.module for mutant in mutants])
+        tests = Tests(folder.absolute(), trees[0], [m.module for m in mutants], options.jobs)
         laboratory = Laboratory(trees, tests, options.tests, options.seconds)
         with ThreadPoolExecutor(options.jobs) as pool:
             outcomes = []

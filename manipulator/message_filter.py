@@ -16,7 +16,7 @@ class MessageFilter:
     refused changes nothing else: the last good command stays.
     """
 
-    def __init__(self, clock_start: float = 0.0) -> None:
+    def __init__(self, clock_start: float) -> None:
         """clock_start: the system's clock at monotonic time zero, for `clock_offset`."""
         self.refused = 0
         self.last_refusal = ''

@@ -120,7 +120,7 @@ def demand(part: Stretch, machine: Machine, dt: float) -> Demand:
     }
     peaks = {name: float(ratios.max(initial=0.0)) for name, ratios in readings.items()}
     worst = max(peaks, key=lambda name: peaks[name])
-    tick = int(np.argmax(readings[worst])) if readings[worst].size else 0
+    tick = int(np.argmax(readings[worst]))
     return Demand(peaks[worst], worst, float(part.times[tick]))
 
 

@@ -41,6 +41,20 @@ def test_axes_of_opposite_senses_make_the_same_arm_with_angles_of_opposite_signs
     assert np.abs(reached.twist_to(targets)[closes]).max() < 1e-9
 
 
+def test_an_arm_whose_shoulder_is_ahead_of_joint_1_is_inverted_too(arm):
+    chain = arm.chain
+    ahead = 0.1 * np.cross(chain.axes[0], chain.axes[1])
+    points = chain.points + np.outer([0, 1, 1, 1, 1, 1], ahead)
+    home = Pose(chain.home.position + ahead, chain.home.rotation)
+    shifted = SerialArm(
+        Chain(chain.axes, points, home), arm.limits, arm.characteristic_length, arm.rest
+    )
+    assert type(shifted.method) is type(arm.method)
+    joints = np.random.default_rng(13).uniform(arm.limits.low, arm.limits.high, (30, 6))
+    branches = shifted.inverse_all(shifted.chain.forward(joints))
+    assert np.nanmin(apart(branches, joints[:, None]), axis=-1).max() < 1e-6
+
+
 @pytest.mark.parametrize(
     ('name', 'joints', 'free'),
     [

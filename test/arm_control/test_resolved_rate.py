@@ -209,6 +209,24 @@ def test_sliding_out_of_a_corner_is_said_and_goes_with_the_stick(machine_file):
     assert slides > 10
 
 
+CORNERS = [
+    ('arm_6r', [-2.96706, -1.210189, -2.617994, -3.141593, 0.109612, 6.108652]),
+    ('ur5', [-0.032387, -6.283185, 3.591289, -1.072466, 2.946607, -6.283185]),
+    ('puma560', [-2.792527, 3.057604, -2.904086, 2.96706, 0.001, -4.642576]),
+]
+
+
+@pytest.mark.parametrize(('name', 'joints'), CORNERS)
+def test_who_slides_out_of_a_corner_has_no_other_way_to_drive(machine_file, name, joints):
+    """Near a singular posture with joints at their stops; no twist may slide if one is driven."""
+    jog = jogging(machine_file(name))
+    joints = np.clip(joints, jog.arm.limits.low, jog.arm.limits.high)
+    steps = [jog.step(JogState.at_rest(joints), twist, DT) for twist in TWELVE]
+    is_sliding = any('corner of the joint ranges' in step.held_by for step in steps)
+    is_driven = any(s.scale > 0.0 and not s.held_by.startswith('sliding') for s in steps)
+    assert is_sliding != is_driven
+
+
 def test_commands_that_are_not_six_finite_numbers_are_refused(machine_file):
     jog = jogging(machine_file('arm_6r'))
     state = JogState.at_rest(jog.arm.rest)

@@ -24,6 +24,7 @@ def test_known_encodings(content, stuffed):
 
 
 @given(st.lists(st.binary(max_size=3) | st.integers(0, 600).map(lambda n: b'\x05' * n)))
+@example([b'\x05' * 253, b'\0', b'\x07'])
 @example([b'\x05' * 254, b'\0', b'\x07'])
 @example([b'\x05' * 254])
 def test_any_bytes_come_back_and_hold_no_zero(pieces):

@@ -95,6 +95,13 @@ def is_admitted(gate, stamp, receipt):
     return True
 
 
+def test_a_sender_whose_clock_goes_as_ours_is_not_reported(gate):
+    assert not gate.has_notable_offset
+    admit(gate, stamp=NOW - 0.01, receipt=NOW)
+    assert gate.clock_offset == pytest.approx(0.01)
+    assert not gate.has_notable_offset
+
+
 @pytest.mark.parametrize('step', [3600.0, -3600.0])
 def test_a_clock_that_is_set_makes_no_gap_as_long_as_the_deadline(gate, step):
     times = NOW + 0.01 * np.arange(200)

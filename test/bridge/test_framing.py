@@ -44,6 +44,18 @@ def test_endless_noise_is_one_overrun_and_is_not_kept():
     assert (reader.bad_frames, reader.overruns) == (0, 1)
 
 
+def test_a_frame_of_63_bytes_is_read_and_one_of_64_is_an_overrun():
+    def frame(size):
+        body = bytes([0x7E, 1, 0]) + b'\5' * (size - 7)
+        return cobs.encode(body + checksum(body).to_bytes(2, 'little')) + b'\0'
+
+    for size, counts in ((63, (0, 1)), (64, (1, 0))):
+        reader = FrameReader()
+        assert len(frame(size)) == size
+        reader.feed(frame(size))
+        assert (reader.overruns, len(reader.unreadable)) == counts
+
+
 def test_a_damaged_frame_is_counted_and_the_next_one_is_read():
     reader = FrameReader()
     damaged = bytearray(FRAMES[0])

@@ -207,6 +207,13 @@ def test_a_board_that_is_silent_is_lost(rig):
     assert 'silent for 0.5 s' in rig.logged(Disconnected)[0].reason
 
 
+def test_at_first_the_port_is_to_be_opened_and_nothing_is_read():
+    link = Link(Session(6), lambda event, now: None)
+    assert link.wants_port(0.0)
+    assert not link.is_listening(0.0)
+    assert link.turn(b'', 0.0) == b''
+
+
 def test_a_lost_port_is_looked_for_again_and_its_board_comes_back_disarmed(rig):
     rig.put(3200)
     asked = rig.link.request(Disarm())

@@ -123,6 +123,35 @@ def test_an_unplugged_board_is_lost_and_found_again_disarmed(rig):
     assert rig.machine.board.pulses == (None,) * 6
 
 
+def test_a_board_that_is_closed_leaves_no_port_behind(rig):
+    rig.board.close()
+    assert not rig.path.is_symlink()
+
+
+class Watched:
+    """A machine, and how long each of its steps was, in s."""
+
+    def __init__(self, machine):
+        self.board, self.servos, self._step = machine.board, machine.servos, machine.step
+        self.steps = []
+
+    def step(self, dt, stuck_channel=None):
+        self.steps.append(dt)
+        self._step(dt, stuck_channel)
+
+
+def test_a_board_whose_computer_stands_still_lets_no_time_pass_meanwhile(tmp_path):
+    machine = Watched(FakeMachine.from_config(CONFIG, boot_s=0.1, hysteresis=0.0))
+    board = BoardThread(machine, FakeLine(tmp_path / 'board'), lambda positions: None)
+    board.start()
+    went_on = threading.Event()
+    board.do(lambda: time.sleep(0.2))
+    board.do(lambda: board.do(went_on.set))
+    assert went_on.wait(5.0)
+    board.close()
+    assert max(machine.steps) <= 0.05
+
+
 def test_a_reset_in_motion_ends_disarmed(rig):
     rig.arm()
     rig.put((3200,) * 6)

@@ -71,6 +71,25 @@ def test_a_cycle_that_cannot_be_followed_is_refused_before_anything_moves(make_d
     assert states[-1].mode in ARMED
 
 
+@pytest.mark.parametrize('axis', [CycleAxis(2, 0.0179, 500, 0.0), CycleAxis(2, 0.0179, 100, 0.0)])
+def test_where_in_the_cycle_it_is_out_of_reach_is_told_in_ms(make_driver, axis):
+    driver = make_driver()
+    driver.arm(HOME)
+    solve, period = driver.board.settings.solve, 1e3 / axis.frequency_mhz
+
+    def counts(k):
+        height = axis.amplitude * math.sin(2 * math.pi * 0.02 * k / period + axis.phase)
+        return solve([0, 0, height, 0, 0, 0])
+
+    lost = next(k for k in range(4000) if counts(k) is None)
+    driver.ask(axis)
+    driver.say(Play(Program.CYCLE, True))
+    messages = driver.run(0.02 * lost + 0.5)
+    (fault,) = [m for m in messages if isinstance(m, Fault)]
+    assert fault.code is FaultCode.OUT_OF_REACH
+    assert fault.value == pytest.approx(20 * lost, abs=20)
+
+
 def test_a_cycle_whose_samples_hide_its_speed_ends_where_it_would_be_too_fast(make_driver):
     """24.9 Hz in samples of 50 Hz: all near zero in the first period, farther off in each next."""
     driver = make_driver()

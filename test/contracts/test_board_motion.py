@@ -78,6 +78,14 @@ def test_one_count_out_of_range_refuses_the_whole_frame(armed, count):
     assert armed.state().refused == 1
 
 
+def test_both_ends_of_the_range_may_be_gone_to(armed):
+    ends = (1100, 4900, 1100, 4900, 1100, 4900)
+    armed.say(Setpoint(1000, ends))
+    assert armed.faults() == []
+    armed.run(0.5)
+    assert armed.counts() == ends
+
+
 @pytest.mark.parametrize('joints', [1, 5, 7, 8])
 def test_another_number_of_joints_is_refused(armed, joints):
     armed.say(Setpoint(200, (3000,) * joints))

@@ -58,6 +58,14 @@ def test_near_may_differ_from_pose_to_pose(hexapod):
     np.testing.assert_allclose(np.degrees(joints[:, 0]), [120.0045, -21.9792], atol=5e-5)
 
 
+def test_near_is_broadcast_over_the_poses(hexapod):
+    position, rotation = hexapod.home.position, hexapod.home.rotation
+    poses = Pose(np.tile(position, (2, 3, 1)), np.tile(rotation, (2, 3, 1, 1)))
+    joints = hexapod.inverse(poses, np.array([[np.full(6, 2.0)], [np.zeros(6)]]))
+    elbows = np.array([np.full((3, 6), 120.0045), np.full((3, 6), -21.9792)])
+    np.testing.assert_allclose(np.degrees(joints), elbows, atol=5e-5)
+
+
 def test_angles_are_continuous_where_a_joint_passes_over_the_crank_axis(robocake_content):
     content = {**robocake_content['geometry'], 'crank_shift_mm': 0.0, 'joint_shift_mm': 0.0}
     geometry = build(HexagonConfig, content | {'home_height_mm': 50.0}).geometry()

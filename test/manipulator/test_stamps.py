@@ -70,6 +70,15 @@ def test_clock_that_went_back_between_rare_messages_is_learnt_with_the_second():
     gate.admit(190.0, 220.0)
 
 
+def test_late_messages_whose_offsets_do_not_agree_tell_of_no_clock():
+    gate = StampGate()
+    gate.admit(100.0, 100.0)
+    for stamp, receipt in ((101.0, 110.0), (101.2, 111.0), (101.4, 112.0)):
+        with pytest.raises(StaleMessage, match='old'):
+            gate.admit(stamp, receipt)
+    gate.admit(113.0, 113.0)
+
+
 def test_first_message_that_came_late_does_not_hide_later_lateness():
     gate = StampGate()
     gate.admit(100.0, 100.4)

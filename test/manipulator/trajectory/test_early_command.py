@@ -78,6 +78,14 @@ def test_of_two_that_come_too_early_the_newer_one_is_done(machine):
     assert (machine.done, machine.refused) == (['new'], [])
 
 
+def test_one_that_is_done_at_once_takes_the_place_of_the_one_that_waits(machine):
+    machine.ask('old')
+    machine.missing = None
+    machine.ask('new')
+    machine.early.poll(0.01)
+    assert (machine.done, machine.refused) == (['new'], [])
+
+
 def test_a_command_that_is_refused_for_itself_does_not_displace_the_one_that_waits(machine):
     machine.ask('good')
     soon, machine.missing = machine.missing, Refused('quaternion has length 0')

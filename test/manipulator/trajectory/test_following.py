@@ -39,6 +39,17 @@ def test_short_excursion_is_no_trouble():
     assert drive(following(), [(0.0, 0.0)] * 200, measured) == (None, '')
 
 
+def test_joints_may_be_elsewhere_for_three_tenths_of_a_second_and_no_longer():
+    judge = following()
+    judge.command(np.zeros(2))
+    judge.measure(np.array([0.3, 0.0]))
+    for _ in range(30):
+        judge.command(np.zeros(2))
+        assert not judge.trouble
+    judge.command(np.zeros(2))
+    assert judge.trouble
+
+
 def test_measurements_that_stop_coming_keep_the_last_word():
     judge = following()
     judge.command(np.zeros(2))

@@ -1,5 +1,7 @@
 """Joint moves by definition: straight in the joints, within every limit, at the pose they say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from manipulator.command_check import CommandCheck
 from manipulator.errors import Refused, Unreachable
 from manipulator.pose import Pose
 from manipulator.trajectory.goal import Goal, Motion
+from manipulator.trajectory.joint_move import plan_joint_move
 from manipulator.trajectory.plan import MotionState
 from manipulator.trajectory.planner import Start, plan_goal
 from manipulator.trajectory.player import Player
@@ -68,6 +71,20 @@ def test_joint_moves_keep_the_limits_of_joints_and_platform(name):
     assert np.linalg.norm(state.twist[:, :3], axis=1).max() <= 1.01 * limits.linear.speed
     assert np.linalg.norm(state.twist[:, 3:], axis=1).max() <= 1.01 * limits.angular.speed
     assert machine.constraints.admits(state.pose, joints).all()
+
+
+@pytest.mark.parametrize('part', ['linear', 'angular'])
+@pytest.mark.parametrize('name', TARGETS)
+def test_a_joint_move_is_as_fast_as_the_platforms_speed_allows(name, part):
+    machine = load(name)
+    slow = replace(getattr(machine.motion, part), speed=1e-3 if part == 'linear' else 0.01)
+    machine = replace(machine, motion=replace(machine.motion, **{part: slow}))
+    k = machine.kinematics
+    begin, end = k.inverse(k.home), k.inverse(k.home.moved(TARGETS[name]))
+    plan = plan_joint_move(machine, k.home, begin, end)
+    twist = plan.at(np.linspace(0.0, plan.duration, 200)).twist
+    speeds = np.linalg.norm(twist[:, :3] if part == 'linear' else twist[:, 3:], axis=1)
+    assert 0.97 * slow.speed <= speeds.max() <= 1.03 * slow.speed
 
 
 @pytest.mark.parametrize('name', TARGETS)

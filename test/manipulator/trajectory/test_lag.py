@@ -55,5 +55,15 @@ def test_stream_beyond_the_limits_is_pursued_within_them_and_its_lag_grows_and_e
     assert lag_of(pilot) == {'lag_mm': 0.0, 'lag_deg': 0.0}
 
 
+def test_lag_is_a_distance_and_an_angle(pilot):
+    goal = HOME.moved([0.002, -0.001, 0.002, 0.02, 0.03, -0.04])
+    pilot.player.pursue(Goal(goal, 0.0))
+    pose, lag = step(pilot), lag_of(pilot)
+    away = np.linalg.norm(goal.position - pose.position)
+    turned = np.arccos((np.trace(goal.rotation @ pose.rotation.T) - 1) / 2)
+    assert lag['lag_mm'] == pytest.approx(1e3 * away)
+    assert lag['lag_deg'] == pytest.approx(np.degrees(turned))
+
+
 def test_machine_that_nobody_drives_has_no_lag():
     assert lag_of(Pilot(MACHINE, DT)) == {'lag_mm': 0.0, 'lag_deg': 0.0}

@@ -3,6 +3,7 @@ import numpy as np
 from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.pose import Pose
+from manipulator.trajectory.chart import coordinates, state_of
 from manipulator.trajectory.move import plan_move
 from manipulator.trajectory.plan import MotionState
 
@@ -40,3 +41,28 @@ def test_twist_and_acceleration_are_the_derivatives_of_the_pose():
         np.testing.assert_allclose(now.twist, numeric, atol=1e-5)
         numeric = (after.twist - before.twist) / (2 * h)
         np.testing.assert_allclose(now.acceleration, numeric, atol=0.05)
+
+
+def test_slowness_stretches_time_and_keeps_the_way():
+    rng = np.random.default_rng(3)
+    for _ in range(10):
+        start, goal = MotionState.at_rest(random_pose(rng)), random_pose(rng)
+        move, slow = plan_move(start, goal, LIMITS), plan_move(start, goal, LIMITS, 2.0)
+        np.testing.assert_allclose(slow.duration, 2.0 * move.duration, rtol=1e-6)
+        same = move.at(0.3 * move.duration).pose.twist_to(slow.at(0.3 * slow.duration).pose)
+        assert np.abs(same).max() < 1e-7
+
+
+def test_coordinates_that_change_fast_make_the_state_that_differences_say():
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        x, v, a = rng.uniform(-1.0, 1.0, (3, 6))
+        times = np.array([-1e-4, 0.0, 1e-4])[:, None]
+        moved, rates = x + v * times + a * times**2 / 2, v + a * times
+        state = state_of(moved, rates, np.tile(a, (3, 1)), np.eye(3))
+        step = state.pose[0].twist_to(state.pose[2]) / 2e-4
+        np.testing.assert_allclose(state.twist[1], step, atol=1e-6)
+        change = (state.twist[2] - state.twist[0]) / 2e-4
+        np.testing.assert_allclose(state.acceleration[1], change, atol=1e-6)
+        one = MotionState(state.pose[1], state.twist[1], state.acceleration[1])
+        np.testing.assert_allclose(coordinates(one, np.eye(3)), (x, v, a), atol=1e-9)

@@ -144,3 +144,13 @@ def test_arc_keeps_its_radius_its_sagitta_and_its_end():
 def test_arc_that_is_none_or_too_long_is_refused(axis, angle, sagitta):
     with pytest.raises(InvalidInput, match='arc'):
         arc(Pose.from_xyz_rpy((0.05, 0, 0)), (0, 0, 0), axis, angle, sagitta=sagitta)
+
+
+def test_a_place_on_a_path_is_at_a_pose_or_after_it():
+    corners = np.array([[0, 0, 0], [0.01, 0, 0], [0.01, 0.02, 0]], dtype=float)
+    path = path_along(Pose(corners, np.stack([np.eye(3)] * 3)), TOLERANCE, TURN_LENGTH)
+    assert path.where(0.0) == 'at pose 1, 0 m along the path'
+    assert path.where(0.005) == 'after pose 1, 0.005 m along the path'
+    assert path.where(0.01) == 'at pose 2, 0.01 m along the path'
+    assert path.where(0.025) == 'after pose 2, 0.025 m along the path'
+    assert path.where(0.03) == 'at pose 3, 0.03 m along the path'

@@ -12,8 +12,9 @@ from manipulator.errors import Refused
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.path import Tolerance
-from manipulator.trajectory.path_timing import PathRequest, TimedPath, plan_path
+from manipulator.trajectory.path import Tolerance, path_along
+from manipulator.trajectory.path_limits import path_limits
+from manipulator.trajectory.path_timing import PathRequest, TimedPath, nodes_of, plan_path
 from manipulator.trajectory.player import Player
 from manipulator.trajectory.shapes import arc, line
 
@@ -72,6 +73,52 @@ def test_circle_keeps_all_limits_and_reaches_one(name, radius):
     first, last = plan.at(0.0), plan.at(plan.duration)
     assert np.abs(first.twist).max() < 1e-9
     assert np.abs(last.twist).max() < 1e-6
+
+
+@pytest.fixture(scope='module')
+def on_a_path():
+    """Limits of a crooked path, its twists, and squared speeds at its nodes, at random."""
+    rng = np.random.default_rng(6)
+    picks = rng.uniform(-1.0, 1.0, (8, 6)) * ([0.004] * 3 + [0.05] * 3)
+    poses = Pose.from_xyz_rpy(HOME.position + picks[:, :3], picks[:, 3:])
+    path = path_along(poses, Tolerance(), 0.05)
+    nodes = nodes_of(path, 1, ROBOCAKE.kinematics.characteristic_length)
+    limits = path_limits(ROBOCAKE, path, nodes, ROBOCAKE.kinematics.inverse(poses[0]))
+    return limits, path.at(nodes), rng.uniform(0.0, 1e-3, len(nodes))
+
+
+def accelerations(rates, nodes, squares):
+    """At the begin and the end of each step between two nodes, (2, m, n)."""
+    steps = np.diff(nodes)[:, None]
+    bend, pull = np.diff(rates, axis=0) / steps, np.diff(squares)[:, None] / (2 * steps)
+    begin = rates[:-1] * pull + bend * squares[:-1, None]
+    return np.stack([begin, rates[1:] * pull + bend * squares[1:, None]])
+
+
+def said_by_rows(limits, squares, name):
+    columns = [k for k, row in enumerate(limits.row_names) if row == f'{name} acceleration']
+    rows = limits.rows.on_begin * squares[:-1, None] + limits.rows.on_end * squares[1:, None]
+    return rows[:, columns].max(axis=1)
+
+
+@pytest.mark.parametrize(('name', 'part'), [('platform', slice(0, 3)), ('turning', slice(3, 6))])
+def test_rows_of_a_path_say_how_much_the_platform_accelerates(on_a_path, name, part):
+    """At either end of a step, within the polygon of directions: 15° from corner to corner."""
+    limits, state, squares = on_a_path
+    both = accelerations(state.twist[:, part], limits.nodes, squares)
+    longest = np.linalg.norm(both, axis=2).max(axis=0)
+    said = said_by_rows(limits, squares, name)
+    assert (said <= longest * (1 + 1e-9)).all()
+    assert (said >= longest * np.cos(np.radians(7.5)) * (1 - 1e-9)).all()
+
+
+def test_rows_of_a_path_say_how_much_each_joint_accelerates(on_a_path):
+    limits, state, squares = on_a_path
+    jacobian = ROBOCAKE.kinematics.jacobian(state.pose, limits.joints)
+    rates = np.linalg.solve(jacobian, state.twist[..., None])[..., 0]
+    most = np.abs(accelerations(rates, limits.nodes, squares)).max(axis=0)
+    for k, name in enumerate(ROBOCAKE.kinematics.joint_names):
+        np.testing.assert_allclose(said_by_rows(limits, squares, name), most[:, k], atol=1e-9)
 
 
 def test_path_takes_little_longer_than_its_length_at_full_speed():

@@ -46,3 +46,10 @@ def test_random_limits_are_kept_and_never_deadlock():
         spent = begin * squares[:-1, None] + end * squares[1:, None]
         assert spent.max() <= 1.0 + 1e-9
         assert squares[1:-1].min() > 0.0
+
+
+@pytest.mark.parametrize('unit', [1e-3, 1e3])
+def test_the_unit_of_a_row_does_not_matter(unit):
+    rows, highest = straight(2.0, 400, 3.0), np.full(401, np.inf)
+    scaled = Rows(unit * rows.on_begin, unit * rows.on_end, unit * rows.bound)
+    np.testing.assert_allclose(fastest(scaled, highest), fastest(rows, highest), rtol=1e-9)

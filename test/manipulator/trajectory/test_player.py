@@ -14,6 +14,7 @@ from manipulator.errors import Refused, Unreachable
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.player import Player
 
 MACHINE = load('robocake')
@@ -50,6 +51,14 @@ def check_limits(poses, joints):
         assert np.linalg.norm(change, axis=1).max() <= 1.01 * MACHINE.motion.linear.acceleration
     for p, q in zip(poses, joints, strict=True):
         MACHINE.constraints.check(p, q)
+
+
+def test_it_begins_by_holding_and_names_no_goal():
+    motion = player()
+    assert motion.status == MotionStatus('hold', 'idle', 0.0, '', None)
+    assert motion.newest_stamp == 0.0
+    motion.stop()
+    assert motion.status == MotionStatus('hold', 'stopped', 0.0)
 
 
 def test_goal_is_reached_and_named_by_its_stamp():

@@ -10,6 +10,7 @@ from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.motion_limits import BRAKING_SHARE, Derivatives, JointDerivatives, MotionLimits
 from manipulator.pose import Pose
+from manipulator.trajectory.check import first_fault
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.player import Goal, Player
 
@@ -160,3 +161,13 @@ def test_a_goal_farther_away_than_any_machine_is_refused_at_rest_and_in_motion(
     drive(motion, Goal(Pose(home.position + metres * np.eye(3)[2], home.rotation), 2.0))
     assert (motion.status.result, motion.status.goal_stamp) == ('refused', 2.0)
     assert 'm from home, needs at most' in motion.status.reason
+
+
+@pytest.mark.parametrize('tick', [0, 1, 2, 5])
+def test_the_first_pose_out_of_reach_is_named_wherever_it_is(tick):
+    heights = np.where(np.arange(8) < tick, 0.0, 0.2)
+    poses = Pose(HOME.position + heights[:, None] * [0, 0, 1], np.tile(HOME.rotation, (8, 1, 1)))
+    joints = MACHINE.kinematics.inverse_along(poses, MACHINE.kinematics.inverse(HOME))
+    at, reason = first_fault(MACHINE, MACHINE.constraints, poses, joints)
+    assert at == tick
+    assert re.match(r'leg \d: rod too short by', reason)

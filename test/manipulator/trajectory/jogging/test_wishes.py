@@ -9,6 +9,7 @@ from manipulator.teleop.feedback import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.jogging import Jogging, Wish
 
 DT = 0.01
 ROBOCAKE = load('robocake')
@@ -126,3 +127,37 @@ def test_mode_that_makes_no_sense_stands_still_and_says_why(at_home):
     poses = motion.run(20, [0.1, 0, 0, 0, 0, 0], here)
     assert np.abs(poses[0].twist_to(poses[-1])).max() < 1e-12
     assert 'look-at point' in motion.status.reason
+
+
+class Latching:
+    """A jog mode that passes twists through, or refuses, and counts how often it was latched."""
+
+    def __init__(self):
+        self.latches, self.refuses = 0, False
+
+    def latched(self, pose):
+        self.latches += 1
+        return self
+
+    def step(self, command, pose, midway):
+        if self.refuses:
+            raise Refused('not here')
+        return command, self
+
+
+def test_a_mode_holds_on_to_what_it_has_latched_until_it_refuses_or_another_one_comes():
+    jogging = Jogging(ROBOCAKE, HOME, ROBOCAKE.kinematics.inverse(HOME), DT)
+    one, other = Latching(), Latching()
+
+    def jog(mode, ticks=5):
+        for _ in range(ticks):
+            jogging.step(Wish('joy', np.full(6, 1e-3), '', mode), 1.0, None)
+
+    jog(one)
+    jog(other)
+    assert (one.latches, other.latches) == (1, 1)
+    other.refuses = True
+    jog(other, 1)
+    other.refuses = False
+    jog(other)
+    assert (one.latches, other.latches) == (1, 2)

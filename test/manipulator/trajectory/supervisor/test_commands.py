@@ -199,3 +199,21 @@ def test_a_cycle_whose_machine_is_lost_before_it_began_is_answered_so(slow):
     slow.run(1)
     answer = slow.core.cycle_answer(5.0)
     assert (answer.is_obeyed, answer.text) == (False, 'the machine is fault')
+
+
+def test_a_cycle_whose_machine_was_lost_and_waits_to_be_driven_again_is_answered_too(slow):
+    slow.core.start_cycle(small_cycle(0.001), 5.0)
+    slow.state, slow.does_pose_come = 'fault', False
+    slow.run(1)
+    slow.state = 'enabled'
+    slow.run(1)
+    answer = slow.core.cycle_answer(5.0)
+    assert (answer.is_obeyed, answer.text) == (False, 'a newer command came before it began')
+
+
+def test_an_unknown_jog_mode_is_refused_and_the_last_one_stays(stage):
+    teleop = stage.core.teleop
+    teleop.set_mode('hold_orientation')
+    with pytest.raises(Refused, match="'hold_orientatio' is not one of"):
+        teleop.set_mode('hold_orientatio')
+    assert teleop.mode == 'hold_orientation'
