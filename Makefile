@@ -2,7 +2,8 @@
 SHELL := /bin/bash
 ENV := .venv
 BIN := $(ENV)/bin
-# One worker a core; the tests of a file stay together, for its fixtures' sake. In a worker numpy has one thread.
+# One worker a core; the tests of a file stay together, for its fixtures' sake, and those of a folder that share a graph
+# (test/conftest.py). In a worker numpy has one thread.
 PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q
 
 .PHONY: demo check test lint bench soak clean
@@ -14,7 +15,7 @@ check: lint   # all that starts no other program
 	@$(PYTEST) -n auto --dist loadfile -m 'not processes'
 
 test: check
-	@$(PYTEST) -m processes
+	@$(PYTEST) -n auto --dist loadgroup -m processes
 
 lint: $(ENV)/ready
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy

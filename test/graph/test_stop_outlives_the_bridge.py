@@ -70,5 +70,5 @@ def test_up_waits_until_a_stop_from_before_is_cleared(hexarm, tmp_path):
             user.trigger('serial_bridge/clear_fault')
         assert any('and enabled' in line for line in process.stdout)
         process.send_signal(signal.SIGINT)
-        assert 'parking' in process.stdout.read()
+        assert 'park' in process.stdout.read()
         assert process.wait(60) == 0

@@ -22,8 +22,8 @@ def scratch(source, run, tmp_path_factory):
     run(*pip, 'wheel', *offline, '--no-build-isolation', '-w', folder, source)
     (wheel,) = folder.glob('hexarm-*.whl')
     environment = folder / 'environment'
-    venv.create(environment, symlinks=True, with_pip=True)
-    run(environment / 'bin' / 'pip', 'install', *offline, wheel)
+    venv.create(environment, symlinks=True)
+    run(*pip, '--python', environment, 'install', *offline, wheel)
     (packages,) = environment.glob('lib/python3*/site-packages')
     (packages / 'dependencies.pth').write_text(sysconfig.get_path('purelib') + '\n')
     return environment

@@ -26,7 +26,7 @@ from manipulator.pose import Pose
 
 pytestmark = pytest.mark.graph
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 STREAMS = ('setpoint', 'joint_command', 'joint_states', 'pose')
 LATCHED = ('machine_state', 'motion_status')
 
@@ -58,7 +58,7 @@ def recording(hexapod_graph, user, hexarm, tmp_path_factory):
     recorder = hexarm('record', 'hexapod', '-o', str(path))
     user.wait('the recorder', lambda: user.node.count_subscribers('setpoint') > 2)
     user.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.047)))
-    user.spin(6.0)  # until a publisher of goals has been there long enough
+    user.wait('who records goals', lambda: user.node.count_subscribers('goal_pose') > 1)
     user.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.044)))
     user.spin(1.0)
     recorder.send_signal(signal.SIGINT)

@@ -1,4 +1,4 @@
-"""Every script in examples/ against `hexarm up hexapod`."""
+"""Every script in examples/ beside the running graph."""
 
 import re
 import subprocess
@@ -15,50 +15,26 @@ from hexarm.client import NotReady
 from manipulator.nodes.messages import pose_of
 from manipulator.nodes.qos import LATCHED
 from manipulator.pose import Pose
-from patient_user import PatientUser
 
 pytestmark = pytest.mark.graph
-ROOT = Path(__file__).resolve().parents[2]
-EXAMPLES = sorted((ROOT / 'examples').glob('*.py'))
-
-
-@pytest.fixture(scope='module')
-def up(hexarm, tmp_path_factory):
-    """A graph that forgives a busy computer: its setpoints are good for a second."""
-    text = (ROOT / 'config' / 'robocake.yaml').read_text()
-    patient = tmp_path_factory.mktemp('machine') / 'robocake.yaml'
-    patient.write_text(re.sub(r'setpoint_deadline_ms: \d+', 'setpoint_deadline_ms: 1000', text))
-    process = hexarm('up', 'hexapod', '--machine', str(patient))
-    lines = []
-    for line in process.stdout:
-        lines.append(line)
-        if 'is up on fake and enabled' in line:
-            break
-    assert process.poll() is None, ''.join(lines)
-    yield process
-    process.terminate()
-    process.communicate(timeout=20)
-    assert process.returncode == 0
+ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture
-def client(up):
-    with PatientUser('hexapod') as client:
-        client.make_ready()
-        yield client
+def client(enabled):
+    return enabled
 
 
 @pytest.fixture
 def poses(client):
     """The measured poses since the test began, as far as the client was spun."""
     heard = []
-
-    def hear(message):
-        heard.append(pose_of(message))
-
-    client.node.create_subscription(PoseStamped, 'pose', hear, 1000)
+    subscription = client.node.create_subscription(
+        PoseStamped, 'pose', lambda message: heard.append(pose_of(message)), 1000
+    )
     client.wait('a pose', lambda: heard)
-    return heard
+    yield heard
+    client.node.destroy_subscription(subscription)
 
 
 @pytest.fixture
@@ -112,15 +88,6 @@ def reaches(client, start):
         client.persist(run)
 
     return reaches
-
-
-@pytest.mark.parametrize('example', EXAMPLES, ids=lambda path: path.stem)
-def test_example_explains_itself(example):
-    words = [sys.executable, str(example), '--help']
-    said = subprocess.run(words, check=True, capture_output=True, text=True, timeout=30).stdout
-    first_line = example.read_text().splitlines()[0].strip('"')
-    assert first_line in ' '.join(said.split())
-    assert '--namespace' in said
 
 
 def test_publish_pose_ends_when_the_platform_is_there(reaches, measured_now):
@@ -204,6 +171,7 @@ def slowly(client):
     yield override
     override.publish(Float64(data=1.0))
     override.wait_for_all_acked()
+    client.node.destroy_publisher(override)
 
 
 def test_slow_moves_are_waited_for_and_what_stands_still_is_given_up(
