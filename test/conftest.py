@@ -35,6 +35,7 @@ os.environ['ROS_DOMAIN_ID'] = str(random.Random(RUN).sample(DOMAINS, len(DOMAINS
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
 
+@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the groups
 def pytest_collection_modifyitems(items):
     """Marks what starts other programs: graphs, installations, a browser.
 

@@ -34,6 +34,11 @@ class PatientUser(Client):
                 self.patience = PATIENCE
         raise last
 
+    def end_of(self, process):
+        """Exit status and what was printed; what the graph says meanwhile is heard in time."""
+        self.wait('its end', lambda: process.poll() is not None, 2 * PATIENCE)
+        return process.returncode, process.communicate()[0]
+
     def wait_while_driven(self, what, is_so):
         """As `wait`, for `persist`: NotReady at once where the machine is lost meanwhile."""
         before = self.losses

@@ -70,14 +70,14 @@ def start():
             process.wait()
 
 
-def end(process):
-    """Exit status and what was printed."""
-    said, _ = process.communicate(timeout=120)
-    return process.returncode, said
+@pytest.fixture
+def end(client):
+    """Exit status of a process, and what was printed."""
+    return client.end_of
 
 
 @pytest.fixture
-def reaches(client, start):
+def reaches(client, start, end):
     """Runs an example until it says that the goal is reached; again where the machine was lost."""
 
     def reaches(*words):
@@ -97,13 +97,13 @@ def test_publish_pose_ends_when_the_platform_is_there(reaches, measured_now):
     assert pose.rpy == pytest.approx([0.03, 0.0, 0.05], abs=0.01)
 
 
-def test_publish_pose_says_which_leg_cannot(start, client):
+def test_publish_pose_says_which_leg_cannot(start, client, end):
     status, said = end(start('publish_pose', 0.04, 0, 0.045))
     assert status == 1
     assert re.fullmatch(r'refused: leg \d: rod too short by [\d.]+ mm .*\n', said)
 
 
-def test_publish_pose_asks_whether_degrees_or_millimetres_were_meant(start, client):
+def test_publish_pose_asks_whether_degrees_or_millimetres_were_meant(start, client, end):
     status, said = end(start('publish_pose', 0, 0, 0.045, '--rpy', 0, 0, 10))
     assert (status, said.count('\n')) == (1, 1)
     assert 'are these degrees?' in said
@@ -112,7 +112,7 @@ def test_publish_pose_asks_whether_degrees_or_millimetres_were_meant(start, clie
     assert 'are these millimetres?' in said
 
 
-def test_watch_joints_prints_names_and_radians(start, reaches):
+def test_watch_joints_prints_names_and_radians(start, reaches, end):
     reaches('publish_pose', 0, 0, 0.04119)
     status, said = end(start('watch_joints', '--count', 3, '--every', 0.02))
     names, *lines = (line.split() for line in said.splitlines())
@@ -122,15 +122,14 @@ def test_watch_joints_prints_names_and_radians(start, reaches):
     assert [float(word) for word in lines[-1]] == pytest.approx([2.0945] * 6, abs=0.01)
 
 
-def test_draw_circle_stays_on_it(start, poses, client):
+def test_draw_circle_stays_on_it(start, poses, client, end):
     """Where this computer stands still, the machine holds or cuts across: then another circle."""
 
     def draw():
         poses.clear()
         process = start('draw_circle', '--turns', 1, '--period', 5)
-        client.wait('the end of the circle', lambda: process.poll() is not None)
-        client.spin(0.3)  # the platform is a little behind
         status, said = end(process)
+        client.spin(0.3)  # the platform is a little behind
         assert status == 0
         assert re.search(r'half of them within [\d.]+ mm, all within [\d.]+', said)
         x, y, _ = np.transpose([pose.position for pose in poses])
@@ -142,10 +141,9 @@ def test_draw_circle_stays_on_it(start, poses, client):
     assert any(client.persist(draw) for _ in range(5))
 
 
-def test_axis_tour_visits_both_sides_of_every_axis(start, poses, client):
+def test_axis_tour_visits_both_sides_of_every_axis(start, poses, client, end):
     def drive():
         process = start('axis_tour', '--way', 0.003, '--angle', 0.06, '--pause', 0.1)
-        client.wait('the end of the tour', lambda: process.poll() is not None, 120.0)
         status, said = end(process)
         assert status == 0, said
         return said
@@ -175,7 +173,7 @@ def slowly(client):
 
 
 def test_slow_moves_are_waited_for_and_what_stands_still_is_given_up(
-    start, client, slowly, monkeypatch
+    start, client, slowly, monkeypatch, end
 ):
     def wait_for_slow_ones():
         client.go_to(Pose.from_xyz_rpy((0.0, 0.008, 0.045)))
@@ -194,7 +192,7 @@ def test_slow_moves_are_waited_for_and_what_stands_still_is_given_up(
     assert end(start('stop'))[0] == 0
 
 
-def test_stop_ends_a_move_and_the_tour_says_so(start, slowly):
+def test_stop_ends_a_move_and_the_tour_says_so(start, slowly, end):
     tour = start('axis_tour', '--pause', 0)
     assert tour.stdout.readline().startswith('x ±')
     assert end(start('stop')) == (0, 'braking along the way, then holding\n')
@@ -203,7 +201,7 @@ def test_stop_ends_a_move_and_the_tour_says_so(start, slowly):
     assert 'stopped' in said
 
 
-def test_emergency_stop_holds_until_it_is_cleared(start, client, reaches):
+def test_emergency_stop_holds_until_it_is_cleared(start, client, reaches, end):
     assert end(start('stop', '--emergency')) == (0, 'stopped\n')
     client.wait('the stop', lambda: client.machine_state.message == 'stopped')
     status, said = end(start('publish_pose', 0, 0, 0.045))

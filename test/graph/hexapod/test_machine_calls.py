@@ -10,15 +10,9 @@ pytestmark = pytest.mark.graph
 
 
 @pytest.fixture
-def says(hexarm):
+def says(hexarm, user):
     """Runs `hexarm …` to its end: status and what it said."""
-
-    def run(*words):
-        process = hexarm(*words)
-        said, _ = process.communicate(timeout=120)
-        return process.returncode, said
-
-    return run
+    return lambda *words: user.end_of(hexarm(*words))
 
 
 def test_a_machine_is_enabled_stopped_cleared_and_disabled_without_ros2(user, says):

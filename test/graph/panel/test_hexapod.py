@@ -82,7 +82,7 @@ def test_sliders_move_the_machine_and_follow_the_goals_of_others(page, machine):
 
     machine.asked_until(press, lambda: machine.has_moved(0, 0.002))
     machine.client.reach(ELSEWHERE)
-    machine.client.wait('the slider', lambda: page.values()[X] == '-2.0')
+    machine.client.wait('the slider', lambda: float(page.values()[X]) == -2.0)
 
 
 def test_stop_stops_the_machine_and_nothing_resumes(page, machine):
