@@ -4,11 +4,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from arm_control.branches import nearest_branch, unwrapped
+from arm_control.branches import nearby_joints, nearest_branch, unwrapped
 from arm_control.chain import Chain
+from arm_control.geometry import JOINT_NAMES, JointLimits
 from arm_control.inverse_method import InverseMethod, fitting_method
-from arm_control.joint_limits import JOINT_NAMES, JointLimits
-from arm_control.nearby import nearby_joints
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution

@@ -4,12 +4,10 @@ from typing import Protocol
 
 import numpy as np
 
-from arm_control.almost_closed import AlmostClosed, idealised
 from arm_control.chain import Chain
-from arm_control.joint_limits import JointLimits
-from arm_control.numerical import Numerical
-from arm_control.parallel_axes import ParallelAxes
-from arm_control.spherical_wrist import SphericalWrist
+from arm_control.closed_forms import ParallelAxes, SphericalWrist
+from arm_control.geometry import JointLimits
+from arm_control.numerical import AlmostClosed, Numerical, idealised
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 

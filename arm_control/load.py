@@ -1,19 +1,85 @@
-"""From a machine file's sections to a serial arm that the nodes can use."""
+"""From a machine file's sections to a serial arm that the nodes can use.
 
-from dataclasses import replace
+The resolved-rate step as the `Jogger` of a serial arm, in the user's frames.
+"""
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.arm_jogger import ArmJogger
-from arm_control.geometry import FORMS, placed
-from arm_control.joint_limits import ArmLimits
-from arm_control.resolved_rate import ResolvedRate
+from arm_control.geometry import FORMS, ArmLimits, placed
+from arm_control.rate_scaling import AT_ONCE
+from arm_control.resolved_rate import JogState, JogStep, ResolvedRate
+from manipulator.arrays import Array, frozen
 from manipulator.config import build, build_both
 from manipulator.errors import ConfigError
+from manipulator.formatting import shown
+from manipulator.frames import Frames
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
-from manipulator.words import shown
+from manipulator.pose import Pose
+from manipulator.teleop.jogger import JogMotion, ticks_for, towards
+
+SHARE_BEFORE_STOPS = 0.5
+"""Of the tool's acceleration, what braking before a stop counts on; the rest is for bends: a joint
+may turn ever faster while the tool goes straight on."""
+ROUNDING = 1e-6
+"""Part of a tick's change of twist."""
+
+
+@dataclass(frozen=True, eq=False)
+class ArmJogger:
+    """`Jogger` of an arm: what it follows and keeps is said in `ResolvedRate`.
+
+    motion.twist is the wanted twist on its way up or down within the tool's accelerations. Where
+    the joints allow only a part of it, it starts again from that part.
+    """
+
+    jog: ResolvedRate
+    frames: Frames
+
+    def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
+        """See `Jogger`; in a corner of the joint ranges the tool slides, so as to get out."""
+        limits = self.jog.motion
+        wanted = towards(motion.twist, twist, limits, dt)
+        ticks = max(float(ticks_for(wanted, limits, dt)), 1.0)
+        step = self._stepped(motion, wanted, dt, SHARE_BEFORE_STOPS / (ticks * dt))
+        driven = step.driven * wanted
+        if ticks_for(driven - motion.twist, limits, dt) > 1.0 + ROUNDING:
+            # No part of what is wanted can be reached as gently as the tool asks for.
+            straight = towards(motion.twist, np.zeros(6), limits, dt)
+            braked = self._stepped(motion, straight, dt)
+            driven, step = braked.driven * straight, replace(step, state=braked.state)
+        state = step.state
+        return JogMotion(
+            self.frames.pivot(self.jog.arm.chain.forward(state.joints)),
+            state.joints,
+            frozen(driven),
+            state.rates,
+            step.scale,
+            step.held_by,
+            state.off_line,
+            state.is_leaving,
+            state.is_under_way,
+        )
+
+    def _stepped(
+        self, motion: JogMotion, twist: Array, dt: float, slowing: float = AT_ONCE
+    ) -> JogStep:
+        line = motion.off_line, motion.is_leaving, motion.is_under_way
+        state = JogState(motion.joints, motion.rates, *line)
+        return self.jog.step(state, self._of_tool(twist, motion.pose), dt, slowing)
+
+    def _of_tool(self, twist: Array, T_work_pivot: Pose) -> Array:
+        """The tool's twist in base axes, for the pivot's in work axes: v − ω × r."""
+        if self.frames.are_plain:
+            return twist
+        to_base = self.frames.T_base_work.rotation
+        turn = to_base @ twist[3:]
+        arm = to_base @ T_work_pivot.rotation @ self.frames.T_platform_pivot.position
+        return np.concatenate([to_base @ twist[:3] - np.cross(turn, arm), turn])
+
 
 KIND = 'serial_arm'
 

@@ -2,13 +2,17 @@
 
 Rates are scaled as a whole, never one joint alone, so that the tool keeps its direction
 (docs/arm-kinematics.md, 8).
+
+The ways out where a twist cannot be kept to (docs/arm-kinematics.md, 9).
 """
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
 
-from manipulator.arrays import Array
+from arm_control.line_keeping import LOST, Posture
+from manipulator.arrays import Array, Mask
 
 AT_STOP = 1e-4
 """Radians from its stop at which a joint stands there: 0.006°, finer than any of our drives."""
@@ -150,3 +154,77 @@ class RateScaling:
         lowest = np.minimum(self.low + ROUNDING, joints)
         result: Array = np.minimum(np.maximum(joints + dt * rates, lowest), highest)
         return result
+
+
+NEGLIGIBLE = 1e-9
+
+
+def blocked(unit_rates: Array, at_low: Mask, at_high: Mask) -> Mask:
+    """Which of the twelve unit twists ±x … ±ωz (12,) press a joint onto its stop, or stand.
+
+    unit_rates (6, 6) has the joint rates for +x … +ωz as its columns. Twists are scaled as a
+    whole, so that one joint at a stop stops all; in a corner of the joint range this may leave
+    none of the twelve.
+    """
+    either = np.concatenate([unit_rates, -unit_rates], axis=1)
+    low = (either[at_low] < -NEGLIGIBLE).any(axis=0)
+    high = (either[at_high] > NEGLIGIBLE).any(axis=0)
+    return np.asarray(low | high | (np.abs(either).max(axis=0) < NEGLIGIBLE), dtype=np.bool_)
+
+
+def sliding_rates(
+    scaled_jacobian: Array, scaled_twist: Array, damping: float, at_low: Mask, at_high: Mask
+) -> Array:
+    """Joint rates (6,) with the twist nearest to the wanted one that leave or keep every stop.
+
+    Least squares |J q̇ − x|² + damping²·|q̇|², q̇ ≥ 0 at a low stop, ≤ 0 at a high one, exactly:
+    the best admissible one over all ways of holding some of the stopped joints still. It is zero
+    for all twelve unit twists only if J is zero, for J·q̇ ≠ 0 has a component along one of them.
+    """
+    stopped = np.flatnonzero(at_low | at_high)
+    normal = scaled_jacobian.T @ scaled_jacobian + damping**2 * np.eye(6)
+    wanted = scaled_jacobian.T @ scaled_twist
+    best, least = np.zeros(6), 0.0
+    for held in itertools.product((False, True), repeat=len(stopped)):
+        free = np.ones(6, dtype=np.bool_)
+        free[stopped[list(held)]] = False
+        rates = np.zeros(6)
+        rates[free] = np.linalg.solve(normal[np.ix_(free, free)], wanted[free])
+        admissible = (rates[at_low] >= 0).all() and (rates[at_high] <= 0).all()
+        cost = float(rates @ normal @ rates / 2 - wanted @ rates)
+        if admissible and cost < least:
+            best, least = rates, cost
+    return best
+
+
+def folding_rates(
+    posture: Posture, scaled_twist: Array, to_middle: Array, at_low: Mask, at_high: Mask
+) -> Array:
+    """Joint rates (6,) that begin to bend a lost joint so that the tool goes the wanted way.
+
+    At σ = 0 turning the joints along v does not move the tool, but accelerates it by J̇(v)·v, to
+    the same side for v and −v: a stretched elbow bends inwards either way. The way is taken that
+    leads to_middle (6,) of the joint ranges. Zeros where the twist leads to the other side.
+    """
+    lost = posture.sigma < LOST
+    idle, beyond = (
+        posture.right[lost],
+        posture.left[:, lost] @ (scaled_twist @ posture.left[:, lost]),
+    )
+    pull, ways = np.linalg.eigh(_accelerations(posture, idle, beyond))
+    if not pull.size or pull[-1] <= NEGLIGIBLE * float(beyond @ beyond) ** 0.5:
+        return np.zeros(6)
+    bend = ways[:, -1] @ idle
+    for rates in (bend, -bend) if bend @ to_middle >= 0 else (-bend, bend):
+        if not (rates[at_low] < -NEGLIGIBLE).any() and not (rates[at_high] > NEGLIGIBLE).any():
+            return rates
+    return np.zeros(6)
+
+
+def _accelerations(posture: Posture, idle: Array, along: Array) -> Array:
+    """How idle motions (k, 6) accelerate the tool `along` (6,): a quadratic form (k, k)."""
+
+    def mean(a: Array, b: Array) -> float:
+        return float((posture.turning(a + b) - posture.turning(a - b)) @ along) / 4
+
+    return np.array([[mean(a, b) for b in idle] for a in idle]).reshape(len(idle), len(idle))

@@ -5,11 +5,25 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.corner import blocked, folding_rates, sliding_rates
-from arm_control.line_keeping import LOST, LineRates, exact_rates, line_rates, without_noise
-from arm_control.posture import Posture
-from arm_control.rate_scaling import AT_ONCE, AT_STOP, RateScaling, Room, Scale
-from arm_control.singularity import singularity
+from arm_control.line_keeping import (
+    LOST,
+    LineRates,
+    Posture,
+    exact_rates,
+    line_rates,
+    singularity,
+    without_noise,
+)
+from arm_control.rate_scaling import (
+    AT_ONCE,
+    AT_STOP,
+    RateScaling,
+    Room,
+    Scale,
+    blocked,
+    folding_rates,
+    sliding_rates,
+)
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput
 from manipulator.motion_limits import MotionLimits

@@ -9,9 +9,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from arm_control.branches import TURN
+from arm_control.branches import TURN, nearby_joints
 from arm_control.chain import Chain
-from arm_control.nearby import nearby_joints
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 

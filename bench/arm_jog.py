@@ -10,9 +10,9 @@ from bench.row import Row
 from manipulator.arrays import Array
 from manipulator.machine import MachineFile
 from manipulator.pose import Pose
-from manipulator.teleop.feedback import Feedback
+from manipulator.teleop.jog_modes import Feedback
+from manipulator.teleop.jogger import within_speed
 from manipulator.teleop.modes import jog_mode
-from manipulator.teleop.speed_limits import within_speed
 
 TICK, DELAY_TICKS = 0.01, 4
 STEPPER = np.full(6, 2 * np.pi / (3200 * 10))  # 3200 steps a turn, through a 10:1 gear

@@ -6,7 +6,7 @@ import numpy as np
 
 from bench.row import Row, interleaved_medians
 from hexarm.machines import load
-from manipulator.teleop.feedback import Feedback
+from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.jogging import Wish
 from manipulator.trajectory.player import Player

@@ -10,8 +10,7 @@ from hexapod_control.linear_geometry import PlatesConfig
 from hexapod_control.workspace import sample
 from hexarm import machines
 from hexarm.board import build as firmware_build
-from hexarm.papers.differential import joint_rates
-from hexarm.papers.paper_arm import PaperArm
+from hexarm.papers.paper_arm import PaperArm, joint_rates
 from hexarm.papers.plane_method import PlaneMethod
 from manipulator.config import build
 

@@ -9,19 +9,17 @@ import numpy as np
 from bench.row import Row
 from hexapod_control.workspace import sample
 from hexarm.machines import load
-from manipulator.accuracy.joint_errors import JointErrors
-from manipulator.accuracy.spread import drawn_spread, linear_spread
-from manipulator.limits.body_height import BodyHeight
+from manipulator.analysis.accuracy import JointErrors, drawn_spread, linear_spread
+from manipulator.analysis.nearest import nearest_reachable
+from manipulator.analysis.reach import reach
+from manipulator.analysis.readings import displaced
+from manipulator.analysis.survey import SomeOrientation
+from manipulator.analysis.volume import bounding_box, volume, with_orientation
+from manipulator.analysis.way import admits
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.joint_range import JointRange
+from manipulator.limits.machine_limits import BodyHeight, JointRange
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.reach.metric import displaced
-from manipulator.reach.nearest import nearest_reachable
-from manipulator.reach.reach import reach
-from manipulator.reach.way import admits
-from manipulator.workspace.some_orientation import SomeOrientation
-from manipulator.workspace.volume import bounding_box, volume, with_orientation
 
 POSES, ROUNDS = 500_000, 5
 GOAL = 1e6

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from bridge.servo_config import ServoConfig, ServosConfig
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput
-from manipulator.words import counted
+from manipulator.formatting import counted
 
 COUNTS_PER_US = 2.0
 

@@ -8,8 +8,8 @@ from bridge.calibration import Calibration
 from bridge.protocol import Setpoint
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
-from manipulator.stamps import NOTABLE_OFFSET, StampGate
-from manipulator.words import counted
+from manipulator.formatting import counted
+from manipulator.message_filter import NOTABLE_OFFSET, StampGate
 
 PULSE_PERIOD = 0.02
 LONGEST_GAP = 0.05

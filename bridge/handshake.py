@@ -3,7 +3,7 @@
 from collections import deque
 
 from bridge.protocol import PROTOCOL_VERSION, Hello, State, is_newer
-from manipulator.words import counted
+from manipulator.formatting import counted
 
 UPTIME_SLACK_MS = 250
 SHORTEST_ADVANCE_MS = 125

@@ -21,7 +21,7 @@ from bridge.events import (
 from bridge.protocol import NO_JOINT, Arm, Fault, FaultCode, Known, Mode, State
 from bridge.session import Session
 from manipulator.arrays import Array
-from manipulator.words import counted
+from manipulator.formatting import counted
 
 
 class Latencies:

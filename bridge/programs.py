@@ -11,7 +11,7 @@ from bridge.frames import table_crc
 from bridge.protocol import Command, TableBegin, TableEnd, TableRow
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
-from manipulator.words import counted
+from manipulator.formatting import counted
 
 EQUAL = 1e-3
 """Seconds by which time steps may differ."""

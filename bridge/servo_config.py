@@ -10,8 +10,8 @@ from typing import Literal
 from bridge.protocol import MAX_JOINTS
 from manipulator.config import build, quantity
 from manipulator.errors import ConfigError
+from manipulator.formatting import counted, shown
 from manipulator.machine import MachineFile
-from manipulator.words import counted, shown
 
 MAX_NAME = 64
 """Characters of a joint's name, which messages repeat."""

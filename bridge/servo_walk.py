@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from bridge.calibration import COUNTS_PER_US
 from bridge.servo_config import ServoConfig
 from manipulator.errors import ConfigError
-from manipulator.words import shown
+from manipulator.formatting import shown
 
 
 class Stage(enum.Enum):

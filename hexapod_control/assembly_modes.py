@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hexapod_control import weighted_monomials as monomials
+from hexapod_control import forward_ideal as monomials
 from hexapod_control.forward_ideal import Generators, LegEquations, turned
 from hexapod_control.leg_jacobian import leg_jacobian, rods, smallest_singular_value
 from manipulator import rotation as so3

@@ -7,9 +7,9 @@ import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput, NoSolution
+from manipulator.formatting import length
 from manipulator.kinematics import ForwardSolution
 from manipulator.pose import Pose
-from manipulator.words import length
 
 LARGEST_TURN = 0.6
 TOLERANCE = 1e-11

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hexapod_control.parallel_platform import ParallelPlatform
-from manipulator.accuracy.spread import Spread, linear_law, spread_of
+from manipulator.analysis.accuracy import Spread, linear_law, spread_of
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 

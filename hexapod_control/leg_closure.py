@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hexapod_control.geometry import LEGS, RotaryGeometry
-from hexapod_control.leg_gaps import CHUNK, LegGaps, chunks
+from hexapod_control.linear import CHUNK, LegGaps, chunks
 from manipulator.arrays import Array, frozen
 from manipulator.pose import Pose
 

@@ -1,11 +1,51 @@
-"""Rods and their Jacobian, the same for crank and linear legs: docs/kinematics.md, section 4."""
+"""Rods and their Jacobian, the same for crank and linear legs: docs/kinematics.md, section 4.
+
+Legs first, poses last: the layout in which arrays of poses are quick to work on.
+
+Whether σmin keeps a margin, for many poses at once and without singular values.
+
+σmin(J) ≥ m exactly when JᵀJ − m²I has no eigenvalue below 0, which the signs of its pivots tell.
+"""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
-from manipulator.arrays import Array
+from manipulator.arrays import Array, Mask
 from manipulator.pose import Pose
+
+MANY = 64  # poses from which on columns are quicker than a matrix for each pose
+CHUNK = 1024  # poses at once: what they need stays in the cache
+
+
+def unit_rods_and_arms(
+    base_points: Array, platform_points: Array, pose: Pose
+) -> tuple[Array, Array]:
+    """Unit rod directions and R aᵢ, both (3, 6, N) in base axes, of N poses.
+
+    base_points (6, 3) or (N, 6, 3), platform_points (6, 3), metres.
+    """
+    count = pose.position.shape[0]
+    arms = turned_columns(platform_points, pose)
+    rods = arms + pose.position.T[:, None, :]
+    rods -= np.moveaxis(np.broadcast_to(base_points, (count, 6, 3)), (0, 1, 2), (2, 1, 0))
+    rods /= np.sqrt((rods * rods).sum(axis=0))
+    return rods, arms
+
+
+def turned_columns(vectors: Array, pose: Pose) -> Array:
+    """R v (3, k, N) of vectors (k, 3), for N poses."""
+    turned = pose.rotation.reshape(-1, 3) @ vectors.T
+    return np.ascontiguousarray(np.moveaxis(turned.reshape(-1, 3, len(vectors)), 0, -1))
+
+
+def chunks(pose: Pose, joints: Array) -> Iterator[tuple[slice, Pose, Array]]:
+    """Parts of N poses with their joints (N, n), and where they stand."""
+    for start in range(0, len(joints), CHUNK):
+        part = slice(start, start + CHUNK)
+        yield part, Pose.unchecked(pose.position[part], pose.rotation[part]), joints[part]
+
 
 YZX, ZXY = [1, 2, 0], [2, 0, 1]
 
@@ -43,3 +83,32 @@ def smallest_singular_value(jacobian: Array, characteristic_length: float) -> Ar
     safe = np.where(finite[..., None, None], scaled, 0.0)
     result: Array = np.where(finite, np.linalg.svd(safe, compute_uv=False)[..., -1], np.nan)
     return result
+
+
+def keeps_margin(
+    base_points: Array, platform_points: Array, pose: Pose, length: float, minimum: float
+) -> Mask:
+    """Which of N poses have σmin above `minimum`; rotations scaled by `length`. NaN does not."""
+    unit, arms = unit_rods_and_arms(base_points, platform_points, pose)
+    rows = np.empty((6, *unit.shape[1:]))
+    rows[:3] = unit
+    rows[3] = arms[1] * unit[2] - arms[2] * unit[1]
+    rows[4] = arms[2] * unit[0] - arms[0] * unit[2]
+    rows[5] = arms[0] * unit[1] - arms[1] * unit[0]
+    rows[3:] /= length
+    square = [np.einsum('ln,kln->kn', rows[i], rows[i:]) for i in range(6)]
+    for i in range(6):
+        square[i][0] -= minimum * minimum
+    return _pivots_are_positive(square)
+
+
+def _pivots_are_positive(upper: list[Array]) -> Mask:
+    """Of symmetric matrices, whose row i from the diagonal on is upper[i] (6 − i, N); consumed."""
+    positive: Mask = upper[0][0] > 0.0
+    with np.errstate(invalid='ignore', divide='ignore', over='ignore'):
+        for i in range(len(upper) - 1):
+            factors = upper[i][1:] / upper[i][0]
+            for j in range(i + 1, len(upper)):
+                upper[j] -= factors[j - i - 1] * upper[i][j - i :]
+            positive &= upper[i + 1][0] > 0.0
+    return positive

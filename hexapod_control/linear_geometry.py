@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hexapod_control.architecture import check_architecture
-from hexapod_control.geometry import LEGS, SixPoints
+from hexapod_control.geometry import LEGS, SixPoints, check_architecture
 from manipulator.arrays import Array, frozen
 from manipulator.config import quantity
 from manipulator.errors import InvalidInput

@@ -5,21 +5,19 @@ from typing import Any
 
 import numpy as np
 
-from hexapod_control.architecture import check_architecture
-from hexapod_control.geometry import LEGS, HexagonConfig, JointsConfig
+from hexapod_control.geometry import LEGS, HexagonConfig, JointsConfig, check_architecture
+from hexapod_control.leg_limits import LinearLimits, RotaryLimits
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.linear_geometry import PlatesConfig, PointsConfig
-from hexapod_control.linear_limits import LinearLimits
 from hexapod_control.rotary import RotaryHexapod
-from hexapod_control.rotary_limits import RotaryLimits
 from manipulator.config import build_both
 from manipulator.errors import ConfigError
+from manipulator.formatting import shown
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
 from manipulator.teleop.platform_jogger import PlatformJogger
-from manipulator.words import shown
 
 Parts = tuple[Kinematics, Constraints]
 CRANK_SETTINGS = 8

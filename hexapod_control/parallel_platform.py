@@ -8,11 +8,15 @@ from typing import Protocol
 import numpy as np
 
 from hexapod_control.assembly_modes import AssemblyModes, assembly_modes
-from hexapod_control.columns import chunks
 from hexapod_control.forward import XYZXY, ForwardByLengths
 from hexapod_control.geometry import LEGS
-from hexapod_control.leg_jacobian import leg_jacobian, rods, smallest_singular_value
-from hexapod_control.margin_test import keeps_margin
+from hexapod_control.leg_jacobian import (
+    chunks,
+    keeps_margin,
+    leg_jacobian,
+    rods,
+    smallest_singular_value,
+)
 from manipulator.arrays import Array, Mask
 from manipulator.continuity import first_jump
 from manipulator.errors import ConfigError, NoSolution, Unreachable

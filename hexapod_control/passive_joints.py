@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hexapod_control.columns import MANY, chunks, turned_columns, unit_rods_and_arms
 from hexapod_control.geometry import LEGS
+from hexapod_control.leg_jacobian import MANY, chunks, turned_columns, unit_rods_and_arms
 from hexapod_control.parallel_platform import ParallelPlatform
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.arrays import Array, Mask, frozen

@@ -12,9 +12,9 @@ from hexapod_control.leg_closure import TURN, LegClosure
 from hexapod_control.parallel_platform import ParallelPlatform
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput, Unreachable
+from manipulator.formatting import length
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke, outline
-from manipulator.words import length
 
 BRANCHES_MEET = 0.1
 """Radians: so much nearer elbow in must be for a leg to be taken for bent that way."""

@@ -11,12 +11,12 @@ from functools import partial
 import numpy as np
 
 from hexapod_control.workspace import axis_range
+from manipulator.analysis.readings import read_limits
+from manipulator.analysis.way import is_connected
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.reach.readings import read_limits
-from manipulator.reach.way import is_connected
 
 SPARE = 0.01
 """The part of every margin at home that is kept where the limits decide."""

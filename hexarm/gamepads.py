@@ -6,8 +6,8 @@ from pathlib import Path
 from hexarm.machines import folders, text_of
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError
+from manipulator.formatting import shown
 from manipulator.teleop.gamepad import Gamepad
-from manipulator.words import shown
 
 PREFIX = 'joystick_'
 

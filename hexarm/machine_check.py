@@ -16,7 +16,7 @@ from hexarm.simulation.dynamics_config import SCHEMAS
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
 from manipulator.frames import Frames
-from manipulator.limits.joint_range import JointRange
+from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionConfig
 

@@ -7,7 +7,7 @@ import numpy as np
 from bridge.calibration import COUNTS_PER_US, Calibration
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.arrays import Array, Mask
-from manipulator.limits.joint_range import JointRange
+from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Machine
 
 LEVEL, NEARLY_LEVEL, TILTED = np.radians(2.0), np.radians(10.0), np.radians(20.0)

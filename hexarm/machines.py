@@ -12,11 +12,11 @@ from bridge.servo_config import BoardConfig, ServosConfig
 from manipulator.arrays import Array, frozen
 from manipulator.config import MAX_CHARACTERS, build, parse_yaml
 from manipulator.errors import ConfigError
+from manipulator.formatting import reason, shortened, shown
 from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
 from manipulator.sag import Sag
-from manipulator.words import reason, shortened, shown
 
 
 def _hexapod(machine_file: MachineFile) -> Machine:

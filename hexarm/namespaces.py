@@ -5,7 +5,7 @@ import re
 from collections.abc import Collection
 
 from manipulator.errors import ManipulatorError
-from manipulator.words import shown
+from manipulator.formatting import shown
 
 NAMESPACE = re.compile(r'/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*/?', re.ASCII)
 

@@ -111,8 +111,7 @@ def gamepad() -> int:
 
 def keyboard_teleop() -> int:
     """Runs the node from a terminal's keys to jog commands."""
-    from manipulator.nodes.keyboard_teleop_node import KeyboardTeleop
-    from manipulator.nodes.terminal import Terminal
+    from manipulator.nodes.keyboard_teleop_node import KeyboardTeleop, Terminal
 
     signal.signal(signal.SIGHUP, signal.SIG_IGN)  # a closed window is seen when reading
     try:

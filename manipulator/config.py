@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 import yaml
 
 from manipulator.errors import ConfigError
-from manipulator.words import shortened, shown
+from manipulator.formatting import shortened, shown
 
 T = TypeVar('T')
 U = TypeVar('U')

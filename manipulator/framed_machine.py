@@ -13,8 +13,7 @@ from manipulator.arrays import Array, Mask
 from manipulator.frames import Frames
 from manipulator.kinematics import ForwardSolution, Kinematics
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.limit import admitted
-from manipulator.limits.limit_of import LimitOf
+from manipulator.limits.limit import LimitOf, admitted
 from manipulator.links import Link
 from manipulator.machine import Machine
 from manipulator.pose import Pose

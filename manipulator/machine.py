@@ -11,8 +11,8 @@ from manipulator.errors import InvalidInput
 from manipulator.frames import Frames, FramesConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.joint_range import JointRange
-from manipulator.limits.limit_of import LimitOf
+from manipulator.limits.limit import LimitOf
+from manipulator.limits.machine_limits import JointRange
 from manipulator.motion_limits import MotionConfig, MotionLimits
 from manipulator.sag import Sag
 from manipulator.teleop.jogger import Jogger

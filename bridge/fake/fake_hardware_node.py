@@ -18,9 +18,9 @@ from bridge.protocol import ResetCause
 from bridge.servo_config import BoardConfig, SimulationConfig
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, LinkError
+from manipulator.formatting import shown
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import MEASUREMENT
-from manipulator.words import shown
 
 PRESETS: dict[str, Callable[[SimulationConfig], SimulationConfig]] = {
     'normal': lambda told: told,

@@ -15,10 +15,10 @@ from bridge.programs import Upload, count_table
 from bridge.protocol import Command, CycleAxis, Finish, Play, Program
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
-from manipulator.nodes.bounded import decoded
 from manipulator.nodes.late_answers import Call, create_late_service
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, LATCHED
+from manipulator.nodes.subscriptions import decoded
 
 AXES = 'x, y, z, roll, pitch, yaw'
 ANSWER_WITHIN = 5.0

@@ -25,7 +25,6 @@ from bridge.nodes.stop_node import StopNode
 from bridge.servo_config import BoardConfig
 from bridge.stop_socket import StopSocket, stop_address
 from manipulator.errors import ManipulatorError
-from manipulator.nodes.bounded import decoded
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.graph_check import received_by
 from manipulator.nodes.late_answers import Call, create_late_service
@@ -33,6 +32,7 @@ from manipulator.nodes.messages import seconds
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer
+from manipulator.nodes.subscriptions import decoded
 
 HEARTBEAT = 0.5
 """Seconds between two `machine_state`; who needs it gives up after three (trajectory/pilot.py)."""

@@ -13,9 +13,9 @@ import numpy as np
 from hexapod_control.geometry import LEGS, RotaryGeometry
 from hexapod_control.leg_jacobian import leg_jacobian
 from hexapod_control.linear_geometry import LinearGeometry
+from manipulator.analysis.measurements import Parameter
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution
-from manipulator.identification.model import Parameter
 from manipulator.pose import Pose
 
 MOST_ITERATIONS = 20

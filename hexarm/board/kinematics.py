@@ -7,8 +7,7 @@ import numpy as np
 from bridge.calibration import Calibration
 from hexapod_control.geometry import LEGS
 from hexapod_control.rotary import RotaryHexapod
-from manipulator.limits.body_height import BodyHeight
-from manipulator.limits.joint_range import JointRange
+from manipulator.limits.machine_limits import BodyHeight, JointRange
 from manipulator.machine import Machine
 
 WITHOUT: dict[str, object] = {'HAS_KINEMATICS': 0}

@@ -13,7 +13,7 @@ from hexarm.board.solver import board_solver
 from hexarm.simulation.model import mechanism
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
-from manipulator.words import shown
+from manipulator.formatting import shown
 
 TELL_EVERY = 10.0
 PLANTS = ('servo', 'mujoco')

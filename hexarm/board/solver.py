@@ -8,9 +8,8 @@ from bridge.calibration import Calibration
 from bridge.fake.board_courses import Counts, Solver
 from hexapod_control.rotary import RotaryHexapod
 from manipulator import rotation
-from manipulator.limits.body_height import BodyHeight
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.joint_range import JointRange
+from manipulator.limits.machine_limits import BodyHeight, JointRange
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 

@@ -14,7 +14,7 @@ import numpy as np
 from bridge.calibration import Calibration
 from bridge.programs import CountTable, count_table
 from manipulator.errors import ConfigError, InvalidInput
-from manipulator.words import reason
+from manipulator.formatting import reason
 
 TIME = 'time'
 MOST_BYTES = 32_767

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from hexapod_control.identification.leg_model import Tolerances
-from hexarm.calibration.machine_model import MachineModel, machine_model, random_poses
+from hexarm.calibration.machine_writer import MachineModel, machine_model, random_poses
 from hexarm.calibration.poses import telling_poses
 from hexarm.machines import load
+from manipulator.analysis.device_frames import DeviceFrames
+from manipulator.analysis.identify import Identification, identify
+from manipulator.analysis.measurements import Measurements, Noise
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution
-from manipulator.identification.device_frames import DeviceFrames
-from manipulator.identification.identify import Identification, identify
-from manipulator.identification.measurements import Measurements, Noise
 from manipulator.pose import Pose
 
 POSES, UNSEEN = 40, 1000

@@ -8,19 +8,18 @@ import numpy as np
 from bridge.servo_config import BoardConfig
 from hexapod_control.identification.leg_model import Tolerances
 from hexarm.calibration.geometry_report import for_programs, in_words
-from hexarm.calibration.machine_model import machine_model, new_geometry
-from hexarm.calibration.machine_writer import MachineWriter
-from hexarm.calibration.pose_table import measurements
+from hexarm.calibration.machine_writer import MachineWriter, machine_model, new_geometry
+from hexarm.calibration.poses import measurements
 from hexarm.cli.answers import Answer, add_machine, answering
 from hexarm.machines import load, read
+from manipulator.analysis.identify import identify
+from manipulator.analysis.measurements import Measurements, Noise
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, NoSolution
-from manipulator.identification.identify import identify
-from manipulator.identification.measurements import Measurements, Noise
+from manipulator.formatting import shown
 from manipulator.kinematics import Kinematics
 from manipulator.machine import MachineFile
 from manipulator.pose import Pose
-from manipulator.words import shown
 from manipulator.yaml_edit import Place, with_section, with_values
 
 NOISE_MM, NOISE_DEG = 0.1, 0.057

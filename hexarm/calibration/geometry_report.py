@@ -4,13 +4,12 @@ from typing import Any
 
 import numpy as np
 
+from manipulator.analysis.identify import Identification
+from manipulator.analysis.measurements import Noise, Parameter
+from manipulator.analysis.observability import model_directions, what_is_not_seen
 from manipulator.arrays import Array
-from manipulator.identification.identify import Identification
-from manipulator.identification.measurements import Noise
-from manipulator.identification.model import Parameter
-from manipulator.identification.observability import model_directions, what_is_not_seen
+from manipulator.formatting import counted
 from manipulator.pose import Pose
-from manipulator.words import counted
 
 WELL_MEASURED = 2.0
 """Measured numbers for each parameter; with fewer, noise goes into the machine file."""

@@ -13,15 +13,14 @@ from hexapod_control.geometry_errors import GeometryErrors
 from hexapod_control.parallel_platform import ParallelPlatform
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.machines import load, read
-from manipulator.accuracy.joint_errors import JointErrors
-from manipulator.accuracy.spread import Spread, drawn_spread, linear_spread
+from manipulator.analysis.accuracy import JointErrors, Spread, drawn_spread, linear_spread
+from manipulator.analysis.volume import bounding_box, with_orientation
+from manipulator.analysis.way import admits
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
 from manipulator.pose import Pose
-from manipulator.reach.way import admits
-from manipulator.workspace.volume import bounding_box, with_orientation
 
 NOISE = {'rad': math.radians(1.0), 'm': 2e-4}
 """SG90: 1° (Prokopovich 2019); for linear servos ours."""

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from hexarm.cli.statuses import REFUSED
+from hexarm.cli.answers import REFUSED
 from hexarm.machine_check import Report, report_of
 from hexarm.machines import find, text_of
 from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError
+from manipulator.formatting import counted
 from manipulator.machine import Machine
-from manipulator.words import counted
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:

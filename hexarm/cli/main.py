@@ -10,9 +10,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import NoReturn
 
-from hexarm.cli.statuses import INTERRUPTED, PIPE_CLOSED, REFUSED
+from hexarm.cli.answers import INTERRUPTED, PIPE_CLOSED, REFUSED
 from manipulator.errors import ManipulatorError
-from manipulator.requirements import missing
+from manipulator.formatting import missing
 
 EXAMPLES = """\
 examples:

@@ -5,10 +5,10 @@ from pathlib import Path
 
 from hexarm import machines
 from hexarm.cli.answers import Answer, add_machine, answering
-from hexarm.simulation.mechanism import Mechanism
 from hexarm.simulation.model import mechanism
+from hexarm.simulation.rigid_body import Mechanism
 from manipulator.errors import InvalidInput
-from manipulator.words import reason
+from manipulator.formatting import reason
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:

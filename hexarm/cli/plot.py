@@ -8,7 +8,7 @@ import numpy as np
 from hexarm.cli.answers import Answer, answering, picture_file
 from hexarm.namespaces import namespace_of
 from manipulator.errors import InvalidInput
-from manipulator.words import counted
+from manipulator.formatting import counted
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -32,8 +32,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 
 def answer(arguments: argparse.Namespace) -> Answer:
     """Writes picture or tables; the answer is the figures of the recording, and where it is."""
-    from hexarm.recording.reading import messages  # noqa: PLC0415 (needs mcap)
-    from hexarm.recording.tables import write  # noqa: PLC0415
+    from hexarm.recording.reading import messages, write  # noqa: PLC0415 (needs mcap)
     from hexarm.recording.telling import is_wanted, tell  # noqa: PLC0415
 
     story = tell(messages(arguments.file, is_wanted), arguments.namespace)

@@ -7,16 +7,23 @@ from typing import Any
 
 import numpy as np
 
-from hexarm.cli.answers import Answer, Lines, add_machine, add_pose, answering, pose_asked
-from hexarm.cli.statuses import OUT_OF_REACH
+from hexarm.cli.answers import (
+    OUT_OF_REACH,
+    Answer,
+    Lines,
+    add_machine,
+    add_pose,
+    answering,
+    pose_asked,
+)
 from hexarm.machines import load
+from manipulator.analysis.explain import pose_in_words
+from manipulator.analysis.nearest import nearest_reachable
+from manipulator.analysis.reach import Reach, reach
+from manipulator.analysis.readings import LimitReading
+from manipulator.analysis.travel import Travel, travel
+from manipulator.formatting import length
 from manipulator.pose import Pose
-from manipulator.reach.nearest import nearest_reachable
-from manipulator.reach.reach import Reach, reach
-from manipulator.reach.readings import LimitReading
-from manipulator.reach.travel import Travel, travel
-from manipulator.reach.words import pose_in_words
-from manipulator.words import length
 
 SHOWN = 6
 FOR_PEOPLE = {'m': (1e3, 'mm'), 'rad': (math.degrees(1.0), '°')}

@@ -7,10 +7,9 @@ from pathlib import Path
 
 from hexarm.cli.up import StopSignal
 from hexarm.namespaces import namespace_of
-from hexarm.recording.absent import nothing, unheard
-from hexarm.recording.wanted import Wanted
+from hexarm.recording.topics import Wanted, nothing, unheard
 from manipulator.errors import ManipulatorError
-from manipulator.words import counted
+from manipulator.formatting import counted
 
 
 class NothingHeard(ManipulatorError):

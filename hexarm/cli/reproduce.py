@@ -7,7 +7,7 @@ from pathlib import Path
 from hexarm.cli.progress import OnProgress, progress
 from hexarm.papers.finding import Finding, rendered, to_json
 from manipulator.errors import InvalidInput
-from manipulator.words import reason
+from manipulator.formatting import reason
 
 POINTS, DRAWS = 400_000, 4000
 FEW_POINTS, FEW_DRAWS = 20_000, 400

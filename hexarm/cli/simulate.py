@@ -11,17 +11,16 @@ from hexarm import machines
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.cli.mjcf import modelled
 from hexarm.simulation.compensation import Compensation
-from hexarm.simulation.cycle_reach import (
+from hexarm.simulation.limit_search import (
     PAPER_AMPLITUDE,
     corners_out,
     in_phase,
     poses_of,
     share_in_reach,
 )
-from hexarm.simulation.holding import check_holds
-from hexarm.simulation.mechanism import Mechanism
 from hexarm.simulation.model import dynamics_of
-from hexarm.simulation.static_load import static_load
+from hexarm.simulation.rigid_body import Mechanism
+from hexarm.simulation.static_load import check_holds, static_load
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.machine import Machine

@@ -10,8 +10,8 @@ from hexarm.cli.answers import Answer, add_machine, answering
 from hexarm.simulation.dynamics_config import ArmDynamicsConfig
 from manipulator.config import build
 from manipulator.errors import InvalidInput, Refused
+from manipulator.formatting import counted, reason
 from manipulator.machine import MachineFile
-from manipulator.words import counted, reason
 
 THICKNESS = 0.06
 """Radius of a rod, in characteristic lengths, where the file has no section `dynamics`."""

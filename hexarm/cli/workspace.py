@@ -11,15 +11,15 @@ from arm_control.arm import SerialArm
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.cli.progress import progress
 from hexarm.machines import load
+from manipulator.analysis.inside import conditions
+from manipulator.analysis.survey import Survey, survey
+from manipulator.analysis.volume import Box, Volume
+from manipulator.analysis.way import is_joint_box
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
+from manipulator.formatting import counted
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.reach.way import is_joint_box
-from manipulator.words import counted
-from manipulator.workspace.inside import conditions
-from manipulator.workspace.survey import Survey, survey
-from manipulator.workspace.volume import Box, Volume
 
 POINTS, FEWER_POINTS, FEWEST_POINTS = 1_000_000, 20_000, 1000
 SLOW_POINTS = 2000

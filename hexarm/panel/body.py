@@ -4,10 +4,19 @@ from typing import Any
 
 import numpy as np
 
-from hexarm.panel.bars import wxyz_of
 from hexarm.panel.gripper import fingers
-from hexarm.panel.meshes import bar, hull, plate, sphere
-from hexarm.panel.pieces import PLAIN, Colours, Pieces, colours, pieces
+from hexarm.panel.pieces import (
+    PLAIN,
+    Colours,
+    Pieces,
+    bar,
+    colours,
+    hull,
+    pieces,
+    plate,
+    sphere,
+    wxyz_of,
+)
 from hexarm.panel.view import Stance
 from manipulator.kinematics import Kinematics
 from manipulator.skeleton import Stroke

@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from hexarm.panel.buttons import Buttons, Wishes
-from hexarm.panel.goal_sliders import GoalSliders
-from hexarm.panel.gripper_slider import GripperSlider
+from hexarm.panel.controls import Buttons, GoalSliders, Wishes
+from hexarm.panel.gripper import GripperSlider
 from hexarm.panel.plots import Plots
 from hexarm.panel.readout import diagnostics_text
 from hexarm.panel.scene import Scene

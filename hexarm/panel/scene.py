@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from hexarm.panel.bars import wxyz_of
 from hexarm.panel.body import Body
-from hexarm.panel.margins import shares
-from hexarm.panel.meshes import hull
+from hexarm.panel.pieces import hull, wxyz_of
+from hexarm.panel.readout import shares
 from hexarm.panel.view import Stance, View
 from manipulator.arrays import Array
 from manipulator.machine import Machine

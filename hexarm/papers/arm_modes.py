@@ -8,14 +8,13 @@ from arm_control.load import jogging
 from arm_control.resolved_rate import JogState, ResolvedRate
 from hexarm import machines
 from hexarm.board import build as firmware_build
-from hexarm.papers.differential import joint_rates, velocity_towards
 from hexarm.papers.finding import ARM, Finding, Verdict
-from hexarm.papers.paper_arm import PaperArm, projections
+from hexarm.papers.paper_arm import PaperArm, joint_rates, projections, velocity_towards
 from manipulator.arrays import Array
 from manipulator.pose import Pose
-from manipulator.teleop.feedback import Feedback
+from manipulator.teleop.jog_modes import Feedback
+from manipulator.teleop.jogger import within_speed
 from manipulator.teleop.modes import jog_mode
-from manipulator.teleop.speed_limits import within_speed
 
 MACHINE = 'arm_6r'
 PAPER_ARM = PaperArm(0.3, 0.4, 0.4)

@@ -10,10 +10,17 @@ from hexarm import machines
 from hexarm.cli.mjcf import modelled
 from hexarm.papers.crank_kinematics import MACHINE
 from hexarm.papers.finding import ROTARY, Finding
-from hexarm.simulation.cycle_reach import PAPER_AMPLITUDE, corners_out, in_phase
 from hexarm.simulation.dynamics_config import RotaryDynamicsConfig
 from hexarm.simulation.experiment import Recording, run, unshifted
-from hexarm.simulation.limit_search import Demand, LimitSearch, along, lines
+from hexarm.simulation.limit_search import (
+    PAPER_AMPLITUDE,
+    Demand,
+    LimitSearch,
+    along,
+    corners_out,
+    in_phase,
+    lines,
+)
 from hexarm.simulation.model import dynamics_of
 from hexarm.simulation.simulation import Simulation
 from hexarm.simulation.static_load import static_load

@@ -8,12 +8,12 @@ from hexarm import machines
 from hexarm.cli.accuracy import rows, servo_errors
 from hexarm.cli.progress import OnProgress
 from hexarm.papers.finding import ROTARY, Finding
+from manipulator.analysis.inside import joint_rates, ranges
+from manipulator.analysis.survey import survey
+from manipulator.analysis.volume import bounding_box, volume, with_orientation
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.workspace.inside import joint_rates, ranges
-from manipulator.workspace.survey import survey
-from manipulator.workspace.volume import bounding_box, volume, with_orientation
 
 MACHINE = 'robocake'
 SPEED, ALONG = 0.030, 0.010

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hexapod_control.architecture import architecture_sigma
+from hexapod_control.geometry import architecture_sigma
 from hexapod_control.leg_motion import LegMotion, paper_motion
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.linear_geometry import PlatesConfig, joint_circle

@@ -11,13 +11,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hexarm.pictures.workspace import INK, PLANES, SOFT, draw_section
-from manipulator.accuracy.joint_errors import JointErrors
-from manipulator.accuracy.spread import linear_spread
+from manipulator.analysis.accuracy import JointErrors, linear_spread
+from manipulator.analysis.inside import Section, section
+from manipulator.analysis.volume import bounding_box, with_orientation
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.workspace.inside import Section, section
-from manipulator.workspace.volume import bounding_box, with_orientation
 
 GRID = 141
 

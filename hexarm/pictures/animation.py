@@ -18,8 +18,8 @@ from hexarm.simulation.experiment import Recording
 from hexarm.simulation.simulation import Simulation
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
+from manipulator.formatting import reason
 from manipulator.kinematics import Kinematics
-from manipulator.words import reason
 
 FRAMES_PER_SECOND = 20
 MOST_FRAMES = 200

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from hexapod_control.leg_motion import LegMotion
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
-from manipulator.words import reason
+from manipulator.formatting import reason
 
 COLOURS = ('#0b6e99', '#d1603d', '#6a994e')
 

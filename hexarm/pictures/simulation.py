@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 
 from hexarm.demo.picture import CRANKS
 from hexarm.simulation.experiment import Recording
-from hexarm.simulation.mechanism import Mechanism
+from hexarm.simulation.rigid_body import Mechanism
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
-from manipulator.words import reason
+from manipulator.formatting import reason
 
 KG_CM = 0.0980665
 LIMIT = '#b3261e'

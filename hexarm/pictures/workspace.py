@@ -14,10 +14,10 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D
 
 from hexarm.demo.picture import CRANKS
+from manipulator.analysis.inside import AXES, Section, joint_rates, section, surface
+from manipulator.analysis.survey import Survey
 from manipulator.arrays import Array
 from manipulator.machine import Machine
-from manipulator.workspace.inside import AXES, Section, joint_rates, section, surface
-from manipulator.workspace.survey import Survey
 
 GRID = 161
 RINGS, SECTORS = 37, 73

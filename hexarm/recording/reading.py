@@ -1,7 +1,11 @@
-"""The messages of an MCAP file, decoded without ROS; a file that was torn off ends at the tear."""
+"""The messages of an MCAP file, decoded without ROS; a file that was torn off ends at the tear.
 
+A recording as tables of comma-separated values.
+"""
+
+import csv
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +15,7 @@ from mcap.stream_reader import StreamReader
 from mcap_ros2.decoder import DecoderFactory
 from zstandard import ZstdError
 
+from hexarm.recording.story import POSE_COLUMNS, Series, Story
 from manipulator.errors import InvalidInput
 
 TORN = (EndOfFile, struct.error)
@@ -77,3 +82,37 @@ def _records(path: Path) -> Iterator[Any]:
         raise InvalidInput(f'{path}: {error.strerror or error}') from error
     except InvalidMagic as error:
         raise InvalidInput(f'{path} is no MCAP file') from error
+
+
+def write(story: Story, folder: Path) -> list[Path]:
+    """One file a table into the folder, which is made; OSError where that cannot be done."""
+    folder.mkdir(parents=True, exist_ok=True)
+    joints = story.joint_names
+    tables = {
+        'setpoint': (POSE_COLUMNS, story.setpoint),
+        'pose': (POSE_COLUMNS, story.pose),
+        'goals': (POSE_COLUMNS, story.goals),
+        'pose_error': (('distance_m', 'angle_rad'), story.pose_error),
+        'joint_command': (joints, story.joint_command),
+        'joint_states': (joints, story.joint_states),
+    }
+    written = [
+        _table(folder / f'{name}.csv', ('time_s', *columns), _rows(series))
+        for name, (columns, series) in tables.items()
+    ]
+    events = ((f'{e.time:.4f}', e.source, e.what, e.count, e.reason) for e in story.events)
+    heads = ('time_s', 'source', 'what', 'count', 'reason')
+    return [*written, _table(folder / 'events.csv', heads, events)]
+
+
+def _rows(series: Series) -> Iterable[Sequence[object]]:
+    for time, values in zip(series.times, series.values, strict=True):
+        yield (f'{time:.4f}', *(f'{value:.9g}' for value in values))
+
+
+def _table(path: Path, heads: Sequence[str], rows: Iterable[Sequence[object]]) -> Path:
+    with path.open('w', newline='', encoding='utf-8') as file:
+        writer = csv.writer(file)
+        writer.writerow(heads)
+        writer.writerows(rows)
+    return path

@@ -1,21 +1,112 @@
-"""The recorder's node: looks around for topics, and writes what it hears until told to end."""
+"""The recorder's node: looks around for topics, and writes what it hears until told to end.
+
+Hears the topics of a machine and keeps each message as it came, undecoded.
+"""
 
 import contextlib
 import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
 
 import rclpy
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from hexarm.cli.up import Interrupted
-from hexarm.recording.bag import Bag
-from hexarm.recording.listener import Listener
-from hexarm.recording.wanted import Wanted
+from hexarm.recording.bag import Bag, Topic
+from hexarm.recording.telling import UnknownType
+from hexarm.recording.topics import Wanted, hearing, offered, unheard
+
+
+class Listener:
+    """Subscribes to what is wanted of what there is, each time it looks around."""
+
+    def __init__(self, node: Node, wanted: Wanted, bag: Bag) -> None:
+        self._node, self._wanted, self._bag = node, wanted, bag
+        self._subscriptions: dict[str, Any] = {}
+        self._qualities: dict[str, QoSProfile] = {}
+        self._unknown: set[str] = set()
+        self.there: set[str] = set()
+        """Every topic that was seen."""
+
+    def look_around(self, now: float) -> None:
+        """Joins and leaves topics; anew where publishers offer other qualities than before."""
+        for name, types in self._node.get_topic_names_and_types():
+            self.there.add(name)
+            if name in self._unknown:
+                continue
+            publishers = self._node.get_publishers_info_by_topic(name)
+            if not self._wanted.may_join(name, bool(publishers), now):
+                self._leave(name)
+                continue
+            try:
+                self._join(name, types[0], publishers)
+            except UnknownType as error:
+                self._unknown.add(name)
+                self._node.get_logger().warning(f'{name} is not recorded: {error}')
+
+    def is_matched(self, every: bool) -> bool:
+        """Whether a publisher of what is recorded has met us: one of each topic, or of any."""
+        own = {n: s for n, s in self._subscriptions.items() if self._wanted.is_own(n)}
+        met = {name for name, subscription in own.items() if subscription.get_publisher_count()}
+        published = {name for name in own if self._node.count_publishers(name)}
+        return bool(met) and (published <= met or not every)
+
+    def warn(self) -> None:
+        """Speaks of the topics asked for that are not there."""
+        names = [name for name in self._wanted.names if name not in self.there]
+        for line in unheard(names, (), self.there):
+            self._node.get_logger().warning(line)
+
+    def _join(self, name: str, type_name: str, publishers: list[Any]) -> None:
+        offers = [p.qos_profile for p in publishers]
+        if name in self._subscriptions and not offers:
+            return
+        qualities = hearing(offers, self._others(name))
+        if qualities == self._qualities.get(name):
+            return
+        kind = message_class(type_name)
+        self._bag.add_type(type_name)
+        self._leave(name)
+        self._qualities[name] = qualities
+        self._subscriptions[name] = self._node.create_subscription(
+            kind, name, lambda message: self._keep(name, type_name, message), qualities, raw=True
+        )
+
+    def _keep(self, name: str, type_name: str, message: bytes) -> None:
+        if name not in self._bag.counts:
+            # Only now, with a publisher, is it known what is offered.
+            publishers = self._node.get_publishers_info_by_topic(name)
+            type_hash = str(publishers[0].topic_type_hash) if publishers else ''
+            offers = offered([p.qos_profile for p in publishers])
+            self._bag.add_topic(Topic(name, type_name, offers, type_hash))
+        self._bag.write(name, message, time.time_ns())
+
+    def _others(self, name: str) -> list[QoSProfile]:
+        """What the other listeners of the topic ask for."""
+        found = self._node.get_subscriptions_info_by_topic(name)
+        return [s.qos_profile for s in found if s.node_name != self._node.get_name()]
+
+    def _leave(self, name: str) -> None:
+        if name in self._subscriptions:
+            self._node.destroy_subscription(self._subscriptions.pop(name))
+            del self._qualities[name]
+
+
+def message_class(type_name: str) -> type:
+    """The class of `package/msg/Name`; UnknownType where the package is not installed."""
+    package, _, name = type_name.split('/')
+    try:
+        return getattr(import_module(f'{package}.msg'), name)  # type: ignore[no-any-return]
+    except (ModuleNotFoundError, AttributeError) as error:
+        raise UnknownType(f'{type_name} is not installed here') from error
+
 
 LOOK_AROUND = 0.25
 """Seconds between two looks at which topics there are."""

@@ -7,17 +7,19 @@ import numpy as np
 from arm_control.arm import SerialArm
 from hexarm.simulation.drives import Drives
 from hexarm.simulation.dynamics_config import ArmDynamicsConfig
-from hexarm.simulation.mechanism import Mechanism
 from hexarm.simulation.platform_parts import add_drives, add_joint
-from hexarm.simulation.rigid_body import RigidBody, link, payload
-from hexarm.simulation.xml import (
+from hexarm.simulation.rigid_body import (
     BLUE,
     METAL,
     ORANGE,
+    Mechanism,
+    RigidBody,
     add,
     child,
     document,
     inertial,
+    link,
+    payload,
     tube,
     written,
 )

@@ -12,8 +12,7 @@ import numpy as np
 from hexapod_control.rotary import RotaryHexapod
 from hexarm.simulation.dynamics_config import RotaryDynamicsConfig
 from hexarm.simulation.platform_parts import moving_bodies
-from hexarm.simulation.rigid_body import RigidBody
-from hexarm.simulation.xml import GRAVITY
+from hexarm.simulation.rigid_body import GRAVITY, RigidBody
 from manipulator.arrays import Array
 from manipulator.trajectory.plan import MotionState
 

@@ -12,9 +12,9 @@ from hexapod_control.geometry import LEGS
 from hexapod_control.linear import LinearPlatform
 from hexarm.simulation.drives import Drives
 from hexarm.simulation.dynamics_config import LinearDynamicsConfig
-from hexarm.simulation.mechanism import Mechanism, Seat, free_body
 from hexarm.simulation.platform_parts import (
     PLATFORM,
+    UniversalJoint,
     add_closure,
     add_drives,
     add_hexagon,
@@ -23,9 +23,20 @@ from hexarm.simulation.platform_parts import (
     add_platform,
     inradius,
 )
-from hexarm.simulation.rigid_body import rod
-from hexarm.simulation.universal_joint import UniversalJoint
-from hexarm.simulation.xml import GREY, METAL, add, child, document, inertial, tube, written
+from hexarm.simulation.rigid_body import (
+    GREY,
+    METAL,
+    Mechanism,
+    Seat,
+    add,
+    child,
+    document,
+    free_body,
+    inertial,
+    rod,
+    tube,
+    written,
+)
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 

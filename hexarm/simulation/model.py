@@ -13,7 +13,7 @@ from hexarm.simulation.dynamics_config import (
     RotaryDynamicsConfig,
 )
 from hexarm.simulation.linear_model import linear_model
-from hexarm.simulation.mechanism import Mechanism
+from hexarm.simulation.rigid_body import Mechanism
 from hexarm.simulation.rotary_model import rotary_model
 from manipulator.config import build
 from manipulator.errors import ConfigError

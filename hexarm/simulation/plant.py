@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hexarm.simulation.mechanism import Mechanism
+from hexarm.simulation.rigid_body import Mechanism
 from hexarm.simulation.simulation import Simulation
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput

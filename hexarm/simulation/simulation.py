@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from hexarm.simulation.mechanism import Mechanism
+from hexarm.simulation.rigid_body import Mechanism
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ManipulatorError
+from manipulator.formatting import length
 from manipulator.pose import Pose
-from manipulator.words import length
 
 CLOSED = 1e-5
 """Metres between the ends of a closed loop that count as closed."""

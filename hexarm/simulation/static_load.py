@@ -2,6 +2,8 @@
 
 A drive's effort is how fast the potential energy grows with its joint: τ = Σ m g ∂z/∂q. A rod of
 even density counts half at either end.
+
+Whether the servos hold a machine up along a way, and where they do not.
 """
 
 from typing import Protocol
@@ -13,6 +15,7 @@ from hexapod_control.linear import LinearPlatform
 from hexapod_control.parallel_platform import ParallelPlatform
 from hexapod_control.rotary import RotaryHexapod
 from hexarm.simulation.arm_model import arm_links
+from hexarm.simulation.drives import Drives
 from hexarm.simulation.dynamics_config import (
     ArmDynamicsConfig,
     LinearDynamicsConfig,
@@ -20,10 +23,9 @@ from hexarm.simulation.dynamics_config import (
 )
 from hexarm.simulation.model import Dynamics
 from hexarm.simulation.platform_parts import moving_bodies
-from hexarm.simulation.rigid_body import payload
-from hexarm.simulation.xml import GRAVITY
+from hexarm.simulation.rigid_body import GRAVITY, payload
 from manipulator.arrays import Array
-from manipulator.errors import InvalidInput
+from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.kinematics import Kinematics
 from manipulator.pose import Pose
 
@@ -138,3 +140,34 @@ def _arm(arm: SerialArm, dynamics: ArmDynamicsConfig) -> StaticLoad:
         return result
 
     return load
+
+
+class Stalls(ManipulatorError, ValueError):
+    """A load that the servos cannot hold; `joint` counts from 1, pose is the worst one's."""
+
+    def __init__(self, message: str, joint: int, pose: Pose) -> None:
+        super().__init__(message)
+        self.joint = joint
+        self.pose = pose
+
+
+def check_holds(
+    load: StaticLoad, drives: Drives, names: tuple[str, ...], poses: Pose, joints: Array
+) -> None:
+    """Raises Stalls at the worst of poses (N) where gravity asks for more than a drive gives."""
+    efforts = np.abs(load(poses, joints))
+    shares = efforts / drives.effort
+    worst, joint = np.unravel_index(np.argmax(shares), shares.shape)
+    if shares[worst, joint] <= 1.0:
+        return
+    pose = poses[int(worst)]
+    place = ', '.join(
+        f'{name} {1e3 * value:.1f}' for name, value in zip('xyz', pose.position, strict=True)
+    )
+    turn = ', '.join(f'{value:.3f}' for value in pose.rpy)
+    raise Stalls(
+        f'{names[joint]} stalls at {place} mm, rpy {turn} rad: needs {efforts[worst, joint]:.4g}, '
+        f'its drive gives {drives.effort[joint]:.4g} (N·m or N)',
+        int(joint) + 1,
+        pose,
+    )

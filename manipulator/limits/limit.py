@@ -1,4 +1,7 @@
-"""What a limit is: named values of a configuration and the range that each must keep."""
+"""What a limit is: named values of a configuration and the range that each must keep.
+
+What limits share that speak of another limit: its names.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -97,3 +100,25 @@ class Violation:
         if not np.isfinite(self.high):
             return f'below {low}'
         return f'outside [{low}, {high}]' if np.isfinite(self.low) else f'above {high}'
+
+
+@dataclass(frozen=True, eq=False)
+class LimitOf:
+    """A limit with the quantity, unit and owners of `inner`."""
+
+    inner: Limit
+
+    @property
+    def quantity(self) -> str:
+        """That of the limit."""
+        return self.inner.quantity
+
+    @property
+    def unit(self) -> str:
+        """That of the limit."""
+        return self.inner.unit
+
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """Those of the limit."""
+        return self.inner.owners

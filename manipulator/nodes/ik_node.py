@@ -11,10 +11,10 @@ from sensor_msgs.msg import JointState
 from manipulator.command_check import CommandCheck
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
-from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import joint_message, known_joints, pose_of
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
+from manipulator.nodes.subscriptions import Intake
 
 
 class IkNode(Node):

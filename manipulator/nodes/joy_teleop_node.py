@@ -9,11 +9,10 @@ from sensor_msgs.msg import Joy
 
 from manipulator.errors import InvalidInput
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report
-from manipulator.nodes.intake import Intake
 from manipulator.nodes.jog_topics import JogTopics
 from manipulator.nodes.parameters import declare
-from manipulator.nodes.sole_subscription import SoleSubscription
 from manipulator.nodes.steady_timer import SteadyTimer
+from manipulator.nodes.subscriptions import Intake, SoleSubscription
 from manipulator.teleop.gamepad import Gamepad
 from manipulator.teleop.joy_reader import JoyReader
 

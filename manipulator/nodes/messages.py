@@ -9,9 +9,9 @@ from sensor_msgs.msg import JointState
 
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
+from manipulator.formatting import counted
 from manipulator.frames import Frames
 from manipulator.pose import Pose
-from manipulator.words import counted
 
 FASTEST_TWIST = 100.0
 """m/s or rad/s. Less is scaled to what the machine can do; more is a damaged message."""

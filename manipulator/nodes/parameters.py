@@ -1,12 +1,19 @@
-"""Declaring parameters with descriptors that read well in `ros2 param describe`."""
+"""Declaring parameters with descriptors that read well in `ros2 param describe`.
+
+The parameters of `~/start_cycle`: six amplitudes, frequencies and phases a term.
+"""
 
 from typing import Any
 
+import numpy as np
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
 
+from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
-from manipulator.words import shown
+from manipulator.formatting import shown
+from manipulator.pose import Pose
+from manipulator.trajectory.cycle import Cycle
 
 
 def declare(
@@ -43,3 +50,31 @@ def checked(name: str, value: Any, default: Any, bounds: tuple[float, float] | N
     if bounds is not None and not bounds[0] <= value <= bounds[1]:
         raise InvalidInput(f'parameter {name}: {value} outside [{bounds[0]}, {bounds[1]}]')
     return value
+
+
+AXES = 'x, y, z, roll, pitch, yaw; further terms follow as further six'
+AMPLITUDE = [0.003, 0.003, 0.0015, 0.05, 0.05, 0.04]
+"""Half of the amplitudes of Prokopovich 2019, fig. 12, whose own corners are out of reach."""
+
+
+class CycleParameters:
+    """cycle.amplitude, cycle.frequency and cycle.phase; read when a cycle is started."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        defaults = {
+            'amplitude': (AMPLITUDE, f'amplitudes (m, rad) about {AXES}'),
+            'frequency': ([0.5] * 6, f'frequencies (Hz) about {AXES}'),
+            'phase': ([0.0] * 6, f'phases (rad) about {AXES}'),
+        }
+        for name, (default, description) in defaults.items():
+            declare(node, f'cycle.{name}', default, description, is_read_only=False)
+
+    def read(self, centre: Pose) -> Cycle:
+        """The cycle about `centre`; InvalidInput says what does not fit."""
+        amplitude, frequency, phase = map(self._terms, ('amplitude', 'frequency', 'phase'))
+        return Cycle(centre, amplitude, frequency, phase)
+
+    def _terms(self, name: str) -> Array:
+        values = np.array(self._node.get_parameter(f'cycle.{name}').value, dtype=np.float64)
+        return values.reshape(-1, 6) if values.size % 6 == 0 else values

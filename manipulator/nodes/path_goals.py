@@ -19,17 +19,16 @@ from std_msgs.msg import Header
 from manipulator import rotation as so3
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
-from manipulator.nodes.bounded import decoded
-from manipulator.nodes.intake import Intake
+from manipulator.formatting import counted, shown
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, check_frame, pose_message, seconds
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.subscriptions import Intake, decoded
 from manipulator.pose import Pose
 from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.path_planning import PathGoal
 from manipulator.trajectory.path_timing import PathRequest
 from manipulator.trajectory.supervisor import Supervisor
-from manipulator.words import counted, shown
 
 MOST_POSES = 2000
 MOST_BYTES = 100 * MOST_POSES

@@ -1,18 +1,36 @@
-"""From joint states to the pose of the platform or tool, by forward kinematics."""
+"""From joint states to the pose of the platform or tool, by forward kinematics.
 
-from collections.abc import Callable
+The machine as lines, for RViz and Foxglove.
 
+The machine as transforms on /tf, where the package tf2_msgs is installed.
+"""
+
+import re
+import time
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from typing import Any
+
+from builtin_interfaces.msg import Duration, Time
 from diagnostic_msgs.msg import DiagnosticStatus
-from geometry_msgs.msg import PointStamped, PoseStamped
+from geometry_msgs.msg import Point, PointStamped, PoseStamped, TransformStamped
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker, MarkerArray
 
+from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
+from manipulator.formatting import shown
+from manipulator.frames import Frames
+from manipulator.kinematics import Kinematics
+from manipulator.links import Link
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
-from manipulator.nodes.intake import Intake
-from manipulator.nodes.markers import Markers
 from manipulator.nodes.messages import (
+    BASE_FRAME,
+    PIVOT_FRAME,
     PLATFORM_FRAME,
     WORK_FRAME,
     known_joints,
@@ -21,8 +39,113 @@ from manipulator.nodes.messages import (
 )
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
-from manipulator.nodes.transforms import Transforms, declare_prefix
+from manipulator.nodes.subscriptions import Intake
+from manipulator.pose import Pose
 from manipulator.pose_estimate import PoseEstimate
+from manipulator.skeleton import Stroke
+
+PERIOD = 0.1
+LIFETIME = Duration(sec=1)
+"""A machine that is no longer heard of disappears."""
+
+COLOURS = {
+    'body': (0.35, 0.4, 0.45),
+    'crank': (0.82, 0.38, 0.24),
+    'rod': (0.04, 0.43, 0.6),
+    'platform': (0.42, 0.6, 0.31),
+    'link': (0.04, 0.43, 0.6),
+}
+WIDTH = 0.02
+"""Of a line, as part of the machine's height at home."""
+
+
+class Markers:
+    """Publishes `markers`, at most every PERIOD and only while somebody listens."""
+
+    def __init__(self, node: Node, frame_prefix: str) -> None:
+        self._frame = frame_prefix + BASE_FRAME
+        self._publisher = node.create_publisher(MarkerArray, 'markers', MEASUREMENT)
+        self._next = 0.0
+
+    def show(self, kinematics: Kinematics, pose: Pose, joints: Array, stamp: Time) -> None:
+        """Shows the machine in its base frame."""
+        now = time.monotonic()
+        if now < self._next or self._publisher.get_subscription_count() == 0:
+            return
+        self._next = now + PERIOD
+        width = WIDTH * float(kinematics.home.position[2])
+        strokes = enumerate(kinematics.skeleton(pose, joints))
+        markers = [_marker(k, stroke, width, self._frame, stamp) for k, stroke in strokes]
+        self._publisher.publish(MarkerArray(markers=markers))
+
+
+def _marker(number: int, stroke: Stroke, width: float, frame: str, stamp: Time) -> Marker:
+    marker = Marker(ns=stroke.part, id=number, type=Marker.LINE_STRIP, lifetime=LIFETIME)
+    marker.header.frame_id, marker.header.stamp = frame, stamp
+    marker.pose.orientation.w = 1.0
+    marker.scale.x = width
+    red, green, blue = COLOURS[stroke.part]
+    marker.color = ColorRGBA(r=red, g=green, b=blue, a=1.0)
+    marker.points = [Point(x=x, y=y, z=z) for x, y, z in stroke.points.tolist()]
+    return marker
+
+
+LISTENED = QoSProfile(depth=100)
+"""What every tf2 listener asks for."""
+
+
+def declare_prefix(node: Node) -> str:
+    """The parameter `frame_prefix`; InvalidInput for what tf2 would not accept."""
+    meaning = 'stands before the frame names of tf and markers, as in hexapod/'
+    prefix = str(declare(node, 'frame_prefix', '', meaning))
+    if re.fullmatch(r'([A-Za-z_][\w/-]*)?', prefix, re.ASCII) is None:
+        raise InvalidInput(
+            f'parameter frame_prefix: {shown(prefix)} is no beginning of a frame name'
+        )
+    return prefix
+
+
+class Transforms:
+    """Publishes /tf while somebody listens; without tf2_msgs it does nothing, and says nothing."""
+
+    def __init__(self, node: Node, prefix: str) -> None:
+        self._prefix = prefix
+        try:
+            self._kind: Any = import_module('tf2_msgs.msg').TFMessage
+        except ModuleNotFoundError:
+            self._kind = None
+            return
+        self._publisher = node.create_publisher(self._kind, '/tf', LISTENED)
+
+    def show(
+        self, kinematics: Kinematics, frames: Frames, pose: Pose, joints: Array, stamp: Time
+    ) -> None:
+        """Tells where every frame of the machine is."""
+        if self._kind is None or self._publisher.get_subscription_count() == 0:
+            return
+        told = transforms(kinematics.links(pose, joints), frames, self._prefix, stamp)
+        self._publisher.publish(self._kind(transforms=told))
+
+
+def transforms(
+    links: Sequence[Link], frames: Frames, prefix: str, stamp: Time
+) -> list[TransformStamped]:
+    """Base to every link and to the work frame, platform to pivot."""
+    told = [(BASE_FRAME, link.name, link.pose) for link in links]
+    told.append((BASE_FRAME, WORK_FRAME, frames.T_base_work))
+    told.append((PLATFORM_FRAME, PIVOT_FRAME, frames.T_platform_pivot))
+    return [
+        _transform(prefix + parent, prefix + child, pose, stamp) for parent, child, pose in told
+    ]
+
+
+def _transform(parent: str, child: str, pose: Pose, stamp: Time) -> TransformStamped:
+    message = TransformStamped(child_frame_id=child)
+    message.header.stamp, message.header.frame_id = stamp, parent
+    shift, turn = message.transform.translation, message.transform.rotation
+    shift.x, shift.y, shift.z = pose.position.tolist()
+    turn.x, turn.y, turn.z, turn.w = pose.quaternion.tolist()
+    return message
 
 
 class PoseNode(Node):

@@ -18,7 +18,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from manipulator.errors import ManipulatorError
-from manipulator.requirements import missing
+from manipulator.formatting import missing
 
 GOODBYE = 3.0
 """Seconds that nodes may take to leave the graph once they have closed what they hold."""

@@ -8,10 +8,9 @@ from rclpy.node import Node
 from std_msgs.msg import String
 
 from manipulator.errors import ManipulatorError
-from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, point_of, twist_of
 from manipulator.nodes.qos import COMMAND
-from manipulator.nodes.sole_subscription import SoleSubscription
+from manipulator.nodes.subscriptions import Intake, SoleSubscription
 from manipulator.teleop.arbiter import SOURCES
 from manipulator.trajectory.teleop import Teleop
 

@@ -15,7 +15,6 @@ from std_msgs.msg import Float64
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.machine import JOG_SINGULARITIES, Machine
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
-from manipulator.nodes.intake import Intake
 from manipulator.nodes.messages import (
     BASE_FRAME,
     PLATFORM_FRAME,
@@ -31,14 +30,14 @@ from manipulator.nodes.path_goals import PathGoals
 from manipulator.nodes.planning_thread import PlanningThread
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.steady_timer import SteadyTimer
+from manipulator.nodes.subscriptions import Intake
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
 from manipulator.teleop.arbiter import PEOPLE
 from manipulator.trajectory.following import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.lag import lag_of
 from manipulator.trajectory.motion_status import MotionStatus
-from manipulator.trajectory.supervisor import MEASUREMENT_DELAY, Supervisor
+from manipulator.trajectory.supervisor import MEASUREMENT_DELAY, Supervisor, lag_of
 
 DELAY = 'age in seconds of a measured pose by the time that its correction moves the joints'
 SINGULARITY = 'what a jogged arm does where it cannot keep its direction: stop or slide'

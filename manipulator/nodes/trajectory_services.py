@@ -13,9 +13,9 @@ from std_srvs.srv import SetBool, Trigger
 
 from manipulator.errors import ManipulatorError
 from manipulator.machine import Machine
-from manipulator.nodes.cycle_parameters import CycleParameters
 from manipulator.nodes.late_answers import Call, create_late_service
 from manipulator.nodes.messages import goal_of, pose_message, seconds
+from manipulator.nodes.parameters import CycleParameters
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.planner import Start, plan_goal

@@ -3,12 +3,70 @@
 A source owns the machine until it has been silent for SILENCE. A source that was turned away,
 overridden or stopped must fall silent before it is heard again: so nothing resumes by itself.
 Times are monotonic receipt times in seconds.
+
+Whether the messages of a topic come from one publisher at a time.
+
+Two pads on one topic defeat the deadman: one of them is seen released, the other one drives. A
+message carries the number that its publisher gave it, and every publisher counts for itself. So
+of two that send at once a number comes that does not follow the last one, at the latest with the
+third message. A publisher that is still known, but silent (one that was killed stays in the graph
+for up to 20 s) does no harm, and does not count for long.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NoReturn
 
 from manipulator.errors import Refused
+
+OVERLAP = 0.25
+"""Seconds: messages of two publishers that come farther apart follow one another."""
+
+QUIET = 1.0
+"""Seconds without a sign of a second publisher after which there is one again."""
+
+MOST_LOST = 5
+"""Messages that may be lost in a row while a second publisher is known."""
+
+NEVER = float('-inf')
+
+
+@dataclass(frozen=True)
+class SoleSource:
+    """What is known after a message; times are monotonic receipt times in seconds.
+
+    is_continuous: messages come whether anybody touches the device or not. Then every known
+    publisher is expected to send: after a silence, and at the start, a second one counts as
+    sending until it was not heard for a while. Two that began together have numbers alike, and
+    the first message of the one would be taken for the other one's.
+    """
+
+    is_continuous: bool = False
+    sequence: int | None = None
+    publishers: int = 0
+    heard: float = NEVER
+    mixed: float = NEVER
+
+    def hear(self, sequence: int | None, publishers: int, now: float) -> 'SoleSource':
+        """After a message with its publisher's `sequence` number, while `publishers` are known.
+
+        Where the middleware tells no numbers (None), a second known publisher counts as sending.
+        """
+        mixed = now if self._tells_of_two(sequence, publishers, now) else self.mixed
+        return replace(self, sequence=sequence, publishers=publishers, heard=now, mixed=mixed)
+
+    def is_mixed(self, now: float) -> bool:
+        """Whether two publishers were sending at once, a while ago at most."""
+        return now - self.mixed < QUIET
+
+    def _tells_of_two(self, sequence: int | None, publishers: int, now: float) -> bool:
+        if sequence is None:
+            return publishers > 1
+        if self.sequence is None or now - self.heard > OVERLAP:
+            return self.is_continuous and publishers > 1
+        step = sequence - self.sequence
+        has_jumped = publishers > 1 and step > 1 + MOST_LOST
+        return step <= 0 or has_jumped or publishers > self.publishers
+
 
 SILENCE = 0.25
 """Seconds without a message after which a source has let go."""

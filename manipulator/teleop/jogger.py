@@ -1,12 +1,88 @@
-"""Following a twist, one tick after the other, within all limits of a machine."""
+"""Following a twist, one tick after the other, within all limits of a machine.
 
+In which axes a commanded twist is meant; it is always the pivot's.
+
+A commanded twist within the machine's limits of speed and acceleration.
+"""
+
+import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 
 from manipulator.arrays import Array, frozen
+from manipulator.errors import InvalidInput, Refused
+from manipulator.frames import Frames
+from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
+
+AXES: dict[str, Callable[[Frames, Pose], Array | None]] = {
+    '': lambda frames, pose: None if frames.are_plain else frames.T_base_work.rotation.T,
+    'base': lambda frames, pose: None if frames.are_plain else frames.T_base_work.rotation.T,
+    'work': lambda frames, pose: None,
+    'pivot': lambda frames, pose: None,
+    'tool': lambda frames, pose: pose.rotation,
+}
+"""What turns each frame's axes into work axes; None where they are the same."""
+
+
+def check_axes(frame: str) -> None:
+    """Raises Refused, naming the frames that there are, for any other."""
+    if frame not in AXES:
+        raise Refused(f'frame {frame[:80]!r} is not one of {list(AXES)[1:]}')
+
+
+def in_work_axes(command: Array, frame: str, pose: Pose, frames: Frames) -> Array:
+    """The pivot's twist (6,) in work axes; pose is T_work_pivot. Refused for unknown frames.
+
+    '' and 'base': along the base's axes. 'work': along the work frame's. 'pivot': the same, for
+    those who want to say that turns are about the pivot. 'tool': along the axes of the platform
+    or tool.
+    """
+    check_axes(frame)
+    axes = AXES[frame](frames, pose)
+    if axes is None:
+        return command
+    return np.concatenate([axes @ command[:3], axes @ command[3:]])
+
+
+def within_speed(twist: Array, motion: MotionLimits) -> tuple[Array, float]:
+    """The twist (6,) scaled as a whole, and the scale (1 when nothing was cut).
+
+    Raises InvalidInput unless it is six finite numbers.
+    """
+    wanted = np.asarray(twist, dtype=np.float64)
+    parts = wanted.ravel().tolist()
+    if wanted.shape != (6,) or not all(map(math.isfinite, parts)):
+        raise InvalidInput(f'twist {parts} is not six finite numbers')
+    part = max(
+        math.hypot(*parts[:3]) / motion.linear.speed,
+        math.hypot(*parts[3:]) / motion.angular.speed,
+        1.0,
+    )
+    return wanted / part, 1.0 / part
+
+
+def towards(twist: Array, wanted: Array, motion: MotionLimits, dt: float) -> Array:
+    """From `twist` (..., 6) as far to `wanted` as the accelerations allow in dt.
+
+    Velocity and angular velocity go the same part of their ways.
+    """
+    change = wanted - twist
+    ticks = np.maximum(ticks_for(change, motion, dt), 1.0)
+    stepped: Array = twist + change / ticks[..., None]
+    return np.where(ticks[..., None] == 1.0, wanted, stepped)
+
+
+def ticks_for(change: Array, motion: MotionLimits, dt: float) -> Array:
+    """How many times dt a change of twist (..., 6) takes at full acceleration."""
+    linear = np.sqrt((change[..., :3] ** 2).sum(axis=-1)) / motion.linear.acceleration
+    angular = np.sqrt((change[..., 3:] ** 2).sum(axis=-1)) / motion.angular.acceleration
+    result: Array = np.maximum(linear, angular) / dt
+    return result
+
 
 STRAIGHT = frozen(np.zeros(6))
 

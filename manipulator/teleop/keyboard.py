@@ -13,8 +13,8 @@ import numpy as np
 
 from manipulator.arrays import Array
 from manipulator.config import quantity
+from manipulator.teleop.gamepad import COMPONENTS, Component
 from manipulator.teleop.modes import MODES
-from manipulator.teleop.stick import COMPONENTS, Component
 
 HOLD = 0.3
 """Seconds for which one press moves."""

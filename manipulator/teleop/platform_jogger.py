@@ -15,8 +15,7 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array, Mask, frozen
 from manipulator.limits.constraints import Constraints
 from manipulator.pose import Pose
-from manipulator.teleop.jogger import JogMotion
-from manipulator.teleop.speed_limits import ticks_for, towards
+from manipulator.teleop.jogger import JogMotion, ticks_for, towards
 
 if TYPE_CHECKING:
     from manipulator.machine import Machine

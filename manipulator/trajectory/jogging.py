@@ -8,10 +8,8 @@ from manipulator.arrays import Array
 from manipulator.errors import Refused
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.teleop.command_frames import in_work_axes
-from manipulator.teleop.jog_mode import Held, JogMode
-from manipulator.teleop.jogger import JogMotion
-from manipulator.teleop.speed_limits import towards, within_speed
+from manipulator.teleop.jog_modes import Held, JogMode
+from manipulator.teleop.jogger import JogMotion, in_work_axes, towards, within_speed
 
 SAY_AGAIN_AFTER = 0.5
 """Seconds between two changes of what is said to hold a jog back."""

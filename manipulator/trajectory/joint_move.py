@@ -15,7 +15,7 @@ from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
 from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.profile import Profile, profile_within
+from manipulator.trajectory.point_to_point import Profile, profile_within
 
 KNOTS = 64
 """Poses along the move that are known beforehand: forward kinematics begin at the nearest."""

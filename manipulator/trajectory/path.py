@@ -5,17 +5,23 @@ proportion to the path's parameter s. At each pose the rate changes from that of
 before to that of the segment after, evenly over s_i ± d_i: docs/motion.md, (4.1) to (4.3). So
 the path has a continuous tangent and bounded curvature, is exactly straight elsewhere, and where
 poses lie close together (d_i is then half a segment) it is a quadratic spline.
+
+Poses along simple shapes, to make paths of.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import acos, ceil
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from manipulator import rotation as so3
 from manipulator.arrays import Array
+from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
-from manipulator.trajectory.chart import state_of
 from manipulator.trajectory.plan import MotionState
+from manipulator.trajectory.point_to_point import state_of
 
 REPEATED_SHARE = 0.1
 """Poses nearer to the one before than this part of the tolerance are repetitions of it."""
@@ -134,3 +140,42 @@ def _without_repetitions(poses: Pose, tolerance: Tolerance) -> list[int]:
     if len(kept) > 1:
         kept[-1] = len(poses.position) - 1
     return kept
+
+
+MOST_POSES = 2000
+
+
+def line(start: Pose, goal: Pose) -> Pose:
+    """The two ends of a straight way, (2,)."""
+    return Pose(
+        np.stack([start.position, goal.position]), np.stack([start.rotation, goal.rotation])
+    )
+
+
+def arc(
+    start: Pose,
+    centre: ArrayLike,
+    axis: ArrayLike,
+    angle: float,
+    is_turning: bool = False,
+    sagitta: float = 1e-5,
+) -> Pose:
+    """From `start` about the axis through `centre` (m) by `angle` (rad, any number of turns).
+
+    The orientation stays, or turns along where is_turning. Poses (n,) lie so close that the
+    chords between them are within `sagitta` (m) of the arc. Raises InvalidInput for an axis
+    without direction and for arcs that need more than 2,000 poses.
+    """
+    direction, middle = (np.asarray(v, dtype=np.float64) for v in (axis, centre))
+    length = float(np.linalg.norm(direction))
+    if not (length > 0 and np.isfinite(direction).all() and np.isfinite([angle, *middle]).all()):
+        raise InvalidInput(f'arc about {middle.tolist()}, axis {direction.tolist()}, {angle} rad')
+    arm = start.position - middle
+    radius = float(np.linalg.norm(np.cross(direction / length, arm)))
+    step = 2 * acos(max(1.0 - sagitta / max(radius, sagitta), 0.0))
+    count = max(ceil(abs(angle) / step), 2) + 1
+    if count > MOST_POSES:
+        raise InvalidInput(f'an arc of {count} poses, at most {MOST_POSES}: allow more sagitta')
+    turns = so3.exp(np.linspace(0.0, angle, count)[:, None] * direction / length)
+    rotation = turns @ start.rotation if is_turning else start.rotation
+    return Pose(middle + turns @ arm, rotation)

@@ -16,8 +16,7 @@ from manipulator.pose import Pose
 from manipulator.trajectory.check import TOLERANCE as CHECK_TOLERANCE
 from manipulator.trajectory.check import check_plan
 from manipulator.trajectory.path import Path, Tolerance, path_along, path_in_time
-from manipulator.trajectory.path_limits import PathLimits, path_limits
-from manipulator.trajectory.phase_plane import fastest
+from manipulator.trajectory.path_limits import PathLimits, fastest, path_limits
 from manipulator.trajectory.plan import MotionState, PosePlan
 from manipulator.trajectory.worker import Effort
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused, Unreachable
+from manipulator.formatting import hint_at_metres
 from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
@@ -14,12 +15,10 @@ from manipulator.trajectory.check import check_plan
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.joint_move import KNOTS, plan_joint_move
-from manipulator.trajectory.move import plan_move
 from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import MotionState, Plan
-from manipulator.trajectory.straight import plan_straight
+from manipulator.trajectory.point_to_point import plan_move, plan_straight
 from manipulator.trajectory.worker import Effort, TooLong
-from manipulator.unit_hints import hint_at_metres
 
 ATTEMPTS = 8
 MARGIN = 1.01

@@ -14,10 +14,10 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused, Unreachable
 from manipulator.machine import Machine
+from manipulator.trajectory.active_plan import Playing
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.planner import Start, plan_goal
-from manipulator.trajectory.playing import Playing
 from manipulator.trajectory.worker import Effort, InPlace, Job, TooLong, Worker
 
 LEADS = (3, 12, 50)

@@ -13,16 +13,15 @@ from manipulator.arrays import Array
 from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.trajectory.active_plan import Pace, Playing
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.jogging import Jogging, Wish
 from manipulator.trajectory.joint_move import JointMove
 from manipulator.trajectory.motion_status import MotionStatus
-from manipulator.trajectory.pace import Pace
 from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import Hold, MotionState, Plan
 from manipulator.trajectory.planning import Planned, Planning
-from manipulator.trajectory.playing import Playing
 from manipulator.trajectory.worker import InPlace, Worker
 
 OVERTAKEN = 'a newer command came while the path was worked out'

@@ -2,10 +2,18 @@
 
 It joins who may drive (pilot.py), who jogs (teleop.py), paths that are being worked out and
 commands that came too early, in the order that a tick has.
+
+How late the ticks of a loop come.
+
+How far the machine is behind a stream of goals that asks for more than it can do.
 """
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import degrees
+
+import numpy as np
 
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, NoSolution, Refused
@@ -15,13 +23,52 @@ from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.following import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.jitter import Jitter
 from manipulator.trajectory.motion_status import MotionNews, MotionStatus
 from manipulator.trajectory.path_planning import PathGoal, PathPlanning
 from manipulator.trajectory.pilot import Pilot
 from manipulator.trajectory.player import STOPPED
 from manipulator.trajectory.teleop import Teleop
 from manipulator.trajectory.worker import InPlace, Worker
+
+
+class Jitter:
+    """The lateness of the last thousand ticks against the period, in seconds."""
+
+    def __init__(self, period: float) -> None:
+        self._period = period
+        self._last: float | None = None
+        self._lateness: deque[float] = deque(maxlen=1000)
+
+    def tick(self, now: float) -> float:
+        """Notes that a tick begins now; returns the seconds since the last one, 0 at first."""
+        elapsed = 0.0 if self._last is None else now - self._last
+        if self._last is not None:
+            self._lateness.append(abs(elapsed - self._period))
+        self._last = now
+        return elapsed
+
+    def quantile(self, q: float) -> float:
+        """The q-quantile of the lateness, 0 before the second tick."""
+        if not self._lateness:
+            return 0.0
+        return sorted(self._lateness)[int(q * (len(self._lateness) - 1))]
+
+
+def lag_of(pilot: Pilot) -> dict[str, float]:
+    """From the commanded pose to the newest goal: `lag_mm` and `lag_deg`, 0 where there is none.
+
+    The newest goal is always the one pursued; those in between were dropped.
+    """
+    way = np.zeros(6)
+    try:
+        goal = pilot.player.pursued
+    except Refused:
+        goal = None
+    if goal is not None:
+        way = pilot.player.state.pose.twist_to(goal)
+    shift, turn = (float(np.linalg.norm(part)) for part in (way[:3], way[3:]))
+    return {'lag_mm': 1e3 * shift, 'lag_deg': degrees(turn)}
+
 
 MEASUREMENT_DELAY = 0.06
 """Seconds from a measured pose to the moment that its correction moves the joints, by default."""

@@ -7,9 +7,8 @@ import numpy as np
 from manipulator.arrays import Array, frozen
 from manipulator.errors import Refused
 from manipulator.teleop.arbiter import Arbiter
-from manipulator.teleop.command_frames import check_axes
-from manipulator.teleop.feedback import Feedback
-from manipulator.teleop.jog_mode import JogMode
+from manipulator.teleop.jog_modes import Feedback, JogMode
+from manipulator.teleop.jogger import check_axes
 from manipulator.teleop.modes import check_name, jog_mode
 from manipulator.trajectory.jogging import Wish
 from manipulator.trajectory.pilot import Pilot

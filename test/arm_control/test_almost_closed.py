@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from arm_control.almost_closed import AlmostClosed
 from arm_control.arm import SerialArm
 from arm_control.chain import Chain
 from arm_control.identification.arm_model import ArmModel
-from arm_control.numerical import Numerical
+from arm_control.numerical import AlmostClosed, Numerical
 from hexarm.machines import load
 from manipulator.errors import Unreachable
 from manipulator.pose import Pose

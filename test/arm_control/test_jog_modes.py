@@ -7,9 +7,9 @@ import pytest
 
 from arm_control.load import jogging
 from arm_control.resolved_rate import JogState
-from manipulator.teleop.feedback import Feedback
+from manipulator.teleop.jog_modes import Feedback
+from manipulator.teleop.jogger import within_speed
 from manipulator.teleop.modes import jog_mode
-from manipulator.teleop.speed_limits import within_speed
 
 STEP = 2 * np.pi / (3200 * 10)  # 3200 steps a turn, through a 10:1 gear
 DT = 0.01

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from arm_control.arm import SerialArm
+from arm_control.line_keeping import singularity
 from arm_control.load import arm as load_arm
 from arm_control.load import jogging
 from arm_control.resolved_rate import JogState
-from arm_control.singularity import singularity
 from manipulator import rotation as so3
 from manipulator.teleop.jogger import JogMotion
 

@@ -3,11 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from arm_control.closed_forms import ParallelAxes, SphericalWrist
+from arm_control.geometry import ArmLimits
 from arm_control.inverse_method import Numerical
-from arm_control.joint_limits import ArmLimits
 from arm_control.load import arm, jogging, serial_arm
-from arm_control.parallel_axes import ParallelAxes
-from arm_control.spherical_wrist import SphericalWrist
 from bridge.servo_config import BoardConfig
 from manipulator.config import build
 from manipulator.errors import ConfigError

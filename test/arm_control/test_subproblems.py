@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from arm_control.subproblems import distance_angles, projection_angles
-from arm_control.two_link import TwoLink
+from arm_control.subproblems import TwoLink, distance_angles, projection_angles
 
 X, _, Z = np.eye(3)
 

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from hexapod_control.architecture import architecture_sigma, check_architecture
-from hexapod_control.geometry import HexagonConfig
+from hexapod_control.geometry import HexagonConfig, architecture_sigma, check_architecture
 from hexapod_control.linear_geometry import PlatesConfig, joint_circle
 from manipulator.errors import ConfigError
 

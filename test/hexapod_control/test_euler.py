@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hexapod_control.euler import from_zxz, to_zxz
+from hexapod_control.leg_motion import from_zxz, to_zxz
 from manipulator import rotation as so3
 
 

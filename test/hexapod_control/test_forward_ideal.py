@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hexapod_control import weighted_monomials as monomials
+from hexapod_control import forward_ideal as monomials
 from hexapod_control.forward_ideal import LegEquations, turned
 from manipulator import rotation as so3
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from hexapod_control.leg_jacobian import leg_jacobian, smallest_singular_value
+from hexapod_control.leg_limits import LinearLimits
 from hexapod_control.leg_motion import PAPER_LENGTH, PAPER_TARGET, level_pose
 from hexapod_control.linear_geometry import PlatesConfig, PointsConfig, joint_circle
-from hexapod_control.linear_limits import LinearLimits
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError
 from manipulator.machine import MachineFile

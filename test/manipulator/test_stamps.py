@@ -1,6 +1,6 @@
 import pytest
 
-from manipulator.stamps import StaleMessage, StampGate
+from manipulator.message_filter import StaleMessage, StampGate
 
 
 def test_messages_in_order_are_admitted():

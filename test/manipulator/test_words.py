@@ -1,6 +1,6 @@
 import pytest
 
-from manipulator.words import counted, length, reason
+from manipulator.formatting import counted, length, reason
 
 
 @pytest.mark.parametrize(

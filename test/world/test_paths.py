@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from manipulator.pose import Pose
-from manipulator.trajectory.shapes import arc
+from manipulator.trajectory.path import arc
 
 RADIUS, HEIGHT = 0.008, 0.045
 NEAR = 5e-4

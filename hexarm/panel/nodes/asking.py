@@ -11,7 +11,7 @@ from rclpy.task import Future
 from std_msgs.msg import Bool, Float64
 from std_srvs.srv import SetBool, Trigger
 
-from hexarm.panel.buttons import Wishes
+from hexarm.panel.controls import Wishes
 from manipulator.nodes.messages import pose_message
 from manipulator.nodes.qos import COMMAND, EVERY_WORD
 from manipulator.pose import Pose

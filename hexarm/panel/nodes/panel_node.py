@@ -10,16 +10,18 @@ from rclpy.node import Node
 from std_msgs.msg import Float64
 
 from hexarm.panel.gripper import gripper_of
-from hexarm.panel.meshes import sphere
 from hexarm.panel.nodes.asking import Asking
 from hexarm.panel.nodes.hearing import Hearing
-from hexarm.panel.nodes.joystick_socket import JoystickSocket
 from hexarm.panel.nodes.newest_worker import NewestWorker
-from hexarm.panel.nodes.web_server import address, start_server, stop_server
+from hexarm.panel.nodes.web_server import JoystickSocket, address, start_server, stop_server
 from hexarm.panel.page import Page
+from hexarm.panel.pieces import sphere
 from hexarm.panel.reachable import reachable_ranges
 from hexarm.panel.view import View
+from manipulator.analysis.explain import explained
+from manipulator.analysis.inside import surface
 from manipulator.arrays import Array
+from manipulator.formatting import counted
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.jog_topics import NO_TWIST, JogTopics
@@ -27,9 +29,6 @@ from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.pose import Pose
-from manipulator.reach.words import explained
-from manipulator.words import counted
-from manipulator.workspace.inside import surface
 
 TICK = 0.02
 DRAW_EVERY, SAMPLE_EVERY, GOAL_EVERY, REDRAW_EVERY = 3, 5, 5, 20

@@ -2,25 +2,112 @@
 
 viser admits any site that a browser shows, and its buttons tell presses but not whose hand is
 still there. Both are added where it opens its one port, so that a single address serves all.
+
+Who may open the page's connection: the page itself, not whatever else a browser shows.
+
+Browsers let any site open a WebSocket to this computer, and tell where the script came from. So
+a connection must come from a page of the same address (Origin and Host agree), and the address
+must be one that no foreign name server can answer for: a number, localhost, or this computer's
+name. Programs that are no browser send no Origin; they could move the machine over ROS as well.
+
+The joystick's connections: one for each open page, beats in, answers out.
+
+Runs in the web server's thread; the node asks from its own.
 """
 
 import contextlib
 import functools
 import http
 import io
+import ipaddress
+import itertools
 import socket
-from collections.abc import Awaitable, Callable, Iterator
+import threading
+import time
+from collections.abc import Awaitable, Callable, Collection, Iterator
 from typing import Any
+from urllib.parse import urlsplit
 
 import viser
 import websockets.asyncio.server as websockets_server
 from websockets.asyncio.server import ServerConnection
+from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from hexarm.panel.access import refusal
-from manipulator.errors import Refused
-from manipulator.requirements import INSTALL
-from manipulator.words import shown
+from hexarm.panel.joystick import Joystick, answer, heard
+from manipulator.arrays import Array
+from manipulator.errors import InvalidInput, Refused
+from manipulator.formatting import INSTALL, shown
+
+
+def refusal(host: str, origin: str | None, own_names: Collection[str]) -> str:
+    """Why a connection with these headers is refused; '' where it is welcome."""
+    try:
+        name = urlsplit(f'//{host}').hostname or ''
+        source = host if origin is None else urlsplit(origin).netloc
+    except ValueError:
+        return f'the address {host[:80]!r} is none'
+    if source.lower() != host.lower():
+        return f'a page of {source[:80]!r} may not move this machine'
+    if not _is_number(name) and name not in ('localhost', *(n.lower() for n in own_names)):
+        return f'this computer is not called {name[:80]!r}: use its number, or localhost'
+    return ''
+
+
+def _is_number(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
+
+
+class JoystickSocket:
+    """Beats of all pages into one `Joystick`."""
+
+    def __init__(self, may_move: Callable[[], str]) -> None:
+        self._joystick = Joystick()
+        self._lock = threading.Lock()
+        self._pages = itertools.count()
+        self._may_move = may_move
+
+    async def serve(self, connection: ServerConnection) -> None:
+        """One page, from its first word until it is gone."""
+        page = next(self._pages)
+        try:
+            async for text in connection:
+                await connection.send(self._answer(page, text))
+        except InvalidInput as error:
+            await connection.close(1008, str(error)[:100])
+        except ConnectionClosed:
+            pass
+        finally:
+            with self._lock:
+                self._joystick.leave(page)
+
+    def stick(self) -> Array | None:
+        """What is held now (6,), None while nothing is."""
+        with self._lock:
+            return self._joystick.stick(time.monotonic())
+
+    def stop(self) -> None:
+        """Whoever holds must let go first."""
+        with self._lock:
+            self._joystick.stop()
+
+    def _answer(self, page: int, text: str | bytes) -> str:
+        words = heard(text)
+        now = time.monotonic()
+        with self._lock:
+            if isinstance(words, int):
+                self._joystick.release(page, words)
+            else:
+                self._joystick.hear(page, words, now)
+            holder, reason = self._joystick.holder(now), self._joystick.reason(page)
+        has_it = holder == page
+        return answer(now, has_it, holder is not None and not has_it,
+                      reason or (self._may_move() if has_it else ''))  # fmt: skip
+
 
 JOYSTICK_PATH = '/joystick'
 

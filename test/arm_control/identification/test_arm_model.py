@@ -5,16 +5,16 @@ import pytest
 import yaml
 
 from arm_control.geometry import ScrewsConfig
-from arm_control.identification.machine_values import geometry_lines
+from arm_control.identification.arm_model import geometry_lines
 from hexapod_control.identification.leg_model import Tolerances
-from hexarm.calibration.machine_model import machine_model, new_geometry
+from hexarm.calibration.machine_writer import machine_model, new_geometry
 from hexarm.calibration.poses import telling_poses
 from hexarm.machines import load
+from manipulator.analysis.device_frames import DeviceFrames
+from manipulator.analysis.identify import identify
+from manipulator.analysis.measurements import Measurements, Noise
+from manipulator.analysis.observability import model_directions, what_is_not_seen
 from manipulator.config import build
-from manipulator.identification.device_frames import DeviceFrames
-from manipulator.identification.identify import identify
-from manipulator.identification.measurements import Measurements, Noise
-from manipulator.identification.observability import model_directions, what_is_not_seen
 from manipulator.pose import Pose
 
 NOISE = Noise(1e-4, 1e-3)

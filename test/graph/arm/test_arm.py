@@ -15,7 +15,7 @@ from std_msgs.msg import Bool, Float64
 from hexarm.machines import load
 from manipulator.nodes.messages import joints_of
 from manipulator.nodes.qos import COMMAND
-from manipulator.trajectory.shapes import arc
+from manipulator.trajectory.path import arc
 
 pytestmark = pytest.mark.graph
 

@@ -5,13 +5,12 @@ import pytest
 import yaml
 
 from hexapod_control.identification.leg_model import Tolerances
-from hexapod_control.identification.machine_values import geometry_lines
-from hexapod_control.identification.model_of import model_of
+from hexapod_control.identification.models import geometry_lines, model_of
 from hexapod_control.load import KINDS
 from hexapod_control.workspace import sample
 from hexarm.machines import load, read
+from manipulator.analysis.device_frames import DeviceFrames
 from manipulator.errors import InvalidInput, NoSolution
-from manipulator.identification.device_frames import DeviceFrames
 from manipulator.pose import Pose
 
 MACHINES = ['robocake', 'stewart_6_3', 'stewart_6_6']

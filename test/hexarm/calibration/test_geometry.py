@@ -10,8 +10,8 @@ from bridge.calibration import Calibration
 from bridge.servo_config import BoardConfig
 from hexapod_control.identification.leg_model import Tolerances
 from hexarm.calibration.campaign import NOISE, some_frames, true_values
-from hexarm.calibration.machine_model import machine_model
-from hexarm.calibration.pose_table import measurements
+from hexarm.calibration.machine_writer import machine_model
+from hexarm.calibration.poses import measurements
 from hexarm.cli.main import main
 from hexarm.machines import load, read
 from manipulator.pose import Pose

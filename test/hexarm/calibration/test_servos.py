@@ -10,8 +10,8 @@ import pytest
 from bridge.protocol import Arm, Mode
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.calibration.fake_servos import FakeServos, mounted_wrongly
-from hexarm.calibration.servo_values import changed_values
+from hexarm.calibration.servo_line import changed_values
+from hexarm.calibration.servos import FakeServos, mounted_wrongly
 from hexarm.cli.main import main
 
 WRONG = {

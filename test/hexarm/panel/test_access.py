@@ -2,7 +2,7 @@
 
 import pytest
 
-from hexarm.panel.access import refusal
+from hexarm.panel.nodes.web_server import refusal
 
 NAMES = ('bench-3', 'bench-3.local')
 

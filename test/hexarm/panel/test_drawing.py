@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
-from hexarm.panel.bars import bars_between
-from hexarm.panel.buttons import state_line
-from hexarm.panel.margins import GOOD, NARROW, NONE_LEFT, colour, shares
-from hexarm.panel.meshes import bar, hull, plate, sphere
-from hexarm.panel.pieces import pieces
-from hexarm.panel.readout import diagnostics_text
+from hexarm.panel.controls import state_line
+from hexarm.panel.pieces import bar, bars_between, hull, pieces, plate, sphere
+from hexarm.panel.readout import GOOD, NARROW, NONE_LEFT, colour, diagnostics_text, shares
 from hexarm.panel.view import NodeReport, View
 from manipulator.rotation import from_quaternion
 

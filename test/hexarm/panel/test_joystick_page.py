@@ -8,8 +8,7 @@ import time
 import numpy as np
 import pytest
 
-from hexarm.panel.nodes.joystick_socket import JoystickSocket
-from hexarm.panel.nodes.web_server import start_server, stop_server
+from hexarm.panel.nodes.web_server import JoystickSocket, start_server, stop_server
 from hexarm.panel.page import joystick_frame
 
 PATIENCE = 60.0

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hexarm.panel.joystick_words import answer, heard
+from hexarm.panel.joystick import answer, heard
 from manipulator.errors import InvalidInput
 
 STICK = [0.0, 0.5, -1.0, 0.0, 0.0, 0.0]

@@ -11,8 +11,8 @@ from hexarm.panel.reachable import (
     pose_at,
     reachable_ranges,
 )
+from manipulator.analysis.way import admits
 from manipulator.pose import Pose
-from manipulator.reach.way import admits
 
 PLATFORMS = ['robocake', 'stewart_6_3']
 

@@ -1,8 +1,13 @@
 import numpy as np
 import pytest
 
-from hexarm.papers.differential import joint_rates, velocity_towards
-from hexarm.papers.paper_arm import PaperArm, projections, wrist_factors
+from hexarm.papers.paper_arm import (
+    PaperArm,
+    joint_rates,
+    projections,
+    velocity_towards,
+    wrist_factors,
+)
 from manipulator.errors import NoSolution
 
 ARM = PaperArm(0.3, 0.4, 0.4)

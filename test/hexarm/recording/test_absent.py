@@ -1,4 +1,4 @@
-from hexarm.recording.absent import nothing, unheard
+from hexarm.recording.topics import nothing, unheard
 
 THERE = ['/hexapod/pose', '/hexapod/joint_states', '/hexapod/machine_state', '/rosout']
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from hexarm.recording.wanted import COMMANDS, SETTLED, Wanted
+from hexarm.recording.topics import COMMANDS, SETTLED, Wanted
 
 OF_THE_PAD = {'joy'}
 """What joy_teleop only hears: docs/joystick.md."""

@@ -5,13 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hexarm.simulation.cycle_reach import PAPER_AMPLITUDE, corners_out, in_phase, share_in_reach
 from hexarm.simulation.experiment import run, unshifted
-from hexarm.simulation.holding import Stalls, check_holds
 from hexarm.simulation.inverse_dynamics import InverseDynamics
-from hexarm.simulation.limit_search import Demand, LimitSearch, along, largest, lines
+from hexarm.simulation.limit_search import (
+    PAPER_AMPLITUDE,
+    Demand,
+    LimitSearch,
+    along,
+    corners_out,
+    in_phase,
+    largest,
+    lines,
+    share_in_reach,
+)
 from hexarm.simulation.model import dynamics_of
-from hexarm.simulation.static_load import static_load
+from hexarm.simulation.static_load import Stalls, check_holds, static_load
 from manipulator.errors import InvalidInput
 from manipulator.trajectory.plan import MotionState
 

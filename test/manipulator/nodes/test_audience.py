@@ -1,4 +1,4 @@
-from manipulator.nodes.audience import PATIENCE, Audience
+from manipulator.nodes.graph_check import PATIENCE, Audience
 
 HEXAPOD = '/hexapod on ROS domain 7'
 

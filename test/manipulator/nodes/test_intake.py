@@ -6,7 +6,7 @@ from geometry_msgs.msg import PoseStamped
 
 from manipulator.errors import InvalidInput
 from manipulator.message_filter import LONGEST_REASON
-from manipulator.nodes.intake import Intake
+from manipulator.nodes.subscriptions import Intake
 
 
 def stamped(clock):

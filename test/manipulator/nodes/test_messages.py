@@ -14,6 +14,7 @@ from sensor_msgs.msg import JointState
 
 from hexarm.machines import load
 from manipulator.errors import InvalidInput
+from manipulator.message_filter import StaleMessage, StampGate
 from manipulator.nodes.messages import (
     goal_of,
     joint_message,
@@ -24,7 +25,6 @@ from manipulator.nodes.messages import (
     twist_of,
 )
 from manipulator.pose import Pose
-from manipulator.stamps import StaleMessage, StampGate
 
 BAD = (math.nan, math.inf, -math.inf)
 HUGE = 'x' * 50_000

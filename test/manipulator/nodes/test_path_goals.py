@@ -15,7 +15,6 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from manipulator import rotation as so3
 from manipulator.errors import InvalidInput
-from manipulator.nodes.bounded import decoded
 from manipulator.nodes.path_goals import (
     MOST_BYTES,
     MOST_POSES,
@@ -25,6 +24,7 @@ from manipulator.nodes.path_goals import (
     raw_path,
 )
 from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.subscriptions import decoded
 from manipulator.pose import Pose
 
 STAMP = Time(sec=1_700_000_000, nanosec=123_456_789)
@@ -157,7 +157,7 @@ def test_header_of_a_huge_message_is_read_and_nothing_else(monkeypatch):
         lengths.append(len(serialized))
         return deserialize_message(serialized, kind)
 
-    monkeypatch.setattr('manipulator.nodes.bounded.deserialize_message', decode)
+    monkeypatch.setattr('manipulator.nodes.subscriptions.deserialize_message', decode)
     assert raw_path(serialize_message(written()) + bytes(10_000_000)).header.stamp == STAMP
     assert lengths == [MOST_BYTES]
 

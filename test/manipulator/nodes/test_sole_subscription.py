@@ -8,9 +8,10 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.experimental import EventsExecutor
 from sensor_msgs.msg import Joy
 
-from manipulator.nodes import sole_subscription, teleop_topics
+from manipulator.nodes import subscriptions as sole_subscription
+from manipulator.nodes import teleop_topics
 from manipulator.nodes.qos import MEASUREMENT
-from manipulator.nodes.sole_subscription import SoleSubscription
+from manipulator.nodes.subscriptions import SoleSubscription
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.teleop.arbiter import SOURCES
 from manipulator.trajectory.teleop import Teleop

@@ -9,9 +9,9 @@ import pytest
 from rclpy.task import Future
 from std_srvs.srv import Trigger
 
-from manipulator.nodes import jog_topics, stop_button
-from manipulator.nodes.jog_topics import NO_TWIST, JogTopics
-from manipulator.nodes.stop_button import PATIENCE
+from manipulator.nodes import jog_topics
+from manipulator.nodes import jog_topics as stop_button
+from manipulator.nodes.jog_topics import NO_TWIST, PATIENCE, JogTopics
 
 TICK = 0.02
 

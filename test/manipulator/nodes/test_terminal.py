@@ -9,7 +9,7 @@ import pytest
 
 from manipulator import device_executables
 from manipulator.errors import InvalidInput
-from manipulator.nodes.terminal import Terminal
+from manipulator.nodes.keyboard_teleop_node import Terminal
 
 
 class Desk:

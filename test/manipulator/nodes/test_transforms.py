@@ -6,7 +6,7 @@ from builtin_interfaces.msg import Time
 
 from hexarm import machines
 from manipulator.frames import Frames
-from manipulator.nodes.transforms import transforms
+from manipulator.nodes.pose_node import transforms
 from manipulator.pose import Pose
 
 STAMP = Time(sec=7, nanosec=9)

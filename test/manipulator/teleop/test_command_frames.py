@@ -5,8 +5,7 @@ from manipulator.errors import InvalidInput, Refused
 from manipulator.frames import Frames
 from manipulator.motion_limits import Derivatives, JointDerivatives, MotionLimits
 from manipulator.pose import Pose
-from manipulator.teleop.command_frames import in_work_axes
-from manipulator.teleop.speed_limits import within_speed
+from manipulator.teleop.jogger import in_work_axes, within_speed
 
 POSE = Pose.from_xyz_rpy([0.3, 0.1, 0.4], [0.0, 0.0, np.pi / 2])
 COMMAND = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])

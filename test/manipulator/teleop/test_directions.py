@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from manipulator import rotation as so3
-from manipulator.teleop.directions import turn_between, turn_but_about
+from manipulator.teleop.jog_modes import turn_between, turn_but_about
 
 
 def unit(rng):

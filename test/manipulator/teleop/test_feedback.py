@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from manipulator.errors import InvalidInput
-from manipulator.teleop.feedback import MAX_GAIN, Feedback
+from manipulator.teleop.jog_modes import MAX_GAIN, Feedback
 
 
 def settled(gain, delay_ticks, dt=0.01, ticks=2000):

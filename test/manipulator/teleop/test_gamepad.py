@@ -6,8 +6,7 @@ import pytest
 from hexarm.gamepads import load, shipped
 from manipulator.config import build
 from manipulator.errors import ConfigError
-from manipulator.teleop.gamepad import Gamepad
-from manipulator.teleop.stick import Stick
+from manipulator.teleop.gamepad import Gamepad, Stick
 
 LEAST = {
     'description': 'one stick',

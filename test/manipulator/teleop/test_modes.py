@@ -3,9 +3,8 @@ import pytest
 
 from manipulator.errors import Refused
 from manipulator.pose import Pose
-from manipulator.teleop.feedback import Feedback
-from manipulator.teleop.look_at import NEAREST
-from manipulator.teleop.modes import MODES, jog_mode
+from manipulator.teleop.jog_modes import Feedback
+from manipulator.teleop.modes import MODES, NEAREST, jog_mode
 
 FEEDBACK = Feedback(5.0)
 POSE = Pose.from_xyz_rpy([0.3, 0.1, 0.4], [0.1, -0.2, 0.3])

@@ -5,7 +5,7 @@ import random
 
 import pytest
 
-from manipulator.teleop.sole_source import OVERLAP, QUIET, SoleSource
+from manipulator.teleop.arbiter import OVERLAP, QUIET, SoleSource
 
 RATES = (20.0, 50.0, 100.0, 333.0)
 PAIRS = list(itertools.product(RATES, RATES))

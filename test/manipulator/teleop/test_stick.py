@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from manipulator.errors import ConfigError
-from manipulator.teleop.stick import Stick
+from manipulator.teleop.gamepad import Stick
 
 values = st.floats(-1.05, 1.05)
 sticks = st.builds(

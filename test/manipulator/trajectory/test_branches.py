@@ -10,7 +10,7 @@ from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.errors import ManipulatorError
 from manipulator.pose import Pose
-from manipulator.teleop.feedback import Feedback
+from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.jogging import Wish

@@ -5,7 +5,7 @@ import pytest
 
 from hexarm.machines import load
 from manipulator.command_check import CommandCheck
-from manipulator.teleop.feedback import Feedback
+from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.jogging import Wish

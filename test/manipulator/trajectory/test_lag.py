@@ -3,8 +3,8 @@ import pytest
 
 from hexarm.machines import load
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.lag import lag_of
 from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.supervisor import lag_of
 
 MACHINE = load('robocake')
 HOME = MACHINE.kinematics.home

@@ -3,9 +3,8 @@ import numpy as np
 from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.pose import Pose
-from manipulator.trajectory.chart import coordinates, state_of
-from manipulator.trajectory.move import plan_move
 from manipulator.trajectory.plan import MotionState
+from manipulator.trajectory.point_to_point import coordinates, plan_move, state_of
 
 LIMITS = load('robocake').motion
 

@@ -6,8 +6,7 @@ import pytest
 from manipulator import rotation as so3
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
-from manipulator.trajectory.path import Path, Tolerance, path_along, path_in_time
-from manipulator.trajectory.shapes import arc, line
+from manipulator.trajectory.path import Path, Tolerance, arc, line, path_along, path_in_time
 
 TOLERANCE = Tolerance(1e-4, np.radians(0.1))
 TURN_LENGTH = 0.05

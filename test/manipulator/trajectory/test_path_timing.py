@@ -12,11 +12,10 @@ from manipulator.errors import Refused
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.path import Tolerance, path_along
+from manipulator.trajectory.path import Tolerance, arc, line, path_along
 from manipulator.trajectory.path_limits import path_limits
 from manipulator.trajectory.path_timing import PathRequest, TimedPath, nodes_of, plan_path
 from manipulator.trajectory.player import Player
-from manipulator.trajectory.shapes import arc, line
 
 DT = 0.01
 MACHINES = {name: load(name) for name in ('robocake', 'stewart_6_3', 'arm_6r')}

@@ -10,15 +10,15 @@ import pytest
 from hexarm.machines import load
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.pose import Pose
-from manipulator.teleop.feedback import Feedback
+from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
+from manipulator.trajectory.active_plan import Playing
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.jogging import Wish
 from manipulator.trajectory.joint_move import plan_joint_move
 from manipulator.trajectory.planning import LEADS, Planning
 from manipulator.trajectory.player import Player
-from manipulator.trajectory.playing import Playing
 from manipulator.trajectory.worker import Effort, Job
 
 DT = 0.01

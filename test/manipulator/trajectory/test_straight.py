@@ -4,7 +4,7 @@ import pytest
 from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.pose import Pose
-from manipulator.trajectory.straight import plan_straight
+from manipulator.trajectory.point_to_point import plan_straight
 
 LIMITS = load('robocake').motion
 

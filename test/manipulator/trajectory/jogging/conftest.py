@@ -9,7 +9,7 @@ from hexarm.machines import load
 from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames
 from manipulator.pose import Pose
-from manipulator.teleop.free import Free
+from manipulator.teleop.jog_modes import Free
 from manipulator.trajectory.jogging import Wish
 from manipulator.trajectory.player import Player
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from manipulator.errors import Refused, Unreachable
-from manipulator.teleop.feedback import Feedback
+from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal

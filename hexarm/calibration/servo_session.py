@@ -1,0 +1,164 @@
+"""What the person at the terminal reads while walking through the servos.
+
+One sitting at the machine: keys in, setpoints out, until the walk is over.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from bridge.protocol import Mode
+from bridge.servo_config import ServoConfig
+from bridge.servo_walk import ServoWalk, Stage
+from hexarm.calibration.servo_line import ServoLine
+from manipulator.errors import LinkError, ManipulatorError, Refused
+from manipulator.nodes.keyboard_teleop_node import Terminal
+from manipulator.teleop.key_names import key_names
+
+HELP = """\
+ →/← or d/a  longer, shorter pulse     +/-  step    s  skip    b  this servo again
+ SPACE       STOP (c clears it)        q    to the end         Ctrl-C  servos off, nothing kept
+
+"""
+CONSENT = """\
+Take rods or load off the servos, or keep a hand at the plug: the first pulse moves each servo to
+its centre at full speed, one after the other. The graph (hexarm up) must not run meanwhile.
+{found}ENTER energises {count} servos, q leaves. """
+FOUND = {
+    Mode.STOPPED: 'The board is stopped; energising clears that.\n',
+    Mode.FAULT: 'The board has a fault; energising clears that.\n',
+    Mode.ARMED: 'The servos have power already and stay where they are.\n',
+    Mode.HOLDING: 'The servos have power already and stay where they are.\n',
+}
+"""What is said before anything is energised, by the mode that the board is found in."""
+
+POSITIVE = {
+    'rotary_hexapod': ' (the crank turns from its tangent upwards)',
+    'linear_hexapod': ' (the leg grows longer)',
+    'serial_arm': ' (a right-hand turn about the axis)',
+}
+"""Which way is positive, by the kind of machine."""
+
+
+def question(walk: ServoWalk, positive: str) -> str:
+    """What is asked in the present stage."""
+    servo, unit = walk.servo, 'mm' if walk.servo.is_linear else '°'
+    centre = servo.centre_mm if servo.centre_mm is not None else servo.centre_deg
+    low, high = servo.pulse_range_us
+    told = {
+        Stage.DIRECTION: f'jog it. Does a longer pulse (→) move it towards positive{positive}? '
+        'y or n',
+        Stage.CENTRE: f'bring it to {centre:g} {unit} and press ENTER; '
+        'or bring it anywhere and type =ANGLE ENTER',
+        Stage.SCALE: 'bring it to a second angle that you can read and type =ANGLE ENTER; '
+        's keeps the scale',
+        Stage.RANGE: f'pulses {low:g} to {high:g} µs: where it must not go so far, jog to the '
+        'end and press [ or ]; ENTER goes on',
+        Stage.RETURN: 'goes back to its centre',
+        Stage.REVIEW: 'w: servos off and write, q: servos off and leave',
+    }.get(walk.stage, '')
+    name = 'end' if walk.stage is Stage.REVIEW else f'{servo.name}, {walk.stage.value}'
+    return f'{name}: {told}\n'
+
+
+def status(walk: ServoWalk, stopped: bool, seen: str) -> str:
+    """The line that is rewritten all the time."""
+    typed = '' if walk.typed is None else f'  ={walk.typed}_'
+    notice = 'STOPPED, c clears it' if stopped else walk.notice
+    told = f'  {notice}' if notice else ''
+    return f' {walk.servo.name}  {walk.pulse:7.1f} µs  step {walk.step:g}{seen}{typed}{told}'
+
+
+TICK, LONGEST_TICK = 0.02, 0.1
+LATCHED = (Mode.STOPPED, Mode.FAULT)
+
+
+class TerminalGone(ManipulatorError):
+    """Nobody is there any more to watch the machine."""
+
+
+@dataclass(frozen=True)
+class Sitting:
+    """Terminal and board of one machine; `look` tells where a fake servo stands."""
+
+    terminal: Terminal
+    line: ServoLine
+    servos: tuple[ServoConfig, ...]
+    chosen: tuple[int, ...]
+    positive: str
+    look: Callable[[int], str]
+
+    def run(self) -> ServoWalk | None:
+        """The walk at its end, None where the person did not want to begin.
+
+        TerminalGone, LinkError: it cannot go on; Refused: the board does not energise.
+        """
+        if not self._has_consent():
+            return None
+        centres = tuple(servo.centre_us for servo in self.servos)
+        if self.line.mode in LATCHED:
+            self.line.clear()
+        self.line.energise(ServoWalk.begin(self.servos, centres, self.chosen).counts)
+        walk = ServoWalk.begin(self.servos, self._pulses(), self.chosen)
+        self.terminal.show(f'\n{HELP}{question(walk, self.positive)}')
+        last = time.monotonic()
+        while not walk.is_over:
+            time.sleep(TICK)
+            now = time.monotonic()
+            before, walk = walk, self._turn(walk, min(now - last, LONGEST_TICK))
+            last = now
+            self._show(before, walk)
+        return walk
+
+    def _has_consent(self) -> bool:
+        found = '' if self.line.mode is None else FOUND.get(self.line.mode, '')
+        self.terminal.show(CONSENT.format(found=found, count=len(self.servos)))
+        while True:
+            time.sleep(TICK)
+            keys = self._keys()
+            if 'enter' in keys or 'q' in keys:
+                return 'q' not in keys
+
+    def _turn(self, walk: ServoWalk, dt: float) -> ServoWalk:
+        keys = self._keys()
+        if 'space' in keys:
+            self.line.stop()
+            return walk
+        if self.line.mode is Mode.STOPPED:
+            if 'c' in keys:
+                self._clear()
+            return walk.stood(self._pulses())
+        for key in keys:
+            walk = walk.press(key)
+        walk = walk.advance(dt)
+        self.line.move(walk.counts)
+        return walk
+
+    def _clear(self) -> None:
+        try:
+            self.line.clear()
+        except Refused as error:  # the stop button is pressed, or the battery low
+            self.terminal.show(f'\r\x1b[Knot cleared: {error}\n')
+
+    def _keys(self) -> tuple[str, ...]:
+        """What was pressed since the last call, as long as there is a person and a board."""
+        characters = self.terminal.read()
+        if characters is None:
+            raise TerminalGone('the terminal has gone')
+        if self.line.trouble:
+            raise LinkError(self.line.trouble)
+        if self.line.has_let_go:
+            raise LinkError('the board has taken the power from the servos')
+        return key_names(characters)
+
+    def _pulses(self) -> tuple[float, ...]:
+        by_channel = self.line.pulses
+        return tuple(by_channel[servo.channel] for servo in self.servos)
+
+    def _show(self, before: ServoWalk, walk: ServoWalk) -> None:
+        """The question where there is a new one, and the line that is always new."""
+        if (before.stage, before.at) != (walk.stage, walk.at) and not walk.is_over:
+            self.terminal.show(f'\r\x1b[K{question(walk, self.positive)}')
+        is_stopped = self.line.mode is Mode.STOPPED
+        seen = '' if walk.stage is Stage.REVIEW else self.look(walk.index)
+        self.terminal.show(f'\r\x1b[K{status(walk, is_stopped, seen)}')

@@ -1,0 +1,145 @@
+"""Which topics a recording wants, and from when on it may listen to them.
+
+With which quality of service a topic is heard, and how a recording tells what was offered.
+
+What a recorder says of topics that it did not hear: misspelt, silent, or no machine at all.
+"""
+
+import difflib
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+
+import yaml
+from rclpy.duration import Duration
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+from hexarm.namespaces import nobody_in
+
+SHARED = ('/diagnostics', '/rosout', '/tf', '/tf_static')
+"""Topics of all machines, without which a recording of one is poorer."""
+
+COMMANDS = frozenset(
+    (
+        *('goal_pose', 'goal_path', 'jog_mode', 'look_at', 'speed_override', 'pivot'),
+        *('cmd_vel', 'cmd_vel/joy', 'cmd_vel/panel', 'cmd_vel/keyboard'),
+        *('gripper', 'emergency_stop', 'joint_table', 'joy'),
+    )
+)
+"""What users publish, and the machine's nodes only hear."""
+
+SETTLED = 5.0
+"""Seconds after which a publisher has met every listener that it will meet."""
+
+
+@dataclass
+class Wanted:
+    """The topics of `namespace`, or only `names` (relative ones are the namespace's).
+
+    A command is joined only once its publisher has been there for SETTLED. Many a script
+    publishes once, as soon as anybody listens; a recorder that listened before would now and then
+    be taken for the machine, and the goal, or the stop, would reach nobody else. With
+    `with_commands`, and for a name that was asked for, it is joined at once all the same.
+    """
+
+    namespace: str
+    names: Sequence[str] = ()
+    with_commands: bool = False
+    _since: dict[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Makes the names absolute."""
+        space = f'/{self.namespace.strip("/")}/'
+        self._space = space
+        self.names = tuple(n if n.startswith('/') else space + n for n in self.names)
+
+    def is_own(self, topic: str) -> bool:
+        """Whether the topic is what the recording is made for: not one that all machines share."""
+        return topic in self.names if self.names else topic.startswith(self._space)
+
+    def may_join(self, topic: str, is_published: bool, now: float) -> bool:
+        """Whether to listen to the topic from now (s, monotonic) on."""
+        if self.names:
+            return topic in self.names
+        if topic in SHARED:
+            return True
+        if not topic.startswith(self._space):
+            return False
+        if self.with_commands or topic.removeprefix(self._space) not in COMMANDS:
+            return True
+        if not is_published:
+            self._since.pop(topic, None)
+            return False
+        return now - self._since.setdefault(topic, now) >= SETTLED
+
+
+DEPTH = 500
+"""Messages that may wait: half a second of the fastest topic on a busy computer."""
+
+
+def hearing(publishers: Sequence[QoSProfile], listeners: Sequence[QoSProfile]) -> QoSProfile:
+    """What every publisher can serve; before there is one, what it must offer its listeners."""
+    offers = publishers or listeners
+    every = all if publishers else any
+    is_reliable = every(o.reliability == ReliabilityPolicy.RELIABLE for o in offers)
+    is_latched = every(o.durability == DurabilityPolicy.TRANSIENT_LOCAL for o in offers)
+    return QoSProfile(
+        depth=DEPTH,
+        reliability=ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if is_latched else DurabilityPolicy.VOLATILE,
+    )
+
+
+def offered(publishers: Sequence[QoSProfile]) -> str:
+    """The publishers' profiles as YAML with the names of rosbag2's metadata, version 9."""
+    different = {str(told): told for told in map(_told, publishers)}
+    return yaml.safe_dump(list(different.values()), sort_keys=False) if different else ''
+
+
+def _told(profile: QoSProfile) -> dict[str, object]:
+    # Discovery tells neither history nor depth: one that has to keep a message says so.
+    return {
+        'history': 'keep_last',
+        'depth': max(profile.depth, 1),
+        'reliability': profile.reliability.name.lower(),
+        'durability': profile.durability.name.lower(),
+        'deadline': _span(profile.deadline),
+        'lifespan': _span(profile.lifespan),
+        'liveliness': profile.liveliness.name.lower(),
+        'liveliness_lease_duration': _span(profile.liveliness_lease_duration),
+        'avoid_ros_namespace_conventions': bool(profile.avoid_ros_namespace_conventions),
+    }
+
+
+def _span(duration: Duration) -> dict[str, int]:
+    sec, nsec = divmod(duration.nanoseconds, 10**9)
+    return {'sec': sec, 'nsec': nsec}
+
+
+NEAREST = 3
+
+
+def unheard(names: Sequence[str], heard: Collection[str], there: Collection[str]) -> list[str]:
+    """One line for each of the topics asked for that is not among those `heard`."""
+    lines = []
+    for name in sorted(set(names) - set(heard)):
+        if name in there:
+            lines.append(f'{name} is there, but nobody said anything on it')
+        else:
+            lines.append(f'there is no topic {name}{_near(name, there)}')
+    return lines
+
+
+def nothing(namespace: str, lines: Sequence[str], there: Collection[str], domain: int) -> str:
+    """Why not one message was heard: the `lines` of topics asked for, or nobody is there."""
+    if any(topic.startswith(f'/{namespace}/') for topic in there):
+        return '; '.join(lines) or f'nobody said anything in /{namespace}'
+    reason = nobody_in(namespace, there, domain)
+    return '; '.join([reason, *lines])
+
+
+def _near(name: str, there: Collection[str]) -> str:
+    """Compared without the namespace that they share, which would make all of them alike."""
+    space = name[: name.find('/', 1) + 1]
+    inside = {topic.removeprefix(space): topic for topic in there if topic.startswith(space)}
+    near = difflib.get_close_matches(name.removeprefix(space), inside, n=NEAREST)
+    return f', did you mean {" or ".join(inside[n] for n in near)}?' if near else ''

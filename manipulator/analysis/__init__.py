@@ -1,0 +1,1 @@
+"""What a machine can reach, how exactly, and which machine it is: without time."""

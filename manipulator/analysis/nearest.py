@@ -1,0 +1,75 @@
+"""The reachable pose nearest to one that is out of reach: docs/workspace.md, section 2."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from manipulator.analysis.descent import descended
+from manipulator.analysis.joint_descent import nearest_by_joints
+from manipulator.analysis.readings import displaced, distance
+from manipulator.analysis.way import admits, are_linked, is_connected, is_joint_box, way_home_share
+from manipulator.arrays import Array
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+
+MOST_STEPS = 60
+KICKS, KICK_POSES, KICK_RADII, KICK_GAIN = 12, 1500, (3e-2, 1e-2, 1e-3, 1e-4, 1e-5), 1e-5
+
+
+@dataclass(frozen=True, eq=False)
+class Nearest:
+    """A reachable pose, and how far it is from the one wanted, in metres (see `metric`)."""
+
+    pose: Pose
+    distance: float
+
+
+def nearest_reachable(machine: Machine, target: Pose, most_steps: int = MOST_STEPS) -> Nearest:
+    """The pose nearest to `target` (itself, when it is reachable) that keeps all limits.
+
+    It is admitted and connected to home: both are checked. It is a local minimum of the distance
+    that a random search about it could not better, the best of three that are found from the ends
+    of straight ways: from home towards the target, its position alone, its orientation alone.
+    """
+    if is_joint_box(machine):
+        pose = nearest_by_joints(machine, target)
+        return Nearest(pose, float(distance(machine, pose, target)))
+    starts = _starts(machine, target)
+    ends = [_settled(machine, target, start, most_steps) for start in starts]
+    found = [(float(distance(machine, pose, target)), k) for k, pose in enumerate(ends)]
+    for metres, k in sorted(found):
+        if is_connected(machine, ends[k]) or are_linked(machine, starts[k], ends[k]):
+            return Nearest(ends[k], metres)
+    return Nearest(starts[0], float(distance(machine, starts[0], target)))
+
+
+def _settled(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Pose:
+    """A local minimum, left again as long as a random pose near it is nearer to the target."""
+    generator = np.random.default_rng(8)
+    length = machine.kinematics.characteristic_length
+    pose = descended(machine, target, start, most_steps)
+    for _ in range(KICKS):
+        radii = length * generator.choice(KICK_RADII, (KICK_POSES, 1))
+        trials = displaced(machine, pose, radii * generator.standard_normal((KICK_POSES, 6)))
+        distances = distance(machine, trials, target)
+        nearer = distances < float(distance(machine, pose, target)) - KICK_GAIN * length
+        nearer[nearer] = admits(machine, trials[nearer])
+        if not nearer.any():
+            break
+        best = int(np.argmin(np.where(nearer, distances, np.inf)))
+        pose = descended(machine, target, trials[best], most_steps)
+    return pose
+
+
+def _starts(machine: Machine, target: Pose) -> list[Pose]:
+    """Ends of free ways from home, the straight one first; `target` alone when that is free."""
+    home = machine.kinematics.home
+    twist: Array = home.twist_to(target)
+    straight = way_home_share(machine, target)
+    if straight == 1.0:
+        return [target]
+    starts = [home.moved(straight * twist)]
+    for part in (np.repeat([1.0, 0.0], 3), np.repeat([0.0, 1.0], 3)):
+        end = home.moved(part * twist)
+        starts.append(home.moved(way_home_share(machine, end) * part * twist))
+    return starts

@@ -1,0 +1,81 @@
+"""Whether a machine reaches a pose, which limits say so, and by how much."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from manipulator.analysis.readings import LimitReading
+from manipulator.analysis.slope import slopes
+from manipulator.analysis.way import is_connected
+from manipulator.arrays import Array
+from manipulator.errors import Unreachable
+from manipulator.formatting import hint_at_metres
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+
+
+@dataclass(frozen=True)
+class Reach:
+    """The answer for one pose.
+
+    is_admitted: it closes and keeps every limit; is_connected: a way from home was found. limits
+    holds a reading for every value that exists, the nearest limit first: what is broken, the
+    farthest out first, comes before what is kept. Values that a leg which does not close leaves
+    undefined are missing. reason is empty for a reachable pose.
+    """
+
+    is_admitted: bool
+    is_connected: bool
+    limits: tuple[LimitReading, ...]
+    reason: str
+
+    @property
+    def is_reachable(self) -> bool:
+        """Whether the machine can go there from home without leaving its limits."""
+        return self.is_admitted and self.is_connected
+
+    @property
+    def broken(self) -> tuple[LimitReading, ...]:
+        """The limits in the way."""
+        return tuple(r for r in self.limits if r.margin < 0.0) if not self.is_admitted else ()
+
+
+def reach(machine: Machine, pose: Pose, near: Array | None = None) -> Reach:
+    """Which limits one pose meets, on the branch nearest to `near` (default: home's).
+
+    Connection is judged as `way.is_connected` does.
+    """
+    limits = readings(machine, pose, near)
+    try:
+        with hint_at_metres(machine.kinematics, pose):
+            machine.constraints.check(pose, machine.kinematics.inverse(pose, near))
+    except Unreachable as error:
+        return Reach(False, False, limits, str(error))
+    connected = is_connected(machine, pose)
+    reason = '' if connected else 'keeps all limits, but no way from home that does was found'
+    return Reach(True, connected, limits, reason)
+
+
+def readings(machine: Machine, pose: Pose, near: Array | None = None) -> tuple[LimitReading, ...]:
+    """Every limit that has a value at one pose, the nearest first."""
+    found = slopes(machine, pose, near)
+    names, values = found.readings.names, found.readings.values
+    margins = found.readings.margins.reshape(2, -1)
+    nearer, columns = np.argmin(margins, axis=0), np.arange(len(values))
+    margin, slope = margins[nearer, columns], found.steepness.reshape(2, -1)[nearer, columns]
+    with np.errstate(divide='ignore', invalid='ignore'):
+        distance = np.where(slope > 0.0, margin / slope, np.copysign(np.inf, margin))
+    low, high = found.readings.low, found.readings.high
+    order = [k for k in np.argsort(distance, kind='stable') if np.isfinite(values[k])]
+    return tuple(
+        LimitReading(
+            quantity=names[k][0],
+            owner=names[k][1],
+            unit=names[k][2],
+            value=float(values[k]),
+            low=float(low[k]),
+            high=float(high[k]),
+            distance=float(distance[k]),
+        )
+        for k in order
+    )

@@ -1,0 +1,149 @@
+"""Positions that a machine reaches with at least one orientation: docs/workspace.md, section 3.
+
+All figures of a machine's workspace in one go.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from manipulator import rotation as so3
+from manipulator.analysis.inside import ranges
+from manipulator.analysis.readings import readings_of
+from manipulator.analysis.volume import PILOT, Box, Volume, bounding_box, volume, with_orientation
+from manipulator.analysis.way import is_connected, is_joint_box, keeps_limits
+from manipulator.arrays import Array, Mask
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+
+STARTS = 40
+ORIENTATION_SEED = 7
+LAST_SPREAD = 0.03
+
+
+@dataclass(frozen=True)
+class SomeOrientation:
+    """The positions admitted with some roll, pitch and yaw, each within ±largest (rad).
+
+    First a few orientations are tried on all positions, then, where none was admitted, `steps`
+    random changes of the best one so far, ever smaller. What is found is admitted for certain;
+    what is not found may be admitted all the same.
+    """
+
+    machine: Machine
+    largest: float
+    steps: int = 60
+
+    def __call__(self, positions: Array) -> Mask:
+        """Which positions (N, 3) in metres were found."""
+        found = np.zeros(len(positions), dtype=np.bool_)
+        best = np.full(len(positions), -np.inf)
+        angles = np.zeros((len(positions), 3))
+        cube = Box(np.full(3, -self.largest), np.full(3, self.largest))
+        for start in np.vstack([np.zeros(3), cube.lattice(STARTS, np.zeros(3))]):
+            self._try(positions, np.tile(start, (len(positions), 1)), found, best, angles)
+        generator = np.random.default_rng(ORIENTATION_SEED)
+        for spread in self.largest * np.geomspace(0.6, LAST_SPREAD, self.steps):
+            changed = angles + spread * generator.standard_normal(angles.shape)
+            self._try(positions, changed.clip(cube.low, cube.high), found, best, angles)
+        return found
+
+    def _try(
+        self, positions: Array, trial: Array, found: Mask, best: Array, angles: Array
+    ) -> None:
+        """Notes in the last three what the trial angles (N, 3) better."""
+        rest = np.flatnonzero(~found)
+        pose = Pose(positions[rest], so3.from_rpy(trial[rest]))
+        joints = self.machine.kinematics.inverse_or_nan(pose)
+        inside = keeps_limits(self.machine, pose, joints)
+        found[rest[inside]] = True
+        rest, pose = rest[~inside], pose[~inside]
+        score = self._score(pose, joints[~inside])
+        better = score > best[rest]
+        best[rest[better]] = score[better]
+        angles[rest[better]] = trial[rest[better]]
+
+    def _score(self, pose: Pose, joints: Array) -> Array:
+        """The worst margin that exists, metres by the characteristic length; (N,)."""
+        readings = readings_of(self.machine, pose, joints)
+        length = self.machine.kinematics.characteristic_length
+        scales = np.array([length if unit == 'm' else 1.0 for _, _, unit in readings.names])
+        margins = readings.margins / np.tile(scales, 2)
+        worst: Array = np.nan_to_num(margins, nan=np.inf).min(axis=-1)
+        return worst
+
+
+SEED = 1
+PILOT_STEPS, PILOT_POSITIONS = 20, 4000
+FEWEST_SEARCHED = 64
+SEARCHED = 64  # positions with home's orientation for one position with some orientation
+CONNECTION_SAMPLES = 200
+
+OnProgress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Survey:
+    """Ranges from home (m, rad); volumes of positions with home's and with some orientation.
+
+    With some orientation means roll, pitch and yaw each within ±tilt (rad). search_gain (m³) is
+    what the second half of the search for orientations added: the volume is that of what was
+    found, and the truth is larger, by something like this. connected_share is the part of a
+    sample of the first volume to which a way from home was found. box holds that volume.
+    """
+
+    ranges: dict[str, tuple[float, float]]
+    constant_orientation: Volume
+    connected_share: float
+    some_orientation: Volume
+    search_gain: float
+    tilt: float
+    box: Box
+
+
+def survey(machine: Machine, points: int, tilt: float, on_progress: OnProgress) -> Survey:
+    """From `points` positions with home's orientation, and a 64th of them with some other.
+
+    Where they are to be looked for is found from fewer positions where few are asked for.
+    """
+    home, length = machine.kinematics.home, machine.kinematics.characteristic_length
+    found = ranges(machine, partial(on_progress, 'ranges'))
+    straight = with_orientation(machine, home.rotation)
+    pilot = min(PILOT, points)
+    box = bounding_box(straight, home.position, length, pilot, partial(on_progress, 'box'))
+    generator = np.random.default_rng(SEED)
+    constant = volume(straight, box, points, generator, partial(on_progress, 'volume'))
+    share = _connected_share(machine, box)
+    wide = bounding_box(
+        SomeOrientation(machine, tilt, PILOT_STEPS),
+        home.position,
+        length,
+        min(PILOT_POSITIONS, max(points // 5, 400)),
+        partial(on_progress, 'orientations box'),
+    )
+    few = max(points // SEARCHED, FEWEST_SEARCHED)
+    steps = SomeOrientation(machine, tilt).steps
+    half, some = (
+        volume(
+            SomeOrientation(machine, tilt, n),
+            wide,
+            few,
+            np.random.default_rng(SEED),
+            partial(on_progress, f'orientations {stage}/2'),
+        )
+        for stage, n in ((1, steps // 2), (2, steps))
+    )
+    return Survey(found, constant, share, some, some.value - half.value, tilt, box)
+
+
+def _connected_share(machine: Machine, box: Box) -> float:
+    """Of up to 200 admitted positions of the box, the part that is connected to home."""
+    if is_joint_box(machine):
+        return 1.0
+    places = box.lattice(20 * CONNECTION_SAMPLES, np.full(3, 0.5))
+    rotation = machine.kinematics.home.rotation
+    inside = places[with_orientation(machine, rotation)(places)][:CONNECTION_SAMPLES]
+    linked = [is_connected(machine, Pose(place, rotation)) for place in inside]
+    return float(np.mean(linked)) if linked else 0.0

@@ -1,0 +1,131 @@
+"""How far a machine can go along a twist, and along a path."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from manipulator.analysis.reach import reach
+from manipulator.analysis.readings import CHECKS_PER_LENGTH, displaced, scale
+from manipulator.analysis.way import admits, is_connected, is_joint_box, last_free, straight_way
+from manipulator.arrays import Array
+from manipulator.errors import InvalidInput
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+
+LONGEST = 100  # characteristic lengths, after which nothing more is expected
+LARGEST_TURN = np.pi
+CHUNK = 256
+BEYOND = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Travel:
+    """The way left along a twist.
+
+    seconds at that twist, metres of path (rotations scaled by the characteristic length), the
+    last pose, and why it goes no further ('' where no limit was met within half a turn and 100
+    characteristic lengths).
+    """
+
+    seconds: float
+    metres: float
+    pose: Pose
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Fault:
+    """Where a path leaves the reach: after pose `segment` (from 0), at `share` of the way on.
+
+    pose is the first that is out of reach; a fault at share 0 of segment 0 is in the first pose.
+    """
+
+    segment: int
+    share: float
+    pose: Pose
+    reason: str
+
+
+@dataclass(frozen=True)
+class PathReport:
+    """Whether all of a path can be driven; the first fault of each way that cannot."""
+
+    faults: tuple[Fault, ...]
+
+    @property
+    def is_drivable(self) -> bool:
+        """Whether nothing is in the way."""
+        return not self.faults
+
+
+def travel(machine: Machine, pose: Pose, twist: Array, near: Array | None = None) -> Travel:
+    """How far `pose` can go along a twist (6,): the position straight, turning about one axis.
+
+    Zero where the pose itself is out of reach. Arms follow the branch of `near`. Raises
+    InvalidInput for a twist that is zero or not finite.
+    """
+    given = np.asarray(twist, dtype=np.float64)
+    if given.shape != (6,) or not np.isfinite(given).all() or not given.any():
+        raise InvalidInput(f'twist {given.tolist()} is not six finite numbers, not all 0')
+    way = given * scale(machine)
+    speed = float(np.linalg.norm(way))
+    length = machine.kinematics.characteristic_length
+    direction, step = way / speed, length / CHECKS_PER_LENGTH
+    turn = float(np.linalg.norm(direction[3:])) / length
+    longest = min(LONGEST * length, LARGEST_TURN / turn if turn > 0.0 else np.inf)
+    free = _free_metres(machine, pose, direction, step, longest, _followed(machine, pose, near))
+    end = displaced(machine, pose, free * direction)
+    reason = ''
+    if free < longest:
+        beyond = displaced(machine, pose, (free + BEYOND * length) * direction)
+        reason = reach(machine, beyond, near).reason
+    return Travel(free / speed, free, end, reason)
+
+
+def path_report(machine: Machine, poses: Pose, near: Array | None = None) -> PathReport:
+    """Every way from one of the poses (N,) to the next, straight and with one turn.
+
+    A fault before the first way is that its first pose is out of reach, or not connected to home.
+    """
+    faults = []
+    if not is_connected(machine, poses[0]):
+        reason = reach(machine, poses[0], near).reason or 'no way from home to it was found'
+        faults.append(Fault(0, 0.0, poses[0], reason))
+    near = _followed(machine, poses[0], near)
+    for k in range(poses.position.shape[0] - 1):
+        way = straight_way(machine, poses[k], poses[k + 1])
+        inside = admits(machine, way, near)
+        if not inside.all() and not (k == 0 and faults):
+            first = int(np.argmin(inside))
+            share = first / (len(inside) - 1)
+            faults.append(Fault(k, share, way[first], reach(machine, way[first], near).reason))
+        if near is not None:
+            near = machine.kinematics.inverse_along(way, near)[-1]
+    return PathReport(tuple(faults))
+
+
+def _followed(machine: Machine, pose: Pose, near: Array | None) -> Array | None:
+    """The joints to follow from: home's branch is the only one of a platform, and needs none."""
+    if near is not None or not is_joint_box(machine):
+        return near
+    joints = machine.kinematics.inverse_or_nan(pose)
+    return joints if np.isfinite(joints).all() else None
+
+
+def _free_metres(
+    machine: Machine, pose: Pose, way: Array, step: float, longest: float, near: Array | None
+) -> float:
+    """How far along `way` (6,), a unit vector, everything is admitted, at most `longest`."""
+    for begin in np.arange(0.0, longest, CHUNK * step):
+        metres = np.minimum(begin + step * np.arange(CHUNK + 1), longest)
+        inside = admits(machine, displaced(machine, pose, metres[:, None] * way), near)
+        if not inside.all():
+            first = int(np.argmin(inside))
+            if first == 0:
+                return float(begin)
+            return last_free(machine, pose, way, metres[first - 1], metres[first], near)
+        if near is not None:
+            near = machine.kinematics.inverse_along(
+                displaced(machine, pose, metres[:, None] * way), near
+            )[-1]
+    return longest

@@ -1,1 +1,0 @@
-"""What a machine can reach, which limits are in the way, and how near it can come."""

@@ -1,0 +1,193 @@
+"""s(t) from 0 to 1, from rest to rest, the quickest within bounds on ṡ, s̈ and s⃛; by ruckig.
+
+Six coordinates about a reference orientation R₀: the position, and w with R = exp(w)·R₀.
+
+Position and w are taken together as x (..., 6); x, its first and its second derivative make a
+MotionState and back. docs/motion.md, section 2.
+
+Jerk-limited moves from rest to rest: a straight line and a turn about one fixed axis.
+
+Jerk-limited moves from any state of motion to a pose at rest, by ruckig.
+
+The six coordinates are those of `chart` about R_goal: the goal lies at w = 0, far from the
+chart's edge at |w| = π.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import ruckig
+
+from manipulator import rotation as so3
+from manipulator.arrays import Array
+from manipulator.errors import Refused
+from manipulator.motion_limits import MotionLimits
+from manipulator.pose import Pose
+from manipulator.trajectory.plan import MotionState, PosePlan
+
+FASTEST = 1e9
+"""1/s and so on: bounds of what does not move at all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """A ruckig trajectory of one coordinate."""
+
+    duration: float
+    _trajectory: Any
+
+    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+        """s, ṡ and s̈ at each of the times (...), those of the ends before and after."""
+        flat = np.clip(np.ravel(times), 0.0, self.duration)
+        samples = np.array([self._trajectory.at_time(t)[:3] for t in flat.tolist()])
+        s, rate, pull = np.moveaxis(samples.reshape(*np.shape(times), 3), -1, 0)
+        return np.clip(s, 0.0, 1.0), rate, pull
+
+
+def profile_within(bounds: Sequence[float], slowness: float = 1.0) -> Profile:
+    """bounds: the most that ṡ, s̈ and s⃛ may be; slowness k ≥ 1 makes it take k times as long."""
+    request = ruckig.InputParameter(1)
+    request.target_position = [1.0]
+    names = ('velocity', 'acceleration', 'jerk')
+    for power, (name, bound) in enumerate(zip(names, bounds, strict=True), start=1):
+        setattr(request, f'max_{name}', [min(bound, FASTEST) / slowness**power])
+    trajectory = ruckig.Trajectory(1)
+    result = ruckig.Ruckig(1).calculate(request, trajectory)
+    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
+        raise Refused(f'no jerk-limited profile was found ({result.name})')
+    return Profile(float(trajectory.duration), trajectory)
+
+
+DIFFERENCE_STEP = 1e-4
+
+
+def coordinates(state: MotionState, reference: Array) -> tuple[Array, Array, Array]:
+    """One state in the chart about `reference` (3, 3): (6,) coordinates and two derivatives."""
+    w = so3.log(state.pose.rotation @ reference.T)
+    inverse = np.linalg.inv(so3.left_jacobian(w))
+    w_rate = inverse @ state.twist[3:]
+    w_acceleration = inverse @ (state.acceleration[3:] - _jacobian_change(w, w_rate))
+    return (
+        np.concatenate([state.pose.position, w]),
+        np.concatenate([state.twist[:3], w_rate]),
+        np.concatenate([state.acceleration[:3], w_acceleration]),
+    )
+
+
+def state_of(x: Array, v: Array, a: Array, reference: Array) -> MotionState:
+    """The inverse of `coordinates`, for arrays of any shape; reference (..., 3, 3)."""
+    w, w_rate = x[..., 3:], v[..., 3:]
+    jacobian = so3.left_jacobian(w)
+    omega = np.einsum('...ij,...j->...i', jacobian, w_rate)
+    alpha = np.einsum('...ij,...j->...i', jacobian, a[..., 3:]) + _jacobian_change(w, w_rate)
+    return MotionState(
+        Pose(x[..., :3], so3.exp(w) @ reference),
+        np.concatenate([v[..., :3], omega], axis=-1),
+        np.concatenate([a[..., :3], alpha], axis=-1),
+    )
+
+
+def _jacobian_change(w: Array, w_rate: Array) -> Array:
+    """J̇(w)·ẇ by a central difference along ẇ."""
+    h = DIFFERENCE_STEP
+    ahead, behind = so3.left_jacobian(w + h * w_rate), so3.left_jacobian(w - h * w_rate)
+    change: Array = np.einsum('...ij,...j->...i', (ahead - behind) / (2 * h), w_rate)
+    return change
+
+
+@dataclass(frozen=True, eq=False)
+class StraightMove(PosePlan):
+    """start.moved(s·way): s goes from 0 to 1 along the profile, way is start.twist_to(goal)."""
+
+    start: Pose
+    way: Array
+    profile: Profile
+
+    @property
+    def duration(self) -> float:
+        """Seconds from rest to rest."""
+        return self.profile.duration
+
+    @property
+    def checked_duration(self) -> float:
+        """All of it."""
+        return self.duration
+
+    def at(self, times: Array | float) -> MotionState:
+        """The state at each of the times (...)."""
+        s, rate, pull = (value[..., None] for value in self.profile.at(times))
+        position = self.start.position + s * self.way[:3]
+        turn = so3.exp(s * self.way[3:]) @ self.start.rotation
+        return MotionState(Pose(position, turn), rate * self.way, pull * self.way)
+
+    def where(self, time: float) -> str:
+        """See `Plan`."""
+        share, _, _ = self.profile.at(time)
+        return f'at {100 * float(share):.0f} % of the line'
+
+
+def plan_straight(
+    start: Pose, goal: Pose, limits: MotionLimits, slowness: float = 1.0
+) -> StraightMove:
+    """The quickest such move; slowness k ≥ 1 makes it take k times as long."""
+    way = start.twist_to(goal)
+    lengths = float(np.linalg.norm(way[:3])), float(np.linalg.norm(way[3:]))
+    parts = tuple(zip((limits.linear, limits.angular), lengths, strict=True))
+    bounds = [
+        min(
+            getattr(limit, name) / length if length > getattr(limit, name) / FASTEST else FASTEST
+            for limit, length in parts
+        )
+        for name in ('speed', 'acceleration', 'jerk')
+    ]
+    return StraightMove(start, way, profile_within(bounds, slowness))
+
+
+@dataclass(frozen=True, eq=False)
+class Move(PosePlan):
+    """A ruckig trajectory in the coordinates about the goal's orientation."""
+
+    goal: Pose
+    duration: float
+    _trajectory: Any
+
+    @property
+    def checked_duration(self) -> float:
+        """All of it."""
+        return self.duration
+
+    def at(self, times: Array | float) -> MotionState:
+        """Position, velocity and acceleration of the coordinates, turned into a state."""
+        flat = np.clip(np.ravel(times), 0.0, self.duration)
+        samples = np.array([self._trajectory.at_time(t)[:3] for t in flat.tolist()])
+        x, v, a = np.moveaxis(samples.reshape(*np.shape(times), 3, 6), -2, 0)
+        return state_of(x, v, a, self.goal.rotation)
+
+    def where(self, time: float) -> str:
+        """See `Plan`."""
+        return f'at {100 * min(time / self.duration, 1.0):.0f} % of the time to the goal'
+
+
+def plan_move(start: MotionState, goal: Pose, limits: MotionLimits, slowness: float = 1.0) -> Move:
+    """The quickest move within the limits on speed, acceleration and jerk of each coordinate.
+
+    slowness k ≥ 1 divides speed by k, acceleration by k² and jerk by k³. Raises Refused where
+    ruckig finds none.
+    """
+    request = ruckig.InputParameter(6)
+    x, v, a = coordinates(start, goal.rotation)
+    request.current_position, request.current_velocity = x.tolist(), v.tolist()
+    request.current_acceleration = a.tolist()
+    request.target_position = [*goal.position.tolist(), 0.0, 0.0, 0.0]
+    for name, power in (('speed', 1), ('acceleration', 2), ('jerk', 3)):
+        bounds = [getattr(limits.linear, name) / slowness**power] * 3
+        bounds += [getattr(limits.angular, name) / slowness**power] * 3
+        ruckig_name = 'velocity' if name == 'speed' else name
+        setattr(request, f'max_{ruckig_name}', bounds)
+    trajectory = ruckig.Trajectory(6)
+    result = ruckig.Ruckig(6).calculate(request, trajectory)
+    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
+        raise Refused(f'no jerk-limited move was found ({result.name})')
+    return Move(goal, float(trajectory.duration), trajectory)

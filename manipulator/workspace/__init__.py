@@ -1,1 +1,0 @@
-"""How much a machine reaches: volumes, sections, surfaces, and what it is like inside."""
