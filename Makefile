@@ -2,12 +2,14 @@
 SHELL := /bin/bash
 ENV := .venv
 BIN := $(ENV)/bin
-# One worker a core; the tests of a file stay together, for its fixtures' sake. In a worker numpy has one thread.
+# One worker a core; the tests of a file stay together, for its fixtures' sake, and those of a folder that share a graph
+# (test/conftest.py). In a worker numpy has one thread.
 PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q
 
 .PHONY: demo check test lint bench soak clean
 
 demo: $(ENV)/demo
+	@echo 'Both machines on fake boards: about a minute.'
 	@$(BIN)/hexarm demo
 
 check: lint   # all that starts no other program
@@ -15,8 +17,8 @@ check: lint   # all that starts no other program
 	@$(PYTEST) -n auto --dist loadfile -m 'not processes'
 
 test: check
-	@echo 'Tests that start graphs, a browser, installations, one after the other: nine minutes.'
-	@$(PYTEST) -m processes
+	@echo 'Tests that start graphs, a browser, installations.'
+	@$(PYTEST) -n auto --dist loadgroup -m processes
 
 lint: $(ENV)/ready
 	@echo 'Lint and types: half a minute.'

@@ -21,11 +21,11 @@ done
 unset LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE PYTHONPATH AMENT_PREFIX_PATH
 log="$environment/install.log"
 if [ "$what" = demo ]; then
-  echo "Making $environment with $("$python" --version), hexarm and ROS 2 in it (@DEMO@ packages, @DEMOMB@ MB): @DEMOS@, once."
+  echo "Making $environment with $("$python" --version), hexarm and ROS 2 in it, 0.7 GB: a minute or two, once."
   "$python" -m venv --clear "$environment" || stop "could not make the virtual environment $environment."
   extras='ros,plot,physics,panel,terminal,record'
 else
-  echo "Adding to $environment what only tests need (@TEST@ packages, @TESTMB@ MB): @TESTS@, once."
+  echo "Adding to $environment what only tests need, 0.7 GB: a minute, once."
   extras='test'
 fi
 "$environment/bin/python" -m pip install --disable-pip-version-check -e ".[$extras]" >>"$log" 2>&1 \

@@ -23,7 +23,7 @@ from bridge.fake.faults import Faults
 from bridge.fake.plant import Plant
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.client import Client, NotReady
+from hexarm.client import ENABLING, Client, NotReady
 from hexarm.graph import Graph, machine_graph
 from hexarm.tapped_line import Tap, TappedLine
 from manipulator.errors import ManipulatorError, Refused
@@ -201,6 +201,8 @@ class Rig:
         last: ManipulatorError | None = None
         for _ in range(TRIES):
             try:
+                if self.user.machine_state.message not in ENABLING:
+                    self.enable()
                 self.set_parameters('trajectory', CIRCLE)
                 self.user.wait('goals', lambda: self.user.motion('mode') != 'disabled', 5.0)
                 self.user.home()

@@ -24,7 +24,7 @@ class Tap:
             self._heard += [(now, frame.message) for frame in self._reader.feed(received)]
 
     def heard(
-        self, kind: type = object, since: float = float('-inf')
+        self, kind: type | tuple[type, ...] = object, since: float = float('-inf')
     ) -> list[tuple[float, Message]]:
         """(time, message) of each message of a kind."""
         with self._lock:

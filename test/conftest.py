@@ -35,12 +35,18 @@ os.environ['ROS_DOMAIN_ID'] = str(random.Random(RUN).sample(DOMAINS, len(DOMAINS
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
 
+@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the groups
 def pytest_collection_modifyitems(items):
-    """Marks what starts other programs: graphs, installations, a browser."""
+    """Marks what starts other programs: graphs, installations, a browser.
+
+    With `--dist loadgroup` a file of test/graph, or a folder, is one worker's: it shares a graph.
+    """
     for item in items:
-        folder = item.path.relative_to(FOLDER).parts[0]
-        if folder in ('graph', 'install') or 'browser' in item.fixturenames:
+        place = item.path.relative_to(FOLDER)
+        if place.parts[0] in ('graph', 'install') or 'browser' in item.fixturenames:
             item.add_marker('processes')
+            group = place if place.parent == Path('graph') else place.parent
+            item.add_marker(pytest.mark.xdist_group(str(group)))
 
 
 @pytest.fixture(scope='session')

@@ -10,9 +10,6 @@ import pytest
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 from hexarm import panel_process
-from hexarm.cli.up import check_alive
-from hexarm.graph import Graph, machine_graph
-from patient_user import PatientUser
 
 MARK = f'HEXARM_TEST_RUN={os.getpid()}'
 os.environ['HEXARM_TEST_RUN'] = str(os.getpid())
@@ -82,28 +79,6 @@ def robocake_with_deadline(ms, tmp_path_factory):
     path = tmp_path_factory.mktemp('machine') / 'robocake.yaml'
     path.write_text(patient)
     return str(path)
-
-
-@pytest.fixture(scope='module')
-def hexapod_graph(patient_robocake, tmp_path_factory):
-    """The hexapod's five processes with the fake board; not enabled."""
-    link = tmp_path_factory.mktemp('port') / 'board'
-    with Graph(machine_graph(patient_robocake, 'fake', link), 'hexapod') as graph:
-        yield graph
-
-
-@pytest.fixture(scope='module')
-def user(hexapod_graph):
-    """A user's node in the hexapod's namespace."""
-    with PatientUser('hexapod', lambda: check_alive(hexapod_graph)) as client:
-        yield client
-
-
-@pytest.fixture
-def enabled(user):
-    """The same, with the servos on and the platform at home."""
-    user.make_ready()
-    return user
 
 
 @pytest.fixture(scope='session')

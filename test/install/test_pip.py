@@ -16,10 +16,10 @@ TOOLS = {'hexarm', 'hexapod_ik', 'hexapod_pose', 'hexapod_trajectory', 'serial_b
 def install(run, environment, source, folder):
     """A wheel of a source tree, made in a folder, into an environment."""
     offline = ('--disable-pip-version-check', '--no-deps', '--no-index')
-    build = (sys.executable, '-m', 'pip', 'wheel', *offline, '--no-build-isolation')
-    run(*build, '-w', folder, source)
+    pip = (sys.executable, '-m', 'pip')
+    run(*pip, 'wheel', *offline, '--no-build-isolation', '-w', folder, source)
     (wheel,) = folder.glob('*.whl')
-    run(environment / 'bin' / 'pip', 'install', *offline, wheel)
+    run(*pip, '--python', environment, 'install', *offline, wheel)
 
 
 @pytest.fixture(scope='module')
@@ -27,7 +27,7 @@ def scratch(source, run, tmp_path_factory):
     """A virtual environment with hexarm from a wheel; dependencies come from ours."""
     folder = tmp_path_factory.mktemp('pip')
     environment = folder / 'environment'
-    venv.create(environment, symlinks=True, with_pip=True)
+    venv.create(environment, symlinks=True)
     install(run, environment, source, folder)
     (packages,) = environment.glob('lib/python3*/site-packages')
     (packages / 'dependencies.pth').write_text(sysconfig.get_path('purelib') + '\n')

@@ -1,5 +1,7 @@
 """A user of a real graph, on a computer that does other work as well."""
 
+import contextlib
+
 from hexarm.client import Client, NotReady, Stopped
 from manipulator.errors import Refused
 
@@ -32,6 +34,25 @@ class PatientUser(Client):
                 self.patience = PATIENCE
         raise last
 
+    def end_of(self, process):
+        """Exit status and what was printed; what the graph says meanwhile is heard in time."""
+        self.wait('its end', lambda: process.poll() is not None, 2 * PATIENCE)
+        return process.returncode, process.communicate()[0]
+
+    def wait_while_driven(self, what, is_so):
+        """As `wait`, for `persist`: NotReady at once where the machine is lost meanwhile."""
+        before = self.losses
+        self.wait(what, lambda: is_so() or self._has_lost(before))
+        if not is_so():
+            raise NotReady(f'the machine was lost, waiting for {what} ({self.summary})')
+
+    def wait_driven(self, what, is_so):
+        """As `wait`; a machine that is lost meanwhile is made ready again."""
+        self.persist(lambda: self.wait_while_driven(what, is_so))
+
+    def _has_lost(self, before):
+        return self.losses > before or self.motion('mode') == 'disabled'
+
     def persist(self, ask):
         """What `ask` returns; asked again where it failed and the machine was lost."""
         for _ in range(TRIES - 1):
@@ -39,20 +60,33 @@ class PatientUser(Client):
             try:
                 return ask()
             except (Refused, Stopped, NotReady, AssertionError) as error:
-                is_lost = self.losses > before or self.motion('mode') == 'disabled'
-                if not is_lost and not isinstance(error, NotReady):
+                if not self._has_lost(before) and not isinstance(error, NotReady):
                     raise
             self.make_ready()
         return ask()
 
     def make_ready(self):
         """Enabled and able to move, whatever a stall, or the last test, left."""
+        for _ in range(TRIES - 1):
+            with contextlib.suppress(Refused, NotReady):
+                return self._make_ready()
+        return self._make_ready()
+
+    def _make_ready(self):
         self.wait('a board', lambda: self.machine_state.message not in WITHOUT_BOARD)
         if self.machine_state.message in ('stopped', 'fault'):
             self.trigger('serial_bridge/clear_fault')
-        if self.machine_state.message not in ('enabled', 'holding'):
+        if self._is_off():
             self.enable()
-        self.wait('goals', lambda: self.motion('mode') not in ('', 'disabled'))
+        self.wait('goals', lambda: self._takes_goals() or self._is_off())
+        if self._is_off():
+            raise NotReady(f'the machine was lost, being enabled ({self.summary})')
+
+    def _takes_goals(self):
+        return self.motion('mode') not in ('', 'disabled')
+
+    def _is_off(self):
+        return self.machine_state.message not in SERVOS_ON
 
     def reach(self, pose):
         self.persist(lambda: self.go_to(pose))
@@ -69,4 +103,5 @@ class PatientUser(Client):
         self.losses += self.motion('mode') == 'disabled'
 
 
+SERVOS_ON = ('enabled', 'holding')
 WITHOUT_BOARD = ('not heard of', 'disconnected', 'booting')

@@ -20,6 +20,8 @@ MACHINE = load('arm_6r_stepper')
 NAMES = MACHINE.kinematics.joint_names
 DT = 0.01
 PERIOD = 0.02
+STILL = 1e-4
+"""Radians (or metres)."""
 
 
 class Joystick:
@@ -60,8 +62,6 @@ class Heard:
         self.subscription = user.node.create_subscription(
             JointState, topic, self.messages.append, MEASUREMENT
         )
-        user.wait(topic, lambda: bool(self.messages))
-        self.messages.clear()
 
     @property
     def joints(self):
@@ -81,6 +81,11 @@ class Heard:
         ends = [joints_of(self.messages[k], NAMES) for k in (0, -1)]
         first, last = (MACHINE.kinematics.forward(q).pose.position for q in ends)
         return np.linalg.norm(last - first)
+
+    def is_at_rest(self):
+        """Whether the last ten agree."""
+        last = self.joints[-10:]
+        return len(last) == 10 and np.ptp(last, axis=0).max() < STILL
 
     def check_smooth(self):
         """No step of position or velocity beyond the joints' limits, from tick to tick."""
@@ -141,6 +146,8 @@ def listen(arm):
 
     def begin(topic='joint_states'):
         begun.append(Heard(arm, topic))
+        arm.wait_driven(topic, lambda: begun[-1].messages)
+        begun[-1].messages.clear()
         return begun[-1]
 
     yield begin

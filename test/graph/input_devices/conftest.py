@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 from geometry_msgs.msg import TwistStamped
-from std_msgs.msg import Float64, String
+from std_msgs.msg import Bool, Float64, String
 from std_srvs.srv import Trigger
 
-from manipulator.nodes.qos import COMMAND, LATCHED
+from manipulator.nodes.qos import COMMAND, EVERY_WORD, LATCHED
 from patient_user import PatientUser
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -81,11 +81,15 @@ class Listener(PatientUser):
     def __init__(self, namespace, source):
         super().__init__(namespace)
         self.twists, self.modes, self.openings, self.asked = [], [], [], []
+        self.stops, self.obeys = [], True
         node = self.node
         node.create_subscription(TwistStamped, f'cmd_vel/{source}', self._on_twist, 50)
         node.create_subscription(String, 'jog_mode', lambda m: self.modes.append(m.data), LATCHED)
         node.create_subscription(
             Float64, 'gripper', lambda m: self.openings.append(m.data), LATCHED
+        )
+        node.create_subscription(
+            Bool, 'emergency_stop', lambda m: self.stops.append(m.data), EVERY_WORD
         )
         for name in ('home', 'stop'):
             node.create_service(Trigger, f'trajectory/{name}', self._answer(name))
@@ -104,7 +108,7 @@ class Listener(PatientUser):
     def _answer(self, name):
         def answer(request, response):
             self.asked.append(name)
-            response.success = True
+            response.success = self.obeys
             return response
 
         return answer

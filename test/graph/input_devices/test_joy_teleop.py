@@ -24,7 +24,7 @@ class Pad:
         self.listener = listener
         self.axes = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]
         self.buttons = [0] * 11
-        self._publisher = publisher
+        self.publisher = publisher
         self._sent = 0
 
     def send(self, tremor=True):
@@ -36,7 +36,7 @@ class Pad:
     def publish(self, axes, buttons):
         message = Joy(axes=axes, buttons=buttons)
         message.header.stamp = self.listener.node.get_clock().now().to_msg()
-        self._publisher.publish(message)
+        self.publisher.publish(message)
         self.listener.spin(0.02)
 
     def send_until(self, what, is_so, tremor=True):
@@ -56,6 +56,7 @@ class Pad:
         self.send_for(0.1)
         self.listener.spin(0.1)
         self.listener.twists.clear()
+        self.listener.asked.clear()
 
     def drive(self):
         """Holds the deadman and pushes along x until twists come."""
@@ -82,7 +83,7 @@ class Pad:
 
 @pytest.fixture(scope='module')
 def connected(running, listening):
-    with running('joy_teleop', NAMESPACE), listening(NAMESPACE, 'joy') as listener:
+    with running('joy_teleop', NAMESPACE) as process, listening(NAMESPACE, 'joy') as listener:
         publisher = listener.joy_publisher(Joy, 'joy')
         pad = Pad(listener, publisher)
 
@@ -91,13 +92,13 @@ def connected(running, listening):
             return 'stop' in listener.asked
 
         pad.send_until('the services', press_stop)
-        yield listener, publisher
+        yield listener, publisher, process
 
 
 @pytest.fixture
 def pad(connected):
-    pad = Pad(*connected)
-    listener = pad.listener
+    listener, publisher, _ = connected
+    pad = Pad(listener, publisher)
     ready = 'a publisher of twists'
     topic = f'/{NAMESPACE}/cmd_vel/joy'
     listener.wait(ready, lambda: listener.node.count_publishers(topic) > 0, PATIENCE)
@@ -155,23 +156,21 @@ def test_first_mode_is_known_to_late_listeners_and_the_cross_changes_it(pad):
 
 def test_stop_asks_the_trajectory_node_once(pad):
     pad.drive()
-    pad.listener.asked.clear()
-    pad.buttons[STOP] = 1
-    pad.send_until('stop', lambda: 'stop' in pad.listener.asked)
+    asked = pad.listener.asked
+    pad.hold_until(lambda: 'stop' in asked, STOP)
+    before = len(asked)
     pad.send_for(LONG_ENOUGH)
-    assert pad.listener.asked == ['stop']
-    assert is_zero(pad)
+    assert len(asked) == before
 
 
 def test_home_is_asked_while_held_and_stopped_at_release(pad):
-    pad.listener.asked.clear()
-    pad.buttons[HOME] = 1
-    pad.send_until('home', lambda: pad.listener.asked)
+    asked = pad.listener.asked
+    pad.hold_until(lambda: 'home' in asked, HOME)
+    before = len(asked)
     pad.send_for(0.2)
-    assert pad.listener.asked == ['home']
+    assert len(asked) == before
     pad.buttons[HOME] = 0
-    pad.send_until('stop', lambda: len(pad.listener.asked) > 1)
-    assert pad.listener.asked == ['home', 'stop']
+    pad.send_until('stop', lambda: asked[-1] == 'stop')
 
 
 def test_gripper_closes_while_button_and_deadman_are_held(pad):
@@ -180,20 +179,35 @@ def test_gripper_closes_while_button_and_deadman_are_held(pad):
     assert 0.0 <= pad.listener.openings[-1] < 0.5
 
 
-def test_zero_is_the_last_word_of_a_node_that_is_ended(running, listening):
-    namespace = f'{NAMESPACE}_ended'
-    with (
-        running('joy_teleop', namespace) as process,
-        listening(namespace, 'joy') as listener,
-    ):
-        pad = Pad(listener, listener.joy_publisher(Joy, 'joy'))
-        topic = f'/{namespace}/cmd_vel/joy'
-        listener.wait('twists', lambda: listener.node.count_publishers(topic), PATIENCE)
-        pad.rest()
-        pad.drive()
-        process.send_signal(signal.SIGINT)
-        pad.send_until('the zero', lambda: is_zero(pad))
-        assert process.wait(60) == 0
+def test_a_stop_that_is_refused_becomes_an_emergency_stop(pad):
+    pad.listener.obeys = False
+    pad.hold_until(lambda: pad.listener.stops, STOP)
+    pad.listener.obeys = True
+    assert pad.listener.stops[0]
+
+
+def test_a_second_pad_stops_all_twists_until_it_has_gone_and_the_first_was_let_go(pad):
+    listener = pad.listener
+    second = Pad(listener, listener.joy_publisher(Joy, 'joy'))
+    second.buttons[LB], second.axes[1] = 1, 1.0
+
+    def both(is_so):
+        pad.send()
+        second.send()
+        return is_so()
+
+    def said():
+        status = listener.diagnostics.get(f'{NAMESPACE}/joy_teleop')
+        return status.message if status else ''
+
+    for words in ('more than one publisher', '2 publishers on joy'):
+        listener.wait(words, lambda w=words: both(lambda: w in said()))
+    assert f'/{NAMESPACE}/hexarm' in said()
+    pad.buttons[LB], pad.axes[1] = 1, 1.0
+    pad.send_for(LONG_ENOUGH)
+    assert listener.twists == []
+    listener.node.destroy_publisher(second.publisher)
+    pad.drive()
 
 
 def test_unknown_gamepad_is_one_line_and_status_1(refusal):
@@ -201,3 +215,12 @@ def test_unknown_gamepad_is_one_line_and_status_1(refusal):
     assert status == 1
     assert "did you mean 'xbox'" in said
     assert len(said.splitlines()) == 1
+
+
+def test_zero_is_the_last_word_of_a_node_that_is_ended(pad, connected):
+    """Keep it last: it ends the shared process."""
+    process = connected[2]
+    pad.drive()
+    process.send_signal(signal.SIGINT)
+    pad.send_until('the zero', lambda: is_zero(pad))
+    assert process.wait(60) == 0

@@ -4,11 +4,9 @@ import fcntl
 import os
 import pty
 import select
-import signal
 import subprocess
 import termios
 import threading
-from contextlib import contextmanager
 
 import pytest
 
@@ -81,32 +79,22 @@ class Typist:
         if self.process.poll() is None:
             self.process.kill()
         self.process.wait(60)
-        if not self.is_leaving:
-            self.leave(lambda: os.write(self.screen, b'the end'))
-
-    def leave(self, show_something):
-        """Closes the terminal's window."""
         self.is_leaving = True
-        show_something()
+        os.write(self.screen, b'the end')
         self._reading.join()
         os.close(self.screen)
         os.close(self.keys)
 
 
-@contextmanager
-def sitting(words, listening, root):
+@pytest.fixture(scope='module')
+def shared(words, listening, request):
+    command = words('keyboard_teleop', NAMESPACE)
     with listening(NAMESPACE, 'keyboard') as listener:
-        typist = Typist(words('keyboard_teleop', NAMESPACE), listener, root)
+        typist = Typist(command, listener, request.config.rootpath)
         try:
             yield typist
         finally:
             typist.close()
-
-
-@pytest.fixture(scope='module')
-def shared(words, listening, request):
-    with sitting(words, listening, request.config.rootpath) as typist:
-        yield typist
 
 
 @pytest.fixture
@@ -116,13 +104,6 @@ def typist(shared):
     for heard in (shared.listener.twists, shared.listener.modes, shared.listener.asked):
         heard.clear()
     return shared
-
-
-@pytest.fixture
-def leaving(words, listening, request):
-    """One whose process ends with the test."""
-    with sitting(words, listening, request.config.rootpath) as typist:
-        yield typist
 
 
 def test_a_press_moves_and_ends_with_one_zero(typist):
@@ -161,7 +142,25 @@ def test_the_terminal_says_who_listens(typist):
     assert b'nobody listens' not in typist.seen.split(b'a machine listens')[-1]
 
 
-def test_a_keyboard_that_nobody_hears_says_so(words, request):
+def test_paste_moves_nothing(typist):
+    typist.type(b'sudo apt install ros\n')
+    typist.listener.spin(0.5)
+    typist.type(b'm')
+    typist.listener.wait('mode', lambda: typist.listener.modes, PATIENCE)
+    assert typist.listener.twists == []
+
+
+def test_ctrl_c_ends_it_with_a_zero_and_the_terminal_is_as_before(typist):
+    """Keep it last: it ends the shared process."""
+    assert not typist.is_as_before()
+    typist.type_until(b'w', lambda: typist.listener.twists)
+    typist.type(b'\x03')
+    assert typist.await_end() == 0
+    assert typist.is_as_before()
+    typist.await_last(ZERO)
+
+
+def test_a_keyboard_that_nobody_hears_says_so_and_ends_with_its_window(words, request):
     keys, screen = pty.openpty()
     command = words('keyboard_teleop', 'lonely')
     process = subprocess.Popen(
@@ -173,63 +172,8 @@ def test_a_keyboard_that_nobody_hears_says_so(words, request):
         while b'nobody listens in /lonely on ROS domain' not in seen:
             assert select.select([keys], [], [], PATIENCE)[0], seen
             seen += os.read(keys, 4096)
-        os.write(keys, b'q')
-        assert process.wait(60) == 0
+        os.close(keys)
+        assert process.wait(PATIENCE) == 0
     finally:
         process.kill()
         process.wait()
-        os.close(keys)
-
-
-def test_paste_moves_nothing(typist):
-    typist.type(b'sudo apt install ros\n')
-    typist.listener.spin(0.5)
-    typist.type(b'm')
-    typist.listener.wait('mode', lambda: typist.listener.modes, PATIENCE)
-    assert typist.listener.twists == []
-
-
-@pytest.mark.parametrize('ending', ['q', 'Ctrl-C', 'SIGTERM', 'SIGINT'])
-def test_terminal_is_as_before_after_every_ending(leaving, ending):
-    assert not leaving.is_as_before()
-    leaving.type(b'w')
-    leaving.await_last((0.02, 0, 0, 0, 0, 0))
-    if ending.startswith('SIG'):
-        leaving.process.send_signal(getattr(signal, ending))
-    elif ending == 'q':
-        leaving.type(b'q')
-    else:
-        leaving.type(b'\x03')
-    assert leaving.await_end() == 0
-    assert leaving.is_as_before()
-    leaving.await_last(ZERO)
-
-
-def test_closed_terminal_ends_the_node(leaving):
-    leaving.leave(lambda: leaving.type(b'b'))
-    assert leaving.await_end() == 0
-
-
-def test_without_a_terminal_it_says_so_in_one_line(refusal):
-    said = 'keyboard_teleop: needs a terminal to read keys from, standard input is none'
-    assert refusal('keyboard_teleop') == (1, said)
-
-
-def test_bad_parameter_is_said_and_the_terminal_is_as_before(words, request):
-    keys, screen = pty.openpty()
-    before = termios.tcgetattr(screen)
-    command = words('keyboard_teleop', NAMESPACE, rate=1.0)
-    done = subprocess.run(
-        command,
-        cwd=request.config.rootpath,
-        stdin=screen,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    assert done.returncode == 1
-    assert 'rate' in done.stderr
-    assert termios.tcgetattr(screen) == before
-    os.close(keys)
-    os.close(screen)

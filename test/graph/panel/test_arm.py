@@ -1,6 +1,7 @@
 """The same page for a serial arm: sliders, joystick, gripper and STOP."""
 
 import re
+import time
 from pathlib import Path
 
 import pytest
@@ -41,7 +42,7 @@ def user(arm_panel, with_cycle, tmp_path_factory):
         Graph([*with_cycle(nodes, CIRCLE), arm_panel], 'arm') as graph,
         PatientUser('arm', lambda: check_alive(graph)) as client,
     ):
-        client.wait('the panel', lambda: 'arm/panel' in client.diagnostics, 30.0)
+        client.wait('the panel', lambda: 'arm/panel' in client.diagnostics)
         yield client
 
 
@@ -64,8 +65,9 @@ def test_a_number_beside_a_slider_moves_the_arm(page, arm):
 
 def test_the_joystick_moves_the_arm_while_it_is_held(page, arm):
     arm.jog(page, '#move', (0.0, 0.3), 0, 0.01)
+    released = time.time()
     page.let_go()
-    arm.stays(0.5)
+    arm.seconds_to_rest(released)
 
 
 def test_stop_stops_the_arm_and_nothing_resumes(page, arm):

@@ -126,12 +126,12 @@ class Rig(PatientUser):
         return self.answer_of(client, request, 'the parameter').results[0]
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope='package')
 def port(tmp_path_factory):
     return tmp_path_factory.mktemp('line') / 'board'
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope='package')
 def processes(port, tmp_path_factory):
     hasty = find('robocake').read_text().replace('arm_interval_ms: 150', 'arm_interval_ms: 40')
     hasty = re.sub('setpoint_deadline_ms: .*', 'setpoint_deadline_ms: 1000', hasty)
@@ -146,7 +146,7 @@ def processes(port, tmp_path_factory):
         assert graph.dead() is None
 
 
-@pytest.fixture(scope='module')
+@pytest.fixture(scope='package')
 def client(processes):
     with Rig() as rig:
         yield rig

@@ -26,7 +26,7 @@ from manipulator.pose import Pose
 
 pytestmark = pytest.mark.graph
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 STREAMS = ('setpoint', 'joint_command', 'joint_states', 'pose')
 LATCHED = ('machine_state', 'motion_status')
 
@@ -58,7 +58,7 @@ def recording(hexapod_graph, user, hexarm, tmp_path_factory):
     recorder = hexarm('record', 'hexapod', '-o', str(path))
     user.wait('the recorder', lambda: user.node.count_subscribers('setpoint') > 2)
     user.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.047)))
-    user.spin(6.0)  # until a publisher of goals has been there long enough
+    user.wait('who records goals', lambda: user.node.count_subscribers('goal_pose') > 1)
     user.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.044)))
     user.spin(1.0)
     recorder.send_signal(signal.SIGINT)
@@ -203,16 +203,19 @@ def test_listener_that_no_goal_can_reach_keeps_nobody_waiting(user):
     user.wait('its end', lambda: user.spin(0.1) or user.node.count_subscribers('goal_pose') == 1)
 
 
+def run_example(user, name, *words):
+    example = [sys.executable, f'examples/{name}.py', *words]
+    assert user.end_of(subprocess.Popen(example, cwd=ROOT))[0] == 0
+
+
 def test_recorder_of_commands_is_not_taken_for_the_machine(user, hexarm, tmp_path):
     path = tmp_path / 'commands.mcap'
     user.make_ready()
     recorder = hexarm('record', 'hexapod', '--commands', '-o', str(path))
     user.wait('the recorder', lambda: user.node.count_subscribers('goal_pose') > 1)
     for z in ('0.043', '0.045', '0.047'):
-        example = [sys.executable, 'examples/publish_pose.py', '0', '0', z]
-        assert subprocess.run(example, cwd=ROOT, timeout=120, check=False).returncode == 0
-    stop = [sys.executable, 'examples/stop.py', '--emergency']
-    assert subprocess.run(stop, cwd=ROOT, timeout=120, check=False).returncode == 0
+        user.persist(lambda z=z: run_example(user, 'publish_pose', '0', '0', z))
+    run_example(user, 'stop', '--emergency')
     recorder.send_signal(signal.SIGINT)
     ends_with(recorder, 0)
     user.trigger('serial_bridge/clear_fault')

@@ -4,25 +4,21 @@ import pytest
 from std_msgs.msg import Bool
 
 from bridge.stop_socket import domain_here, send_stop, stop_address
-from hexarm.client import Client
 from manipulator.nodes.qos import EVERY_WORD
 
 pytestmark = pytest.mark.graph
 
 
 @pytest.fixture
-def says(hexarm):
+def says(hexarm, user):
     """Runs `hexarm …` to its end: status and what it said."""
-
-    def run(*words):
-        process = hexarm(*words)
-        said, _ = process.communicate(timeout=120)
-        return process.returncode, said
-
-    return run
+    return lambda *words: user.end_of(hexarm(*words))
 
 
 def test_a_machine_is_enabled_stopped_cleared_and_disabled_without_ros2(user, says):
+    user.make_ready()
+    user.disable()
+    user.wait('the end', lambda: user.machine_state.message == 'disarmed')
     assert says('enable') == (0, '/hexapod: machine enabled, motion idle\n')
     status, said = says('stop', 'hexapod')
     assert status == 0
@@ -56,13 +52,15 @@ def test_a_stop_from_the_same_computer_needs_no_ros(enabled):
     enabled.trigger('serial_bridge/clear_fault')
 
 
-def test_a_stop_goes_out_over_ros_before_the_machine_has_said_anything(hexarm):
-    with Client('silent') as listener:
-        heard = []
-        listener.node.create_subscription(Bool, 'emergency_stop', heard.append, EVERY_WORD)
-        process = hexarm('stop', 'silent')
-        listener.wait('the stop', lambda: heard, 60.0)
-        assert heard[0].data
-        listener.wait('the end', lambda: process.poll() is not None, 60.0)
+def test_a_stop_goes_out_over_ros_before_the_machine_has_said_anything(user, hexarm):
+    heard = []
+    listener = user.node.create_subscription(
+        Bool, '/silent/emergency_stop', heard.append, EVERY_WORD
+    )
+    process = hexarm('stop', 'silent')
+    user.wait('the stop', lambda: heard)
+    assert heard[0].data
+    user.wait('the end', lambda: process.poll() is not None)
+    user.node.destroy_subscription(listener)
     assert process.returncode == 1
     assert 'nobody answers in /silent' in process.stdout.read()

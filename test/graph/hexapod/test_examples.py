@@ -1,4 +1,4 @@
-"""Every script in examples/ against `hexarm up hexapod`."""
+"""Every script in examples/ beside the running graph."""
 
 import re
 import subprocess
@@ -15,50 +15,26 @@ from hexarm.client import NotReady
 from manipulator.nodes.messages import pose_of
 from manipulator.nodes.qos import LATCHED
 from manipulator.pose import Pose
-from patient_user import PatientUser
 
 pytestmark = pytest.mark.graph
-ROOT = Path(__file__).resolve().parents[2]
-EXAMPLES = sorted((ROOT / 'examples').glob('*.py'))
-
-
-@pytest.fixture(scope='module')
-def up(hexarm, tmp_path_factory):
-    """A graph that forgives a busy computer: its setpoints are good for a second."""
-    text = (ROOT / 'config' / 'robocake.yaml').read_text()
-    patient = tmp_path_factory.mktemp('machine') / 'robocake.yaml'
-    patient.write_text(re.sub(r'setpoint_deadline_ms: \d+', 'setpoint_deadline_ms: 1000', text))
-    process = hexarm('up', 'hexapod', '--machine', str(patient))
-    lines = []
-    for line in process.stdout:
-        lines.append(line)
-        if 'is up on fake and enabled' in line:
-            break
-    assert process.poll() is None, ''.join(lines)
-    yield process
-    process.terminate()
-    process.communicate(timeout=20)
-    assert process.returncode == 0
+ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture
-def client(up):
-    with PatientUser('hexapod') as client:
-        client.make_ready()
-        yield client
+def client(enabled):
+    return enabled
 
 
 @pytest.fixture
 def poses(client):
     """The measured poses since the test began, as far as the client was spun."""
     heard = []
-
-    def hear(message):
-        heard.append(pose_of(message))
-
-    client.node.create_subscription(PoseStamped, 'pose', hear, 1000)
+    subscription = client.node.create_subscription(
+        PoseStamped, 'pose', lambda message: heard.append(pose_of(message)), 1000
+    )
     client.wait('a pose', lambda: heard)
-    return heard
+    yield heard
+    client.node.destroy_subscription(subscription)
 
 
 @pytest.fixture
@@ -94,14 +70,14 @@ def start():
             process.wait()
 
 
-def end(process):
-    """Exit status and what was printed."""
-    said, _ = process.communicate(timeout=120)
-    return process.returncode, said
+@pytest.fixture
+def end(client):
+    """Exit status of a process, and what was printed."""
+    return client.end_of
 
 
 @pytest.fixture
-def reaches(client, start):
+def reaches(client, start, end):
     """Runs an example until it says that the goal is reached; again where the machine was lost."""
 
     def reaches(*words):
@@ -114,15 +90,6 @@ def reaches(client, start):
     return reaches
 
 
-@pytest.mark.parametrize('example', EXAMPLES, ids=lambda path: path.stem)
-def test_example_explains_itself(example):
-    words = [sys.executable, str(example), '--help']
-    said = subprocess.run(words, check=True, capture_output=True, text=True, timeout=30).stdout
-    first_line = example.read_text().splitlines()[0].strip('"')
-    assert first_line in ' '.join(said.split())
-    assert '--namespace' in said
-
-
 def test_publish_pose_ends_when_the_platform_is_there(reaches, measured_now):
     reaches('publish_pose', '-0.003', 0.002, 0.044, '--rpy', 0.03, 0, 0.05)
     pose = measured_now()
@@ -130,13 +97,13 @@ def test_publish_pose_ends_when_the_platform_is_there(reaches, measured_now):
     assert pose.rpy == pytest.approx([0.03, 0.0, 0.05], abs=0.01)
 
 
-def test_publish_pose_says_which_leg_cannot(start, client):
+def test_publish_pose_says_which_leg_cannot(start, client, end):
     status, said = end(start('publish_pose', 0.04, 0, 0.045))
     assert status == 1
     assert re.fullmatch(r'refused: leg \d: rod too short by [\d.]+ mm .*\n', said)
 
 
-def test_publish_pose_asks_whether_degrees_or_millimetres_were_meant(start, client):
+def test_publish_pose_asks_whether_degrees_or_millimetres_were_meant(start, client, end):
     status, said = end(start('publish_pose', 0, 0, 0.045, '--rpy', 0, 0, 10))
     assert (status, said.count('\n')) == (1, 1)
     assert 'are these degrees?' in said
@@ -145,7 +112,7 @@ def test_publish_pose_asks_whether_degrees_or_millimetres_were_meant(start, clie
     assert 'are these millimetres?' in said
 
 
-def test_watch_joints_prints_names_and_radians(start, reaches):
+def test_watch_joints_prints_names_and_radians(start, reaches, end):
     reaches('publish_pose', 0, 0, 0.04119)
     status, said = end(start('watch_joints', '--count', 3, '--every', 0.02))
     names, *lines = (line.split() for line in said.splitlines())
@@ -155,15 +122,14 @@ def test_watch_joints_prints_names_and_radians(start, reaches):
     assert [float(word) for word in lines[-1]] == pytest.approx([2.0945] * 6, abs=0.01)
 
 
-def test_draw_circle_stays_on_it(start, poses, client):
+def test_draw_circle_stays_on_it(start, poses, client, end):
     """Where this computer stands still, the machine holds or cuts across: then another circle."""
 
     def draw():
         poses.clear()
         process = start('draw_circle', '--turns', 1, '--period', 5)
-        client.wait('the end of the circle', lambda: process.poll() is not None)
-        client.spin(0.3)  # the platform is a little behind
         status, said = end(process)
+        client.spin(0.3)  # the platform is a little behind
         assert status == 0
         assert re.search(r'half of them within [\d.]+ mm, all within [\d.]+', said)
         x, y, _ = np.transpose([pose.position for pose in poses])
@@ -175,10 +141,9 @@ def test_draw_circle_stays_on_it(start, poses, client):
     assert any(client.persist(draw) for _ in range(5))
 
 
-def test_axis_tour_visits_both_sides_of_every_axis(start, poses, client):
+def test_axis_tour_visits_both_sides_of_every_axis(start, poses, client, end):
     def drive():
         process = start('axis_tour', '--way', 0.003, '--angle', 0.06, '--pause', 0.1)
-        client.wait('the end of the tour', lambda: process.poll() is not None, 120.0)
         status, said = end(process)
         assert status == 0, said
         return said
@@ -204,10 +169,11 @@ def slowly(client):
     yield override
     override.publish(Float64(data=1.0))
     override.wait_for_all_acked()
+    client.node.destroy_publisher(override)
 
 
 def test_slow_moves_are_waited_for_and_what_stands_still_is_given_up(
-    start, client, slowly, monkeypatch
+    start, client, slowly, monkeypatch, end
 ):
     def wait_for_slow_ones():
         client.go_to(Pose.from_xyz_rpy((0.0, 0.008, 0.045)))
@@ -226,7 +192,7 @@ def test_slow_moves_are_waited_for_and_what_stands_still_is_given_up(
     assert end(start('stop'))[0] == 0
 
 
-def test_stop_ends_a_move_and_the_tour_says_so(start, slowly):
+def test_stop_ends_a_move_and_the_tour_says_so(start, slowly, end):
     tour = start('axis_tour', '--pause', 0)
     assert tour.stdout.readline().startswith('x ±')
     assert end(start('stop')) == (0, 'braking along the way, then holding\n')
@@ -235,7 +201,7 @@ def test_stop_ends_a_move_and_the_tour_says_so(start, slowly):
     assert 'stopped' in said
 
 
-def test_emergency_stop_holds_until_it_is_cleared(start, client, reaches):
+def test_emergency_stop_holds_until_it_is_cleared(start, client, reaches, end):
     assert end(start('stop', '--emergency')) == (0, 'stopped\n')
     client.wait('the stop', lambda: client.machine_state.message == 'stopped')
     status, said = end(start('publish_pose', 0, 0, 0.045))

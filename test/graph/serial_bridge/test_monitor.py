@@ -13,11 +13,9 @@ import time
 
 import pytest
 
-from hexarm.graph import Executable, Graph
-
 pytestmark = pytest.mark.graph
 
-SPACE = 'monitored'
+SPACE = 'bridge_rig'
 LEAVES_SCREEN = b'\x1b[?1049l'
 PATIENCE = 60.0
 
@@ -74,19 +72,8 @@ def monitor(request):
     watched.close()
 
 
-@pytest.fixture(scope='module')
-def nodes(tmp_path_factory):
-    port = str(tmp_path_factory.mktemp('line') / 'board')
-    nodes = [
-        Executable('fake_hardware', {'link': port}),
-        Executable('serial_bridge', {'port': port}),
-    ]
-    with Graph(nodes, SPACE) as graph:
-        yield graph
-
-
 @pytest.mark.parametrize('key', [b'q', b'\x03'])
-def test_it_shows_the_link_and_leaves_the_terminal_as_it_was(nodes, monitor, key):
+def test_it_shows_the_link_and_leaves_the_terminal_as_it_was(rig, monitor, key):
     monitor.read_until(b'serial_bridge')
     monitor.read_until(b'battery_v 7.6')
     assert re.search(rb'link\S* \S*ready', monitor.seen)

@@ -1,7 +1,11 @@
-"""What the hexapod's page shows, what its sliders and STOP do, and who may open it."""
+"""The hexapod's page: what it shows, what sliders, joystick and STOP do, and who may open it.
+
+What counts as a hand that is gone, test/panel/test_joystick_page.py tries.
+"""
 
 import os
 import signal
+import time
 from http.client import HTTPConnection
 from urllib.parse import urlsplit
 
@@ -9,23 +13,76 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from hexarm.panel_process import panel_address
+from hexarm.cli.up import check_alive
+from hexarm.graph import Graph, machine_graph
+from hexarm.panel_process import panel_address, panel_process
 from manipulator.pose import Pose
+from patient_user import PatientUser
 
 pytestmark = pytest.mark.graph
 
+X = 1
+"""Field of the page: speed, then x, y, z …"""
+ELSEWHERE = Pose.from_xyz_rpy((-0.002, 0.0, 0.045))
 PICTURED = Pose.from_xyz_rpy((0.006, -0.004, 0.0455), (0.05, 0.09, -0.03))
 
+CIRCLE = {
+    'cycle.amplitude': '[0.006, 0.006, 0.0, 0.0, 0.0, 0.0]',
+    'cycle.phase': '[0.0, 1.5708, 0.0, 0.0, 0.0, 0.0]',
+}
+"""A cycle on which some servo is always on its way: nothing else would tell when it stops."""
 
-def test_sliders_move_the_machine_and_all_pages_show_it(two_pages, machine):
-    page, other = two_pages
-    thumb = page.page.get_by_role('slider').nth(1)
+JOG = 0.003
+"""Metres that tell a jog from standing still. The reach is 15 mm, so jogs are slow: a busy
+computer must not come to its end meanwhile."""
+
+
+@pytest.fixture(scope='module')
+def panel(browser, patient_robocake):
+    return panel_process(patient_robocake)
+
+
+@pytest.fixture(scope='module')
+def hexapod_graph(patient_robocake, panel, with_cycle, tmp_path_factory):
+    """The hexapod's processes and its panel."""
+    link = tmp_path_factory.mktemp('port') / 'board'
+    nodes = with_cycle(machine_graph(patient_robocake, 'fake', link), CIRCLE)
+    with Graph([*nodes, panel], 'hexapod') as graph:
+        yield graph
+
+
+@pytest.fixture(scope='module')
+def user(hexapod_graph):
+    with PatientUser('hexapod', lambda: check_alive(hexapod_graph)) as client:
+        yield client
+
+
+@pytest.fixture(scope='module')
+def page(open_page, panel, user):
+    """The hexapod's panel, open for all tests of this file."""
+    user.wait('the panel', lambda: 'hexapod/panel' in user.diagnostics)
+    return open_page(panel)
+
+
+@pytest.fixture
+def machine(user, page, seen):
+    """The hexapod as seen from outside; at home and able to move."""
+    with seen(user) as hexapod:
+        yield hexapod
+    page.let_go()
+
+
+def test_sliders_move_the_machine_and_follow_the_goals_of_others(page, machine):
+    thumb = page.page.get_by_role('slider').nth(X)
     thumb.focus()
-    for _ in range(30):
-        page.page.keyboard.press('ArrowRight')
-    machine.client.wait('2 mm along x', lambda: machine.has_moved(0, 0.002), 20.0)
-    machine.client.wait('the other page', lambda: page.values() == other.values(), 20.0)
-    assert 2.0 <= float(other.values()[1]) <= 3.0
+
+    def press():
+        for _ in range(30):
+            page.page.keyboard.press('ArrowRight')
+
+    machine.asked_until(press, lambda: machine.has_moved(0, 0.002))
+    machine.client.reach(ELSEWHERE)
+    machine.client.wait('the slider', lambda: float(page.values()[X]) == -2.0)
 
 
 def test_stop_stops_the_machine_and_nothing_resumes(page, machine):
@@ -43,7 +100,7 @@ def test_a_node_that_does_not_answer_is_named(page, machine, hexapod_graph):
         machine.client.spin(1.0)  # it takes the machine over anew
 
 
-def test_other_sites_are_turned_away(panel, two_pages):
+def test_other_sites_are_turned_away(panel, page):
     assert [opened(panel, path, 'http://elsewhere.example') for path in ('/', '/joystick')] == [
         403,
         403,
@@ -65,7 +122,7 @@ def opened(panel, path, origin):
     return status
 
 
-def test_topics_are_those_of_the_document(two_pages, user, interfaces):
+def test_topics_are_those_of_the_document(page, user, interfaces):
     user.wait(
         'its subscriptions', lambda: ('in', 'setpoint') in interfaces.running(user, 'panel'), 10.0
     )
@@ -97,3 +154,23 @@ def close_notes(page):
     """Browsers without a graphics card are told so by viser, in a corner of the page."""
     for button in page.locator('.mantine-Notification-closeButton').all():
         button.click()
+
+
+def test_release_stops(page, machine):
+    machine.jog(page, '#move', (0.0, 0.12), 0, JOG)
+    released = time.time()
+    page.let_go()
+    machine.seconds_to_rest(released)
+    assert_zero_was_sent(machine)
+
+
+def assert_zero_was_sent(machine):
+    last = machine.twists[-1].twist
+    assert (last.linear.x, last.linear.y, last.linear.z) == (0.0, 0.0, 0.0)
+
+
+def test_closing_the_page_while_jogging_stops(page, machine):
+    machine.jog(page, '#move', (-0.12, 0.0), 1, JOG)
+    closed = time.time()
+    page.page.close()
+    machine.seconds_to_rest(closed)

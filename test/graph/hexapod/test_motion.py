@@ -120,12 +120,12 @@ def test_path_is_driven_within_half_a_millimetre_all_the_way_round(enabled, hear
         enabled.spin(0.3)
         measured.clear()
         enabled.follow(circle(120))
+        points = np.array([pose_of(m).position for m in measured])
+        assert np.abs(np.hypot(points[:, 0], points[:, 1]) - RADIUS).max() < NEAR
+        assert np.abs(points[:, 2] - HEIGHT).max() < NEAR
+        assert enabled.motion('mode') == 'hold'
 
     enabled.persist(drive)
-    points = np.array([pose_of(m).position for m in measured])
-    assert np.abs(np.hypot(points[:, 0], points[:, 1]) - RADIUS).max() < NEAR
-    assert np.abs(points[:, 2] - HEIGHT).max() < NEAR
-    assert enabled.motion('mode') == 'hold'
 
 
 @pytest.mark.parametrize(
