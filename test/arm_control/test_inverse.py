@@ -214,6 +214,12 @@ def test_the_numerical_inverse_stays_near(bent_arm):
     assert np.abs(found - joints).max() < 1e-8
 
 
+def test_the_numerical_inverse_follows_a_path(bent_arm):
+    joints = bent_arm.rest + np.linspace(0.0, 0.2, 30)[:, None] * [1.0, -0.5, 0.5, 1.0, 0.5, -1.0]
+    found = bent_arm.inverse_along(bent_arm.chain.forward(joints), joints[0])
+    assert np.abs(found - joints).max() < 1e-8
+
+
 def test_the_numerical_inverse_says_by_how_much_it_missed(bent_arm):
     with pytest.raises(Unreachable, match=r'best of 33 starts missed by .* m and'):
         bent_arm.inverse(replace(bent_arm.home, position=[3.0, 0.0, 0.0]))

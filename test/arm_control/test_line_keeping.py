@@ -11,6 +11,7 @@ from arm_control.load import arm as load_arm
 from arm_control.load import jogging
 from arm_control.resolved_rate import JogState
 from manipulator import rotation as so3
+from manipulator.errors import InvalidInput
 from manipulator.teleop.jogger import JogMotion
 
 DT = 0.01
@@ -207,3 +208,8 @@ def test_arm_braking_before_a_stop_keeps_its_joints_accelerations(jog):
             before, state = state, jog.step(state, twist, DT).state
             changes = np.abs(state.rates - before.rates) / DT
             assert (changes <= acceleration * (1 + 1e-6)).all()
+
+
+def test_another_word_for_what_a_jog_does_at_a_singularity_is_refused(machine):
+    with pytest.raises(InvalidInput, match=r"jog_singularity is 'skid', needs 'stop' or 'slide'"):
+        replace(machine, jog_singularity='skid')

@@ -49,3 +49,11 @@ def test_commands_are_joined_early_where_that_is_asked_for():
     assert named.may_join('/arm/goal_pose', False, 0.0)
     assert named.may_join('/hexapod/pose', False, 0.0)
     assert not named.may_join('/arm/pose', True, 0.0)
+
+
+def test_what_a_recording_is_made_for_is_what_was_named_or_the_machines_own():
+    assert Wanted('arm').is_own('/arm/pose')
+    assert not Wanted('arm').is_own('/tf')
+    assert not Wanted('arm').is_own('/armed/pose')
+    assert Wanted('arm', ('pose', '/tf')).is_own('/tf')
+    assert not Wanted('arm', ('pose',)).is_own('/arm/setpoint')

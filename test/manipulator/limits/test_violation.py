@@ -11,6 +11,7 @@ from manipulator.limits.limit import Violation
         (3.92, 0.5236, 3.665, '3.92 rad outside [0.5236, 3.665]'),
         (-3.1415927, -3.1415926, 3.1415926, '-3.1415927 rad outside [-3.1415926, 3.1415926]'),
         (3.66519, 0.5236, 3.66518, '3.66519 rad outside [0.5236, 3.66518]'),
+        (0.1, 0.1, 1.0, '0.1 rad outside [0.1, 1]'),  # by less than a double shows
         (0.0211, 0.0234, float('inf'), '0.0211 rad below 0.0234'),
         (0.5, float('-inf'), 0.25, '0.5 rad above 0.25'),
     ],
