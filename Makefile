@@ -15,7 +15,7 @@ check: lint   # all that starts no other program
 	@$(PYTEST) -n auto --dist loadfile -m 'not processes'
 
 test: check
-	@$(PYTEST) -n auto --dist loadgroup -m processes
+	@$(PYTEST) -n auto --dist loadfile -m processes
 
 lint: $(ENV)/ready
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy
