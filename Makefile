@@ -18,7 +18,7 @@ check: lint   # all that starts no other program
 
 test: check
 	@echo 'Tests that start graphs, a browser, installations.'
-	@$(PYTEST) -n auto --dist loadgroup -m processes
+	@$(PYTEST) -n auto --dist loadfile -m processes
 
 lint: $(ENV)/ready
 	@echo 'Lint and types: half a minute.'

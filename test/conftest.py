@@ -35,18 +35,30 @@ os.environ['ROS_DOMAIN_ID'] = str(random.Random(RUN).sample(DOMAINS, len(DOMAINS
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
 
-@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the groups
 def pytest_collection_modifyitems(items):
-    """Marks what starts other programs: graphs, installations, a browser.
-
-    With `--dist loadgroup` a file of test/graph, or a folder, is one worker's: it shares a graph.
-    """
+    """Marks what starts other programs: graphs, installations, a browser."""
     for item in items:
-        place = item.path.relative_to(FOLDER)
-        if place.parts[0] in ('graph', 'install') or 'browser' in item.fixturenames:
+        folder = item.path.relative_to(FOLDER).parts[0]
+        if folder in ('graph', 'install') or 'browser' in item.fixturenames:
             item.add_marker('processes')
-            group = place if place.parent == Path('graph') else place.parent
-            item.add_marker(pytest.mark.xdist_group(str(group)))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """`--dist loadfile` keeps folders together as well, where their files share a graph."""
+    from xdist.scheduler import LoadFileScheduling  # noqa: PLC0415 (there where this is called)
+
+    class Scheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            return shared_place(Path(super()._split_scope(nodeid)))
+
+    return Scheduling(config, log) if config.getvalue('dist') == 'loadfile' else None
+
+
+def shared_place(file):
+    """The file, or its folder where that is one of test/graph, or test/install."""
+    folder = file.parent
+    return str(folder if 'graph' in folder.parts[:-1] or folder.name == 'install' else file)
 
 
 @pytest.fixture(scope='session')

@@ -192,13 +192,16 @@ def test_slow_moves_are_waited_for_and_what_stands_still_is_given_up(
     assert end(start('stop'))[0] == 0
 
 
-def test_stop_ends_a_move_and_the_tour_says_so(start, slowly, end):
-    tour = start('axis_tour', '--pause', 0)
-    assert tour.stdout.readline().startswith('x ±')
-    assert end(start('stop')) == (0, 'braking along the way, then holding\n')
-    status, said = end(tour)
-    assert status == 1
-    assert 'stopped' in said
+def test_stop_ends_a_move_and_the_tour_says_so(start, client, slowly, end):
+    def stop_on_tour():
+        tour = start('axis_tour', '--pause', 0)
+        assert tour.stdout.readline().startswith('x ±')
+        assert end(start('stop')) == (0, 'braking along the way, then holding\n')
+        status, said = end(tour)
+        assert status == 1
+        assert 'stopped' in said
+
+    client.persist(stop_on_tour)
 
 
 def test_emergency_stop_holds_until_it_is_cleared(start, client, reaches, end):

@@ -13,7 +13,7 @@ from std_srvs.srv import SetBool
 from hexarm.graph import Executable, Graph
 from hexarm.machines import find
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
-from patient_user import PatientUser
+from patient_user import SERVOS_ON, WITHOUT_BOARD, PatientUser
 
 NAMES = [f'crank_{i}' for i in range(1, 7)]
 SPACE = 'bridge_rig'
@@ -50,8 +50,7 @@ class Rig(PatientUser):
 
     def go_back_to_disarmed(self):
         """Whatever the last test left."""
-        away = ('not heard of', 'disconnected', 'booting')
-        self.wait('the board', lambda: self.machine_state.message not in away, 10.0)
+        self.wait('the board', lambda: self.machine_state.message not in WITHOUT_BOARD)
         self.trigger('serial_bridge/clear_fault')
         self.switch('serial_bridge/enable', False)
         self.wait_for_state('disarmed')
@@ -83,7 +82,10 @@ class Rig(PatientUser):
         assert abs(self.true_angle() - angle) < 0.02
 
     def make_ready(self):
-        """There is no trajectory node here that would say so."""
+        """Enabled again, where a stall lost the board; there is no trajectory node here."""
+        self.wait('the board', lambda: self.machine_state.message not in WITHOUT_BOARD)
+        if self.machine_state.message not in SERVOS_ON:
+            self.enable()
 
     def true_angle(self):
         self.true_joints.clear()

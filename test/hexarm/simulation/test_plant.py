@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from bridge.calibration import Calibration
-from bridge.fake.board_thread import FakeMachine
+from bridge.fake.servo import Servos
 from bridge.servo_config import BoardConfig
-from hexarm.board.plant import plant
+from hexarm.board.plant import fake_machine
 from hexarm.simulation.model import mechanism
 from hexarm.simulation.plant import MujocoPlant
 from manipulator.errors import InvalidInput
@@ -80,12 +80,12 @@ def test_time_that_was_missed_is_not_made_up_for(example):
 
 def test_the_fake_board_gets_it_by_name_and_tells_its_speed(example):
     config = BoardConfig.from_machine(example('robocake').file)
-    fake = FakeMachine.from_config(config, 0.0, 0.0)
     heard = []
-    assert plant('servo', 'robocake', fake, heard.append) is fake
-    moved = plant('mujoco', 'robocake', fake, heard.append)
+    fake = fake_machine('robocake', config, 0.0, 0.0, 'servo', heard.append)
+    assert isinstance(fake.servos, Servos)
+    moved = fake_machine('robocake', config, 0.0, 0.0, 'mujoco', heard.append)
     for _ in range(210):
         moved.step(0.05)
     assert re.fullmatch(r'mujoco: \d+ times as fast as real time', heard[0])
     with pytest.raises(InvalidInput, match="plant: 'gazebo' is not one of"):
-        plant('gazebo', 'robocake', fake, heard.append)
+        fake_machine('robocake', config, 0.0, 0.0, 'gazebo', heard.append)

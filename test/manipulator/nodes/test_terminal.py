@@ -7,7 +7,7 @@ import termios
 
 import pytest
 
-from manipulator import device_executables
+from hexarm.nodes import keyboard_teleop
 from manipulator.errors import InvalidInput
 from manipulator.nodes.keyboard_teleop_node import Terminal
 
@@ -78,7 +78,7 @@ def test_no_terminal_is_said_in_one_line_and_status_1(monkeypatch, capsys, signa
     monkeypatch.setattr('sys.stdin', (tmp_path / 'script').open())
     with pytest.raises(InvalidInput, match='standard input is none'):
         Terminal()
-    assert device_executables.keyboard_teleop() == 1
+    assert keyboard_teleop() == 1
     said = 'keyboard_teleop: needs a terminal to read keys from, standard input is none\n'
     assert capsys.readouterr().err == said
 
@@ -86,6 +86,6 @@ def test_no_terminal_is_said_in_one_line_and_status_1(monkeypatch, capsys, signa
 def test_a_bad_parameter_is_said_and_the_terminal_is_as_before(monkeypatch, capsys, signals, desk):
     arguments = ['keyboard_teleop', '--ros-args', '-p', 'rate:=1.0']
     monkeypatch.setattr('sys.argv', arguments)
-    assert device_executables.keyboard_teleop() == 1
+    assert keyboard_teleop() == 1
     assert 'rate' in capsys.readouterr().err
     assert desk.is_as_before()
