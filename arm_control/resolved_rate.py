@@ -102,7 +102,7 @@ class ResolvedRate:
 
     Near a singular posture (σ below `onset`) the tool keeps to its commanded line and stops where
     it cannot. Where `slides`, its motion is damped there instead, and bends off the line. The
-    twist's own speed limits are the business of manipulator/teleop/speed_limits.py.
+    twist's own speed limits are the business of manipulator/teleop/jogger.py.
     """
 
     arm: SerialArm

@@ -82,7 +82,7 @@ def test_tests_know_nothing_of_the_bench_but_those_of_the_bench_itself():
 
 CONTROLLING = (
     *(path for path in (ROOT / 'manipulator' / 'nodes').glob('*.py')),
-    *(path for path in (ROOT / 'bridge').glob('*_node.py')),
+    *(path for path in (ROOT / 'bridge').rglob('*_node.py')),
     *(ROOT / room / 'load.py' for room in ('hexapod_control', 'arm_control')),
 )
 
@@ -109,7 +109,7 @@ def test_nothing_that_controls_a_machine_can_come_to_import_scipy():
         assert 'scipy' not in imports(path), path.relative_to(ROOT)
         waiting |= files_imported(path) - seen
     assert ROOT / 'manipulator' / 'trajectory' / 'planner.py' in seen
-    assert ROOT / 'arm_control' / 'arm_jogger.py' in seen
+    assert ROOT / 'arm_control' / 'resolved_rate.py' in seen
 
 
 def test_scipy_is_imported_where_it_is_used():

@@ -48,7 +48,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(words: list[str] | None = None) -> int:
-    """Runs one subcommand; see hexarm/cli/statuses.py for what it returns."""
+    """Runs one subcommand; see hexarm/cli/answers.py for what it returns."""
     try:
         try:
             return _explained(words)

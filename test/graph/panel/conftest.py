@@ -212,3 +212,4 @@ class Seen:
         self.client.trigger('trajectory/start_cycle')
         self.client.wait('the cycle', lambda: self.client.motion('mode') == 'cycle')
         self.client.wait('motion', lambda: np.abs(self.way()).max() > CYCLED)
+        self.client.spin(1.0)
