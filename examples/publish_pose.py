@@ -21,8 +21,8 @@ from geometry_msgs.msg import PoseStamped
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from manipulator.errors import ManipulatorError
-from manipulator.formatting import check_turns
 from manipulator.pose import Pose
+from manipulator.unit_hints import check_turns
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 JOINS_WITHIN = 10.0

@@ -29,5 +29,7 @@ def nobody_in(namespace: str, there: Collection[str], domain: int) -> str:
 def namespace_of(word: str) -> str:
     """Without slashes at its ends; an argument error for what ROS would not accept."""
     if NAMESPACE.fullmatch(word) is None:
-        raise argparse.ArgumentTypeError(f'{shown(word)} is no ROS name: letters, digits, _ and /')
+        raise argparse.ArgumentTypeError(
+            f'{shown(word)} is not a ROS name: letters, digits, _ and /'
+        )
     return word.strip('/')

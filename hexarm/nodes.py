@@ -111,7 +111,8 @@ def gamepad() -> int:
 
 def keyboard_teleop() -> int:
     """Runs the node from a terminal's keys to jog commands."""
-    from manipulator.nodes.keyboard_teleop_node import KeyboardTeleop, Terminal
+    from manipulator.nodes.keyboard_teleop_node import KeyboardTeleop
+    from manipulator.nodes.terminal import Terminal
 
     signal.signal(signal.SIGHUP, signal.SIG_IGN)  # a closed window is seen when reading
     try:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from manipulator.formatting import INSTALL
+from manipulator.requirements import INSTALL
 
 ROOT = Path(__file__).resolve().parents[1]
 

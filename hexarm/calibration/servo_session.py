@@ -12,7 +12,7 @@ from bridge.servo_config import ServoConfig
 from bridge.servo_walk import ServoWalk, Stage
 from hexarm.calibration.servo_line import ServoLine
 from manipulator.errors import LinkError, ManipulatorError, Refused
-from manipulator.nodes.keyboard_teleop_node import Terminal
+from manipulator.nodes.terminal import Terminal
 from manipulator.teleop.key_names import key_names
 
 HELP = """\

@@ -24,12 +24,12 @@ from bridge.servo_walk import ServoWalk, Stage
 from hexarm.calibration.machine_writer import MachineWriter
 from hexarm.calibration.servo_line import SIGNALS, ServoLine, changed_values, in_words
 from hexarm.calibration.servo_session import POSITIVE, Sitting
-from hexarm.cli.answers import INTERRUPTED
+from hexarm.cli.statuses import INTERRUPTED
 from hexarm.machines import read
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.formatting import counted, shown
-from manipulator.nodes.keyboard_teleop_node import Terminal
+from manipulator.nodes.terminal import Terminal
 from manipulator.yaml_edit import with_values
 
 MOST_OFF_US = 60.0

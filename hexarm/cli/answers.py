@@ -1,7 +1,4 @@
-"""How subcommands take numbers and answer: a table for people, JSON for programs, 2 for no.
-
-Exit statuses of the `hexarm` command; 0 is good, 1 that something failed.
-"""
+"""How subcommands take numbers and answer: a table for people, JSON for programs, 2 for no."""
 
 import argparse
 import json
@@ -11,22 +8,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from hexarm.cli.statuses import REFUSED
 from manipulator.errors import ManipulatorError
-from manipulator.formatting import check_turns
 from manipulator.pose import Pose
-
-REFUSED = 2
-"""A refusal, or a question that was not understood."""
-
-OUT_OF_REACH = 3
-"""The answer no of `hexarm reach`: a script tells it from a question that was not understood."""
-
-PIPE_CLOSED = 141
-"""Whoever read the output has gone, as in `hexarm … | head`; by the shells' rule for SIGPIPE."""
-
-INTERRUPTED = 130
-"""Ctrl-C, by the shells' own rule."""
-
+from manipulator.unit_hints import check_turns
 
 PICTURES = ('.png', '.svg', '.pdf', '.jpg')
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hexarm.cli.answers import REFUSED
+from hexarm.cli.statuses import REFUSED
 from hexarm.machine_check import Report, report_of
 from hexarm.machines import find, text_of
 from manipulator.config import parse_yaml

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from hexarm.cli.answers import INTERRUPTED, picture_file
+from hexarm.cli.answers import picture_file
+from hexarm.cli.statuses import INTERRUPTED
 from hexarm.cli.up import Interrupted, StopSignal, check_alive
 from hexarm.demo.recording import Curve, Observation, Result, measure
 from hexarm.graph import Executable, Graph, link_folder, machine_graph

@@ -10,9 +10,10 @@ from hexarm.cli.answers import Answer, add_machine, answering
 from hexarm.machines import load
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, NoSolution
-from manipulator.formatting import check_turns, counted
+from manipulator.formatting import counted
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.unit_hints import check_turns
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:

@@ -9,9 +9,9 @@ import numpy as np
 from hexarm.cli.answers import Answer, add_machine, add_pose, answering, pose_asked
 from hexarm.machines import load
 from manipulator.arrays import Array
-from manipulator.formatting import hint_at_metres
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.unit_hints import hint_at_metres
 
 
 @runtime_checkable

@@ -14,9 +14,9 @@ from hexarm.cli.answers import Answer, add_machine, answering
 from hexarm.machines import load
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
-from manipulator.formatting import hint_at_metres
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.unit_hints import hint_at_metres
 
 MOST_STEPS = 10_000
 SHOWN = 10

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from hexarm.cli.answers import INTERRUPTED, REFUSED
+from hexarm.cli.statuses import INTERRUPTED, REFUSED
 from hexarm.cli.up import Interrupted, StopSignal
 from hexarm.namespaces import NobodyThere, namespace_of, nobody_in
 from manipulator.errors import Refused

@@ -10,9 +10,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import NoReturn
 
-from hexarm.cli.answers import INTERRUPTED, PIPE_CLOSED, REFUSED
+from hexarm.cli.statuses import INTERRUPTED, PIPE_CLOSED, REFUSED
 from manipulator.errors import ManipulatorError
-from manipulator.formatting import missing
+from manipulator.requirements import missing
 
 EXAMPLES = """\
 examples:
@@ -48,7 +48,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(words: list[str] | None = None) -> int:
-    """Runs one subcommand; see hexarm/cli/answers.py for what it returns."""
+    """Runs one subcommand; see hexarm/cli/statuses.py for what it returns."""
     try:
         try:
             return _explained(words)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from hexarm.cli.up import Interrupted, StopSignal
 from hexarm.namespaces import namespace_of, nobody_in
-from manipulator.nodes.keyboard_teleop_node import Terminal
+from manipulator.nodes.terminal import Terminal
 
 if TYPE_CHECKING:
     from rich.console import Group

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from hexarm.cli.answers import (
-    OUT_OF_REACH,
     Answer,
     Lines,
     add_machine,
@@ -16,6 +15,7 @@ from hexarm.cli.answers import (
     answering,
     pose_asked,
 )
+from hexarm.cli.statuses import OUT_OF_REACH
 from hexarm.machines import load
 from manipulator.analysis.explain import pose_in_words
 from manipulator.analysis.nearest import nearest_reachable

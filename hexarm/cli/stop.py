@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol
 
 from bridge.stop_socket import domain_here, send_stop, stop_address
-from hexarm.cli.answers import REFUSED
+from hexarm.cli.statuses import REFUSED
 from hexarm.namespaces import NobodyThere, namespace_of, nobody_in
 
 if TYPE_CHECKING:

@@ -20,8 +20,9 @@ from rclpy.utilities import try_shutdown
 
 from hexarm.cli.up import Interrupted
 from hexarm.recording.bag import Bag, Topic
+from hexarm.recording.qualities import hearing, offered
 from hexarm.recording.telling import UnknownType
-from hexarm.recording.topics import Wanted, hearing, offered, unheard
+from hexarm.recording.topics import Wanted, unheard
 
 
 class Listener:

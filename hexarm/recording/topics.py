@@ -1,17 +1,11 @@
 """Which topics a recording wants, and from when on it may listen to them.
 
-With which quality of service a topic is heard, and how a recording tells what was offered.
-
 What a recorder says of topics that it did not hear: misspelt, silent, or no machine at all.
 """
 
 import difflib
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
-
-import yaml
-from rclpy.duration import Duration
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from hexarm.namespaces import nobody_in
 
@@ -70,49 +64,6 @@ class Wanted:
             self._since.pop(topic, None)
             return False
         return now - self._since.setdefault(topic, now) >= SETTLED
-
-
-DEPTH = 500
-"""Messages that may wait: half a second of the fastest topic on a busy computer."""
-
-
-def hearing(publishers: Sequence[QoSProfile], listeners: Sequence[QoSProfile]) -> QoSProfile:
-    """What every publisher can serve; before there is one, what it must offer its listeners."""
-    offers = publishers or listeners
-    every = all if publishers else any
-    is_reliable = every(o.reliability == ReliabilityPolicy.RELIABLE for o in offers)
-    is_latched = every(o.durability == DurabilityPolicy.TRANSIENT_LOCAL for o in offers)
-    return QoSProfile(
-        depth=DEPTH,
-        reliability=ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if is_latched else DurabilityPolicy.VOLATILE,
-    )
-
-
-def offered(publishers: Sequence[QoSProfile]) -> str:
-    """The publishers' profiles as YAML with the names of rosbag2's metadata, version 9."""
-    different = {str(told): told for told in map(_told, publishers)}
-    return yaml.safe_dump(list(different.values()), sort_keys=False) if different else ''
-
-
-def _told(profile: QoSProfile) -> dict[str, object]:
-    # Discovery tells neither history nor depth: one that has to keep a message says so.
-    return {
-        'history': 'keep_last',
-        'depth': max(profile.depth, 1),
-        'reliability': profile.reliability.name.lower(),
-        'durability': profile.durability.name.lower(),
-        'deadline': _span(profile.deadline),
-        'lifespan': _span(profile.lifespan),
-        'liveliness': profile.liveliness.name.lower(),
-        'liveliness_lease_duration': _span(profile.liveliness_lease_duration),
-        'avoid_ros_namespace_conventions': bool(profile.avoid_ros_namespace_conventions),
-    }
-
-
-def _span(duration: Duration) -> dict[str, int]:
-    sec, nsec = divmod(duration.nanoseconds, 10**9)
-    return {'sec': sec, 'nsec': nsec}
 
 
 NEAREST = 3

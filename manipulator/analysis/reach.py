@@ -9,9 +9,9 @@ from manipulator.analysis.slope import slopes
 from manipulator.analysis.way import is_connected
 from manipulator.arrays import Array
 from manipulator.errors import Unreachable
-from manipulator.formatting import hint_at_metres
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.unit_hints import hint_at_metres
 
 
 @dataclass(frozen=True)

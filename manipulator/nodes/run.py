@@ -18,7 +18,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from manipulator.errors import ManipulatorError
-from manipulator.formatting import missing
+from manipulator.requirements import missing
 
 GOODBYE = 3.0
 """Seconds that nodes may take to leave the graph once they have closed what they hold."""

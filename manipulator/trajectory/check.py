@@ -8,12 +8,12 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.continuity import first_jump
 from manipulator.errors import Refused, Unreachable
-from manipulator.formatting import hint_at_metres
 from manipulator.limits.constraints import Constraints
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.worker import Effort
+from manipulator.unit_hints import hint_at_metres
 
 TOLERANCE = 1.005
 

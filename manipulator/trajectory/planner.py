@@ -7,7 +7,6 @@ import numpy as np
 
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused, Unreachable
-from manipulator.formatting import hint_at_metres
 from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
@@ -19,6 +18,7 @@ from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.point_to_point import plan_move, plan_straight
 from manipulator.trajectory.worker import Effort, TooLong
+from manipulator.unit_hints import hint_at_metres
 
 ATTEMPTS = 8
 MARGIN = 1.01

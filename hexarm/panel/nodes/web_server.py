@@ -37,7 +37,8 @@ from websockets.http11 import Request, Response
 from hexarm.panel.joystick import Joystick, answer, heard
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
-from manipulator.formatting import INSTALL, shown
+from manipulator.formatting import shown
+from manipulator.requirements import INSTALL
 
 
 def refusal(host: str, origin: str | None, own_names: Collection[str]) -> str:

@@ -132,7 +132,7 @@ def test_topics_are_those_of_the_document(page, user, interfaces):
 
 
 def test_the_page_is_worth_a_picture(open_page, page, panel, machine, tmp_path):
-    """That of README.md and docs/panel.md, with all pixels, is kept where WRITE_SCREENSHOT says."""
+    """README.md's and docs/panel.md's, with all pixels, is kept where WRITE_SCREENSHOT says."""
     path = os.environ.get('WRITE_SCREENSHOT')
     shown = open_page(panel, (1280, 760), pixels=1.0) if path else page
     path = path or str(tmp_path / 'panel.png')

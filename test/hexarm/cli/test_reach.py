@@ -3,8 +3,8 @@ import json
 import numpy as np
 import pytest
 
-from hexarm.cli.answers import OUT_OF_REACH
 from hexarm.cli.main import main
+from hexarm.cli.statuses import OUT_OF_REACH
 from hexarm.machines import load
 from manipulator.pose import Pose
 

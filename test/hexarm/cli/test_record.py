@@ -11,7 +11,7 @@ from hexarm.cli.main import main
         (['-o', 'run.bag'], 'run.bag: a recording ends in .mcap'),
         (['--for', '0'], '0: needs a number of seconds above 0'),
         (['--for', 'ever'], 'ever: needs a number of seconds above 0'),
-        (['bad name'], "'bad name' is no ROS name"),
+        (['bad name'], "'bad name' is not a ROS name"),
     ],
 )
 def test_arguments_that_make_no_sense(words, reason, capsys):

@@ -9,7 +9,7 @@ import pytest
 
 from hexarm.nodes import keyboard_teleop
 from manipulator.errors import InvalidInput
-from manipulator.nodes.keyboard_teleop_node import Terminal
+from manipulator.nodes.terminal import Terminal
 
 
 class Desk:
