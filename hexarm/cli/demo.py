@@ -14,7 +14,7 @@ import numpy as np
 from hexarm.cli.answers import picture_file
 from hexarm.cli.statuses import INTERRUPTED
 from hexarm.cli.up import Interrupted, StopSignal, check_alive
-from hexarm.demo.recording import Curve, Observation, Result, measure
+from hexarm.demo.report import Curve, Observation, Result, measure
 from hexarm.graph import Executable, Graph, link_folder, machine_graph
 from hexarm.machines import load
 from hexarm.panel_process import offered_panel

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from mpl_toolkits.mplot3d import Axes3D
 
 from hexarm.demo.arm_report import ArmResult
-from hexarm.demo.recording import Result
+from hexarm.demo.report import Result
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 

@@ -132,10 +132,10 @@ def test_topics_are_those_of_the_document(page, user, interfaces):
 
 
 def test_the_page_is_worth_a_picture(open_page, page, panel, machine, tmp_path):
-    """README.md's and docs/panel.md's, with all pixels, is kept where WRITE_SCREENSHOT says."""
-    path = os.environ.get('WRITE_SCREENSHOT')
-    shown = open_page(panel, (1280, 760), pixels=1.0) if path else page
-    path = path or str(tmp_path / 'panel.png')
+    """Kept with all pixels, for README.md and docs/panel.md, where WRITE_SCREENSHOT says."""
+    kept = os.environ.get('WRITE_SCREENSHOT')
+    shown = open_page(panel, (1280, 760), pixels=1.0) if kept else page
+    path = kept or str(tmp_path / 'panel.png')
     machine.client.trigger('trajectory/start_cycle')
     machine.client.spin(3.0)
     machine.client.trigger('trajectory/stop')
@@ -146,10 +146,12 @@ def test_the_page_is_worth_a_picture(open_page, page, panel, machine, tmp_path):
     shown.page.screenshot(path=path)
     colours = np.asarray(Image.open(path).convert('RGB'), dtype=int).reshape(-1, 3)
     red, green, blue = colours.T
-    scene = {'green legs': green - red > 40, 'an amber leg': (red - blue > 60) & (green > 120)}
-    scene |= {'STOP': (red > 180) & (green < 80), 'the platform': blue - red > 50}
+    scene = {'green legs': green - red > 40, 'the platform': blue - red > 50}
+    scene |= {'STOP': (red > 180) & (green < 80)}
+    if kept:  # few pixels do not show it
+        scene |= {'an amber leg': (red - blue > 60) & (green > 120)}
     shares = {what: np.mean(which) for what, which in scene.items()}
-    assert all(share > 0.0005 for share in shares.values()), shares
+    assert all(share > 0.001 for share in shares.values()), shares
 
 
 def close_notes(page):
