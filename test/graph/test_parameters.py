@@ -19,7 +19,7 @@ NAMESPACE = 'described'
 FOREIGN = ('use_sim_time', 'start_type_description_service', 'qos_overrides')
 """rclpy's own."""
 PORTS = {'fake_hardware': 'link', 'serial_bridge': 'port'}
-COMPANIONS = ('serial_bridge_stop', 'serial_bridge_programs')
+COMPANIONS = ('serial_bridge_stop',)
 """Nodes that others start for themselves, with no parameters of their own."""
 
 

@@ -26,7 +26,6 @@ NODES = (
     'pose',
     'serial_bridge',
     'serial_bridge_stop',
-    'serial_bridge_programs',
 )
 OURS = '/hexapod/'
 KINEMATICS = load('robocake').kinematics

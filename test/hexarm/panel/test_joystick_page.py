@@ -86,7 +86,7 @@ class Panel:
         self._browser = browser
         self._socket = JoystickSocket(lambda: '')
         self._server = start_server('127.0.0.1', port, 'joystick', self._socket.serve)
-        html = (folder / 'panel' / 'joystick.html').read_text(encoding='utf-8')
+        html = (folder / 'hexarm' / 'panel' / 'joystick.html').read_text(encoding='utf-8')
         self._server.gui.add_html(joystick_frame(html))
 
     def open_page(self):
