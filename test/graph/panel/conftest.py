@@ -1,5 +1,6 @@
 """The panel's page in a real browser, and what sees the machine move, for any machine."""
 
+import contextlib
 import time
 from dataclasses import replace
 
@@ -10,6 +11,7 @@ from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
 from hexarm.panel_process import panel_address
+from manipulator.errors import Refused
 from manipulator.nodes.messages import pose_of, seconds
 
 SMALL = 0.1
@@ -207,9 +209,17 @@ class Seen:
             while not is_so() and time.monotonic() < until:
                 self.client.spin(0.1)
 
+    def start_cycle(self):
+        """Asked again where a slider of a page that is behind asked for something newer."""
+
+        def ask():
+            with contextlib.suppress(Refused):
+                self.client.trigger('trajectory/start_cycle')
+
+        self.asked_until(ask, lambda: self.client.motion('mode') == 'cycle')
+
     def _cycle(self):
         self.begin()
-        self.client.trigger('trajectory/start_cycle')
-        self.client.wait('the cycle', lambda: self.client.motion('mode') == 'cycle')
+        self.start_cycle()
         self.client.wait('motion', lambda: np.abs(self.way()).max() > CYCLED)
         self.client.spin(1.0)

@@ -136,7 +136,7 @@ def test_the_page_is_worth_a_picture(open_page, page, panel, machine, tmp_path):
     kept = os.environ.get('WRITE_SCREENSHOT')
     shown = open_page(panel, (1280, 760), pixels=1.0) if kept else page
     path = kept or str(tmp_path / 'panel.png')
-    machine.client.trigger('trajectory/start_cycle')
+    machine.start_cycle()
     machine.client.spin(3.0)
     machine.client.trigger('trajectory/stop')
     machine.client.wait('rest', lambda: machine.client.motion('mode') == 'hold')
