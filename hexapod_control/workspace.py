@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from manipulator import rotation as so3
-from manipulator.arrays import Mask
+from manipulator.arrays import Array, Mask
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
@@ -77,14 +77,20 @@ def _walked(machine: Machine, pose: Pose, generator: np.random.Generator, length
     twist /= np.sqrt((twist * twist).sum(axis=1, keepdims=True))
     twist *= generator.uniform(0.0, CHECKS_PER_STEP / CHECKS_PER_LENGTH * length, (walkers, 1))
     twist[:, 3:] /= length
-    free = np.arange(walkers)
-    for part in range(CHECKS_PER_STEP, 0, -1):
-        there = pose[free].moved(twist[free] * (part / CHECKS_PER_STEP))
-        free = free[admits(machine, there)]
+    end = pose.moved(twist)
+    free = np.flatnonzero(admits(machine, end))
+    free = free[_is_path_free(machine, pose[free], twist[free])]
     position, rotation = pose.position.copy(), pose.rotation.copy()
-    moved = pose[free].moved(twist[free])
-    position[free], rotation[free] = moved.position, moved.rotation
+    position[free], rotation[free] = end.position[free], end.rotation[free]
     return Pose(position, rotation)
+
+
+def _is_path_free(machine: Machine, pose: Pose, twist: Array) -> Mask:
+    """Which of N paths (N, 6) are admitted everywhere between their begin and their end."""
+    parts = np.arange(1, CHECKS_PER_STEP)[:, None] / CHECKS_PER_STEP
+    path = pose[:, None].moved(parts * twist[:, None])
+    poses = Pose.unchecked(path.position.reshape(-1, 3), path.rotation.reshape(-1, 3, 3))
+    return np.asarray(admits(machine, poses).reshape(-1, len(parts)).all(axis=1))
 
 
 def _travel(machine: Machine, axis: int, step: float) -> float:
