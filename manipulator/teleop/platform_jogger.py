@@ -39,17 +39,18 @@ class PlatformJogger:
         held_by = ''
         for first, last in ((0, 1), (1, len(SCALES))):
             ways = self._ways(motion, aims[first:last], dt)
-            is_fit = ways.fits(self.machine, constraints, motion, dt)
-            if first == 0 and not is_fit[0]:
+            inside = constraints.admits(ways.poses, ways.joints)
+            if first == 0 and not ways.fit(inside)[0]:
                 # Stretched limits let more through: they matter where something is in the way.
                 constraints = constraints.stretched_to(motion.pose, motion.joints)
                 if constraints is not self.machine.constraints:
-                    is_fit = ways.fits(self.machine, constraints, motion, dt)
+                    inside = constraints.admits(ways.poses, ways.joints)
+            is_fit = ways.fit(inside)
             if is_fit.any():
                 chosen = int(np.argmax(is_fit))
                 scale = float(SCALES[first + chosen])
                 return self._moved(motion, aims[first + chosen], dt, scale, held_by)
-            held_by = held_by or ways.obstacle(self.machine, constraints, motion, dt)
+            held_by = held_by or ways.obstacle(self.machine, constraints, inside[0])
         ticks = _braking_ticks(motion.twist, self.machine, dt)
         return self._moved(motion, motion.twist * (1.0 - 1.0 / ticks), dt, 0.0, held_by)
 
@@ -74,53 +75,50 @@ class PlatformJogger:
             motion.pose.position + gone[..., :3],
             so3.exp(gone[..., 3:]) @ motion.pose.rotation,
         )
-        return _Ways(poses, self.machine.kinematics.inverse_or_nan(poses, motion.joints))
+        joints = self.machine.kinematics.inverse_or_nan(poses, motion.joints)
+        return _Ways(poses, joints, *self._excess(motion, joints, dt))
+
+    def _excess(self, motion: JogMotion, joints: Array, dt: float) -> tuple[Array, Array]:
+        """Speeds and accelerations of joints (k, ticks, n) from now on, over their limits."""
+        k, _, n = joints.shape
+        start = np.broadcast_to(motion.joints, (k, 1, n))
+        rates = np.diff(joints, axis=1, prepend=start) / dt
+        before = np.broadcast_to(motion.rates, (k, 1, n))
+        changes = np.diff(rates, axis=1, prepend=before) / dt
+        limits = self.machine.motion.joint
+        return np.abs(rates) / limits.speed, np.abs(changes) / limits.acceleration
 
 
 @dataclass(frozen=True, eq=False)
 class _Ways:
-    """Poses (k, ticks) of k ways to rest, and their joints."""
+    """Poses (k, ticks) of k ways to rest, and their joints (k, ticks, n).
+
+    speeds and accelerations are those of the joints, as parts of what is allowed.
+    """
 
     poses: Pose
     joints: Array
+    speeds: Array
+    accelerations: Array
 
-    def fits(
-        self, machine: 'Machine', constraints: Constraints, motion: JogMotion, dt: float
-    ) -> Mask:
-        """Which of the k ways keep the constraints and the joints' limits."""
-        speed, acceleration = self._excess(machine, motion, dt)
-        inside = constraints.admits(self.poses, self.joints)
-        slow_enough = (speed <= 1.0).all(axis=-1) & (acceleration <= 1.0).all(axis=-1)
+    def fit(self, inside: Mask) -> Mask:
+        """Which of the k ways keep the joints' limits, and the constraints that `inside` tells."""
+        slow_enough = (self.speeds <= 1.0).all(axis=-1) & (self.accelerations <= 1.0).all(axis=-1)
         result: Mask = np.asarray((inside & slow_enough).all(axis=-1), dtype=np.bool_)
         return result
 
-    def obstacle(
-        self, machine: 'Machine', constraints: Constraints, motion: JogMotion, dt: float
-    ) -> str:
-        """What holds the first of the ways back, in words."""
-        inside = constraints.admits(self.poses[0], self.joints[0])
+    def obstacle(self, machine: 'Machine', constraints: Constraints, inside: Mask) -> str:
+        """What holds the first of the ways back, in words; inside: which ticks of it are."""
         if not inside.all():
             first = int(np.argmin(inside))
             found = constraints.violations(self.poses[0][first], self.joints[0, first])[0]
             return f'{found.quantity} of {found.owner}' if found.owner else found.quantity
         names = machine.kinematics.joint_names
-        for what, excess in zip(
-            ('speed', 'acceleration'), self._excess(machine, motion, dt), strict=True
-        ):
+        for what, excess in (('speed', self.speeds), ('acceleration', self.accelerations)):
             worst = excess[0].max(axis=0)
             if worst.max() > 1.0:
                 return f'{what} of {names[int(np.argmax(worst))]}'
         return ''
-
-    def _excess(self, machine: 'Machine', motion: JogMotion, dt: float) -> tuple[Array, Array]:
-        """Speeds and accelerations (k, ticks, n) of the joints, over their limits."""
-        k, _, n = self.joints.shape
-        start = np.broadcast_to(motion.joints, (k, 1, n))
-        rates = np.diff(self.joints, axis=1, prepend=start) / dt
-        before = np.broadcast_to(motion.rates, (k, 1, n))
-        changes = np.diff(rates, axis=1, prepend=before) / dt
-        limits = machine.motion.joint
-        return np.abs(rates) / limits.speed, np.abs(changes) / limits.acceleration
 
 
 def _braking_ticks(twist: Array, machine: 'Machine', dt: float) -> Array:
