@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from typing import Any, TypeVar
 
 import yaml
+from yaml.composer import Composer
 
 from manipulator.errors import ConfigError
 from manipulator.formatting import shortened, shown
@@ -40,7 +41,7 @@ def parse_yaml(text: str, source: str = '') -> dict[str, Any]:
             [f'{len(text)} characters, a machine file has at most {MAX_CHARACTERS}'], source
         )
     try:
-        content = yaml.load(text, Loader=_StrictLoader)
+        content = _content(text)
     except yaml.YAMLError as error:
         raise ConfigError([_short(error)], source) from error
     except (ValueError, TypeError, OverflowError) as error:
@@ -76,12 +77,20 @@ def build_both(
     return typing.cast(tuple[T, U], results)
 
 
-class _StrictLoader(yaml.SafeLoader):
-    """A SafeLoader that refuses aliases (no anchor bombs) and repeated keys."""
+def _content(text: str) -> object:
+    """What the text holds: read quickly, or else slowly, for an error that shows the line."""
+    try:
+        return yaml.load(text, Loader=_QuickLoader)
+    except (yaml.YAMLError, ValueError, TypeError, OverflowError, RecursionError):
+        return yaml.load(text, Loader=_StrictLoader)
+
+
+class _Strict(Composer):
+    """Refuses aliases (no anchor bombs) and repeated keys."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        if self.check_event(yaml.AliasEvent):
-            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
+        if self.check_event(yaml.AliasEvent):  # type: ignore[attr-defined]
+            mark = self.peek_event().start_mark  # type: ignore[attr-defined]
             raise yaml.YAMLError(f'line {mark.line + 1}: aliases are not allowed')
         return super().compose_node(parent, index)
 
@@ -93,7 +102,23 @@ class _StrictLoader(yaml.SafeLoader):
                 raise yaml.YAMLError(f'line {line}: key {shown(key_node.value)} stands twice')
             if isinstance(key_node.value, str):
                 seen.add(key_node.value)
-        return super().construct_mapping(node, deep)
+        mapping: dict[Any, Any] = super().construct_mapping(node, deep)  # type: ignore[misc]
+        return mapping
+
+
+class _StrictLoader(_Strict, yaml.SafeLoader):
+    """In Python, which tells best what is wrong."""
+
+
+_Events: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
+
+
+class _QuickLoader(_Strict, _Events):  # type: ignore[misc]
+    """On libyaml, where PyYAML has it: several times as fast."""
+
+    def __init__(self, stream: str) -> None:
+        _Events.__init__(self, stream)
+        Composer.__init__(self)
 
 
 def _convert(wanted: Any, value: object, where: str, problems: list[str]) -> Any:

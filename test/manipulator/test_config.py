@@ -1,10 +1,14 @@
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 import pytest
 
+from manipulator import config
 from manipulator.config import build, build_both, parse_yaml, quantity
 from manipulator.errors import ConfigError
+
+CONFIG = Path(__file__).parents[2] / 'config'
 
 
 @dataclass(frozen=True)
@@ -34,6 +38,17 @@ def problems(text):
     with pytest.raises(ConfigError) as error:
         build(Machine, parse_yaml(text))
     return error.value.problems
+
+
+def test_a_mistake_of_syntax_is_shown_in_its_line():
+    assert 'line 2, column 3: b: 2 ^' in problems('a: 1\n b: 2')[0]
+
+
+@pytest.mark.parametrize('path', sorted(CONFIG.glob('*.yaml')), ids=lambda path: path.stem)
+def test_files_hold_the_same_with_libyaml_and_without(path, monkeypatch):
+    found = parse_yaml(path.read_text())
+    monkeypatch.setattr(config, '_QuickLoader', config._StrictLoader)
+    assert parse_yaml(path.read_text()) == found
 
 
 def test_good_file_becomes_frozen_values():
