@@ -27,6 +27,7 @@ FLAGS = [
 ]
 
 FOLDER = Path(__file__).parent
+STARTS_OTHERS = {'browser', 'sit_down'}
 DOMAINS = range(1, 101)
 
 RUN = os.environ.get('PYTEST_XDIST_TESTRUNUID', str(os.getpid()))
@@ -39,7 +40,7 @@ def pytest_collection_modifyitems(items):
     """Marks what starts other programs: graphs, installations, a browser."""
     for item in items:
         folder = item.path.relative_to(FOLDER).parts[0]
-        if folder in ('graph', 'install') or 'browser' in item.fixturenames:
+        if folder in ('graph', 'install') or STARTS_OTHERS & set(item.fixturenames):
             item.add_marker('processes')
 
 

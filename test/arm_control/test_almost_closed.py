@@ -10,6 +10,7 @@ from arm_control.numerical import AlmostClosed, Numerical
 from hexarm.machines import load
 from manipulator.errors import Unreachable
 from manipulator.pose import Pose
+from sampling import enough
 
 LENGTH, ANGLE = 5e-4, np.radians(1.0)
 
@@ -38,7 +39,7 @@ def apart(branches, joints):
 
 def test_the_joints_that_made_a_pose_are_among_its_branches(arm):
     assert isinstance(arm.method, AlmostClosed)
-    joints = some_joints(arm, 1000)
+    joints = some_joints(arm, enough(300, 1000))
     branches = arm.method.branches(arm.chain.forward(joints), joints * 0.0 + arm.rest)
     assert (apart(branches, joints) < 1e-5).mean() > 0.97
 
@@ -55,7 +56,7 @@ def test_every_branch_leads_to_the_pose_and_none_stands_twice(arm):
 
 
 def test_at_the_edge_where_the_drawn_arm_does_not_reach_it_still_does(arm):
-    joints = some_joints(arm, 200)
+    joints = some_joints(arm, enough(60, 200))
     joints[:, 2] = 0.0 if arm.limits.low[2] < 0.0 < arm.limits.high[2] else arm.rest[2]
     poses = arm.chain.forward(joints)
     out_of_drawn_reach = np.isnan(arm.method.ideal.branches(poses, joints)).all(axis=(-1, -2))

@@ -9,6 +9,7 @@ from hexapod_control import load
 from hexapod_control.workspace import sample
 from manipulator.config import build, parse_yaml
 from manipulator.machine import MachineFile
+from sampling import enough
 
 ROBOCAKE = Path(__file__).parents[2] / 'config' / 'robocake.yaml'
 
@@ -30,8 +31,8 @@ def hexapod(robocake):
 
 @pytest.fixture(scope='session')
 def many(robocake):
-    """10,000 poses of the whole workspace."""
-    return sample(robocake, 10_000, np.random.default_rng(1))
+    """Poses of the whole workspace."""
+    return sample(robocake, enough(3000, 10_000), np.random.default_rng(1))
 
 
 @pytest.fixture(scope='session')

@@ -8,6 +8,7 @@ from hexapod_control.linear_geometry import joint_circle
 from manipulator import rotation as so3
 from manipulator.errors import InvalidInput, NoSolution
 from manipulator.pose import Pose
+from sampling import enough
 
 # P. Dietmaier, The Stewart-Gough platform of general geometry can have 40 real postures, 1998.
 DIETMAIER_BASE = [
@@ -99,7 +100,7 @@ def distance(pose, other):
 @pytest.mark.parametrize('kind', KINDS)
 def test_the_pose_that_made_the_lengths_is_among_the_modes(kind):
     random = np.random.default_rng(7)
-    for _ in range(15):
+    for _ in range(enough(5, 15)):
         base, platform = kind(random)
         pose = random_pose(random, 1.2, 1.5)
         modes = assembly_modes(base, platform, lengths_at(base, platform, pose))
@@ -111,7 +112,7 @@ def test_the_pose_that_made_the_lengths_is_among_the_modes(kind):
 @pytest.mark.parametrize('kind', KINDS)
 def test_every_mode_closes_the_legs_by_a_proper_rotation(kind):
     random = np.random.default_rng(8)
-    for _ in range(10):
+    for _ in range(enough(4, 10)):
         base, platform = kind(random)
         wanted = lengths_at(base, platform, random_pose(random, 1.0, 2.0))
         modes = assembly_modes(base, platform, wanted)

@@ -10,6 +10,7 @@ from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames
 from manipulator.machine import MachineFile
 from manipulator.pose import Pose
+from sampling import enough
 
 
 @pytest.fixture(params=['robocake', 'stewart_6_6', 'stewart_6_3'])
@@ -26,7 +27,7 @@ def legs_by_definition(machine, pose, joints):
 
 
 def test_the_pose_that_made_the_joints_is_the_only_mode_that_fits(machine):
-    poses = sample(machine, 20, np.random.default_rng(5))
+    poses = sample(machine, enough(8, 20), np.random.default_rng(5))
     for k, joints in enumerate(machine.kinematics.inverse(poses)):
         found = all_modes(machine, joints)
         (fitting,) = found.that_fit

@@ -112,8 +112,8 @@ def test_elbow_in_is_chosen_where_it_is_nearer_by_more_than_a_tenth_of_a_radian(
 def test_many_chunks_give_what_one_gives(hexapod, many):
     twice = Pose(np.concatenate([many.position] * 2), np.concatenate([many.rotation] * 2))
     joints = hexapod.inverse(twice)
-    np.testing.assert_array_equal(joints[:10_000], joints[10_000:])
-    np.testing.assert_allclose(joints[9000], hexapod.inverse(many[9000]), rtol=1e-13)
+    np.testing.assert_array_equal(joints[: len(many.position)], joints[len(many.position) :])
+    np.testing.assert_allclose(joints[2900], hexapod.inverse(many[2900]), rtol=1e-13)
 
 
 @pytest.mark.parametrize('xyz', [(0.0, 0.0, 0.060), (0.017, 0.0, 0.04119), (0.0, -0.02, 0.04)])

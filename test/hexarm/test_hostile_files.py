@@ -12,6 +12,7 @@ from hexarm import machines
 from hexarm.machine_check import problems_of
 from manipulator.config import MAX_CHARACTERS, parse_yaml
 from manipulator.errors import ConfigError
+from sampling import enough
 
 ROOT = Path(__file__).resolve().parents[2]
 TOKENS = (
@@ -37,7 +38,7 @@ def damaged(text, chance):
 
 def test_damaged_machine_files_are_refused_in_words_and_soon():
     chance, slowest = random.Random(7), 0.0
-    for _ in range(1500):
+    for _ in range(enough(400, 5000)):
         text = damaged(chance.choice(TEXTS), chance)
         begin = time.process_time()
         problems_of(text)

@@ -18,6 +18,7 @@ from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.path_timing import PathRequest, plan_path
+from sampling import enough
 
 DT = 0.01
 SLACK = 1.01
@@ -192,7 +193,7 @@ def norms(vectors):
 
 @pytest.mark.parametrize('name', ['robocake', 'stewart_6_6', 'puma560'])
 @settings(
-    max_examples=15,
+    max_examples=enough(8, 40),
     deadline=None,
     derandomize=True,
     phases=[Phase.explicit, Phase.generate],

@@ -81,12 +81,12 @@ def test_people_read_errors_parameters_and_what_is_not_seen(tmp_path, capsys):
 
 
 def test_a_mistake_in_a_row_is_found(tmp_path, capsys):
-    table, *_ = measured(tmp_path, 'stewart_6_6')
+    table, *_ = measured(tmp_path, 'arm_6r')
     rows = list(csv.reader(table.open()))
     rows[17][-7] = str(float(rows[17][-7]) + 5.0)
     with table.open('w', newline='') as file:
         csv.writer(file).writerows(rows)
-    assert main(['calibrate', 'geometry', 'stewart_6_6', str(table), '--dry-run']) == 0
+    assert main(['calibrate', 'geometry', 'arm_6r', str(table), '--dry-run']) == 0
     assert '(worst: measured pose 17)' in capsys.readouterr().out
 
 
@@ -136,7 +136,7 @@ def test_a_table_that_cannot_be_used_is_refused_in_words(tmp_path, text, said, c
         (['geometry', 'robocake', 'no.csv', '--dry-run', '--noise-mm', '0'], 'position noise 0'),
         (['geometry', 'robocake', 'no.csv', '--dry-run', '--tolerance-mm', '-1'], '-1 outside'),
         (['poses', 'robocake', '--count', '0'], '--count 0 outside'),
-        (['poses', 'robocake', '--count', '2', '-o', '/nowhere/x.csv'], 'cannot be written'),
+        (['poses', 'arm_6r', '--count', '2', '-o', '/nowhere/x.csv'], 'cannot be written'),
     ],
 )
 def test_what_cannot_be_done_is_refused_in_words(words, said, capsys):

@@ -7,6 +7,7 @@ from manipulator import rotation as so3
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
 from manipulator.trajectory.path import Path, Tolerance, arc, line, path_along, path_in_time
+from sampling import enough
 
 TOLERANCE = Tolerance(1e-4, np.radians(0.1))
 TURN_LENGTH = 0.05
@@ -40,7 +41,7 @@ def turn_to_polyline(rotations, corners):
 def test_contour_stays_within_the_tolerance_of_the_polyline(seed):
     poses = zigzag(seed)
     path = path_along(poses, TOLERANCE, TURN_LENGTH)
-    on = path.at(np.linspace(0.0, path.marks[-1], 3000)).pose
+    on = path.at(np.linspace(0.0, path.marks[-1], enough(800, 3000))).pose
     distance = distance_to_polyline(on.position, poses.position)
     assert distance.max() <= TOLERANCE.distance
     assert distance.max() > TOLERANCE.distance / 10

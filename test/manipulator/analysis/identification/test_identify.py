@@ -1,5 +1,7 @@
 """Machines with known errors, found again; and what is said of what cannot be found."""
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -17,11 +19,17 @@ from manipulator.errors import InvalidInput, NoSolution
 from manipulator.pose import Pose
 
 MACHINES = 4
+UNSEEN = 300
+
+
+@functools.cache  # pytest would make it again for each set of runs
+def campaign_of(name):
+    return Campaign.of(name, unseen=UNSEEN)
 
 
 @pytest.fixture(params=['robocake', 'stewart_6_6'], scope='module')
 def campaign(request):
-    return Campaign.of(request.param)
+    return campaign_of(request.param)
 
 
 @pytest.fixture(params=[False, True], ids=['unknown frames', 'known frames'], scope='module')

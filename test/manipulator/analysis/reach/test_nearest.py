@@ -6,6 +6,7 @@ from manipulator.analysis.nearest import nearest_reachable
 from manipulator.analysis.readings import displaced, distance
 from manipulator.analysis.way import admits, is_connected
 from manipulator.pose import Pose
+from sampling import enough
 
 TOLERANCE = 2e-5
 
@@ -27,11 +28,12 @@ def test_the_nearest_pose_keeps_all_limits_and_is_connected_to_home(machine):
 
 
 def test_no_pose_found_by_random_search_is_nearer(platform):
-    wanted = targets(platform, 10, 2)
+    count = enough(4, 10)
+    wanted = targets(platform, count, 2)
     generator = np.random.default_rng(3)
     length = platform.kinematics.characteristic_length
     everywhere = sample(platform, 300, generator, length)
-    for k in range(10):
+    for k in range(count):
         found = nearest_reachable(platform, wanted[k])
         limit = found.distance - TOLERANCE
         assert distance(platform, everywhere, wanted[k]).min() > limit

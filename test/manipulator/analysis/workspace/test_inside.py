@@ -6,6 +6,7 @@ from manipulator.analysis.inside import conditions, joint_rates, ranges, section
 from manipulator.analysis.survey import survey
 from manipulator.analysis.volume import Box
 from manipulator.pose import Pose
+from sampling import enough
 
 
 def test_ranges_are_those_of_each_axis(robocake):
@@ -68,7 +69,8 @@ def test_a_section_lies_in_its_plane(robocake):
 def test_a_survey_agrees_with_the_volume_under_the_surface(robocake):
     """Cones from home to the surface, integrated over all directions, fill the same volume."""
     stages = []
-    found = survey(robocake, 100_000, 0.3, lambda stage, share: stages.append((stage, share)))
+    positions = enough(20_000, 100_000)
+    found = survey(robocake, positions, 0.3, lambda stage, share: stages.append((stage, share)))
     cosines, turns = np.polynomial.legendre.leggauss(60)
     angles = np.linspace(0, 2 * np.pi, 120, endpoint=False)
     sine = np.sqrt(1 - cosines**2)[:, None]

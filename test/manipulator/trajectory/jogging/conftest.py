@@ -43,13 +43,13 @@ class Jogged(Player):
             self.configurations.append(self.joints)
         return self.poses[begin:]
 
-    def run_to_the_edge(self, twist):
+    def run_to_the_edge(self, twist, frame=''):
         """Until the machine hardly moves any more."""
-        self.run(3, twist)
+        self.run(3, twist, frame=frame)
         for _ in range(1000):
             if np.abs(self.poses[-2].twist_to(self.poses[-1])).max() <= 1e-5:
                 return
-            self.run(1, twist)
+            self.run(1, twist, frame=frame)
 
     def check_limits(self):
         """By differences: joints, tool or platform speed, every configuration inside.

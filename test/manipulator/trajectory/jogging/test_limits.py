@@ -11,6 +11,7 @@ from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
+from sampling import enough
 
 DT = 0.01
 MODES = ('free', 'hold_orientation', 'turn_base_z', 'turn_tool_x', 'parallel', 'look_at')
@@ -59,7 +60,7 @@ def obey(motion, command, stamp):
     return ()
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=enough(4, 20), deadline=None)
 @given(stream=streams)
 def test_no_stream_of_commands_and_twists_leaves_the_limits(machine, at_home, stream):
     motion = at_home(machine)
@@ -70,7 +71,7 @@ def test_no_stream_of_commands_and_twists_leaves_the_limits(machine, at_home, st
 
 def test_platform_keeps_its_accelerations_while_jogged(platform, at_home):
     motion, rng = at_home(platform), np.random.default_rng(5)
-    for _ in range(20):
+    for _ in range(enough(8, 40)):
         motion.run(25, motion.full_speed * rng.uniform(-1, 1, 6))
     changes = np.diff(motion.twists, axis=0) / DT
     linear, angular = platform.motion.linear, platform.motion.angular

@@ -12,6 +12,7 @@ from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.jogging import Jogging, Wish
 
 DT = 0.01
+TICKS = 200
 ROBOCAKE = load('robocake')
 HOME = ROBOCAKE.kinematics.home
 
@@ -41,12 +42,12 @@ def test_twist_is_the_pivots_in_the_axes_of_its_frame(machine, at_home):
 def test_jog_says_why_it_is_scaled_but_not_at_every_tick(machine, at_home):
     motion = at_home(machine)
     reasons = set()
-    for _ in range(400):
+    for _ in range(TICKS):
         motion.run(1, [0, 0, 1.5 * machine.motion.linear.speed, 0, 0, 0])
         reasons.add(motion.status.reason)
     assert motion.status.mode == 'jog'
     assert any('scaled to' in reason for reason in reasons)
-    assert len(reasons) <= 400 * DT / 0.5 + 1
+    assert len(reasons) <= TICKS * DT / 0.5 + 1
 
 
 def test_jog_brakes_the_plan_along_its_way_and_drops_it(robocake):
