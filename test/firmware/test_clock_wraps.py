@@ -26,8 +26,8 @@ def before(request, host):
     def go(periods):
         left = WRAPS[request.param] - periods - round(50 * host.chip.seconds)
         while left > 0:
-            put_forward(host.board, min(left, 10_000_000))  # 2.3 days
-            left -= 10_000_000
+            put_forward(host.board, min(left, 10 * DAY))
+            left -= 10 * DAY
             host.ask(Disarm())
         return host
 

@@ -46,7 +46,7 @@ def test_a_frozen_process_breaks_no_limit(world, name, seconds):
     world.send_goal(FAR)
     world.run(0.12)
     getattr(world, name).freeze(seconds)
-    world.run(seconds + 3.0)
+    world.run(seconds + 1.5)
     assert_within_limits(world)
     world.enable()
     assert world.go_to(HIGHER).result == 'reached'
@@ -60,7 +60,7 @@ def test_the_clock_of_one_computer_is_set_and_the_motion_goes_on(world, ask, nam
     for offset in (step, 0.0):
         getattr(world, name).clock_offset = offset
         words, since = len(world.bridge.states), world.now
-        world.run(1.5)
+        world.run(0.8)
         assert world.status.mode == 'cycle'
         assert len(world.bridge.states) == words
         assert np.ptp(world.pulses(since), axis=0).max() > 20.0

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from hexarm.gamepads import load
 from manipulator.teleop.joy_reader import JoyReader
+from sampling import enough
 
 LB = 4
 XBOX = load('xbox')
@@ -27,7 +28,7 @@ tame = st.tuples(
 )
 
 
-@settings(max_examples=300)
+@settings(max_examples=enough(120, 300))
 @given(st.lists(st.one_of(wild, tame), max_size=12), st.floats(0.0, 0.4))
 def test_no_stream_of_messages_moves_anything_without_a_deadman_pressed_after_rest(stream, later):
     """Judged from the messages alone: the last one is whole, says pressed and is recent."""
@@ -51,7 +52,7 @@ def test_no_stream_of_messages_moves_anything_without_a_deadman_pressed_after_re
         assert not reader.wanted(now + later).twist.any()
 
 
-@settings(max_examples=200)
+@settings(max_examples=enough(80, 200))
 @given(st.lists(tame, min_size=1, max_size=12))
 def test_twist_never_exceeds_turbo_speed(stream):
     reader, now = JoyReader(XBOX), 0.0

@@ -22,7 +22,7 @@ from manipulator.trajectory.worker import MOST_POSES, Effort
 DT = 0.01
 FREE = jog_mode('free', Feedback.for_delay(0.0))
 ARMS = ['arm_6r', 'ur5', 'puma560']
-GOALS = int(os.environ.get('GOALS', '60'))
+GOALS = int(os.environ.get('GOALS', '30'))
 MACHINES = [*ARMS, 'robocake', 'stewart_6_3', 'stewart_6_6']
 
 
@@ -104,10 +104,12 @@ def test_home_is_reached_from_wherever_a_stick_has_led(direction):
     axis, sign = direction % 6, 1 - 2 * (direction // 6)
     twist[axis] = sign * (0.2 if axis < 3 else 1.2)
     player.jog(Wish('cmd_vel/joy', twist, '', FREE))
-    for _ in range(600):
-        player.step()
+    for tick in range(600):
+        before, pose = player.state.pose, player.step()
+        if tick > 20 and not before.twist_to(pose).any():
+            break  # at the edge
     player.jog(None)
-    for _ in range(100):
+    for _ in range(50):
         player.step()
     status, step = driven(player, home_of(machine))
     assert status.result == 'reached', status.reason

@@ -3,6 +3,7 @@ import pytest
 
 from manipulator.analysis.survey import SomeOrientation
 from manipulator.analysis.volume import Box, bounding_box, volume, with_orientation
+from sampling import enough
 
 LITRE = 1e-3
 
@@ -58,7 +59,9 @@ def test_unturned_volumes_above_the_crank_plane(above_the_cranks, cranks, litres
 def test_with_tilts_the_free_cranks_reach_about_three_times_as_much(above_the_cranks):
     machine = above_the_cranks()
     box = bounding_box(SomeOrientation(machine, 0.5, 15), machine.kinematics.home.position, 0.04)
-    found = volume(SomeOrientation(machine, 0.5, 100), box, 8000, np.random.default_rng(1))
+    found = volume(
+        SomeOrientation(machine, 0.5, 100), box, enough(3000, 8000), np.random.default_rng(1)
+    )
     assert 0.066 < found.value / LITRE < 0.073
 
 
