@@ -13,11 +13,11 @@ demo: $(ENV)/demo
 	@$(BIN)/hexarm demo
 
 check: lint   # all that starts no other program
-	@echo 'Tests that start no other program: two minutes on two quiet cores.'
+	@echo 'Tests that start no other program: a minute and a half on two quiet cores.'
 	@$(PYTEST) -n auto --dist loadfile -m 'not processes'
 
 test: check
-	@echo 'Tests that start graphs, a browser, installations.'
+	@echo 'Tests that start graphs, a browser, installations: 3.5 minutes on two quiet cores.'
 	@$(PYTEST) -n auto --dist loadfile -m processes
 
 lint: $(ENV)/ready
