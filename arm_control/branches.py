@@ -1,8 +1,7 @@
-"""Choosing among the branches of an inverse: turns by 2π, joint range, nearness.
+"""Choosing among the branches of an inverse, and following one of them by Newton's method.
 
-The inverse for a pose beside a known one, by Newton's method: the tick's common case.
-
-All branches of a closed form cost as much as ten of these; a stream of setpoints needs but one.
+A choice looks at turns by 2π, joint ranges and nearness. All branches of a closed form cost as
+much as ten steps of Newton's method beside a known pose, and a stream of setpoints needs only one.
 """
 
 import numpy as np

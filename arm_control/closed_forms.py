@@ -1,6 +1,7 @@
-"""Closed-form inverse of arms whose last three axes meet in one point: eight branches.
+"""Closed-form inverses: all branches of two kinds of arms (docs/arm-kinematics.md).
 
-Closed-form inverse of arms built as the UR5: joints 2, 3, 4 parallel, axes 5 and 6 meeting.
+Arms whose last three axes meet in one point have eight; so have arms built as the UR5, with
+joints 2, 3 and 4 parallel and axes 5 and 6 meeting.
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,4 @@
-"""The three forms in which a machine file gives a serial arm's geometry, each as a `Chain`.
-
-What each joint of a serial arm may do: range, speed, acceleration.
-"""
+"""A serial arm in its machine file: three forms of geometry, each as a `Chain`; joint limits."""
 
 from dataclasses import dataclass
 

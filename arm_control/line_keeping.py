@@ -1,8 +1,7 @@
 """Joint rates that keep the tool on its line near singularities (docs/arm-kinematics.md, 8).
 
-Which singular posture an arm is near, in words (docs/arm-kinematics.md, 8).
-
-An arm's Jacobian at one moment, with its singular values (docs/arm-kinematics.md, 8).
+They rest on the Jacobian at one moment, with its singular values, and name the singular posture
+that an arm is near.
 """
 
 from dataclasses import dataclass

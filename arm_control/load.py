@@ -1,7 +1,4 @@
-"""From a machine file's sections to a serial arm that the nodes can use.
-
-The resolved-rate step as the `Jogger` of a serial arm, in the user's frames.
-"""
+"""From a machine file to a serial arm that the nodes can use, with its `Jogger`."""
 
 from dataclasses import dataclass, replace
 

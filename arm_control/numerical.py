@@ -1,6 +1,6 @@
 """Inverse of any chain by damped Newton steps from many starts (docs/arm-kinematics.md, 6).
 
-Inverse of arms that were built almost as one with a closed form: a calibrated arm's.
+A calibrated arm, built almost as one with a closed form, starts at that one's branches.
 """
 
 from collections.abc import Iterator, Sequence

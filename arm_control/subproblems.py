@@ -1,9 +1,8 @@
 """The trigonometric subproblems that closed-form inverses are made of (docs/arm-kinematics.md, 3).
 
 Vectors are (..., 3) and broadcast; k is a constant unit axis (3,). NaN marks what has no solution
-and passes through. `free` is the angle taken where every angle solves the equation.
-
-The shoulder and elbow of a chain: joints 2 and 3, whose axes are parallel.
+and passes through. `free` is the angle taken where every angle solves the equation. Shoulder and
+elbow, two joints with parallel axes, are one of them.
 """
 
 from dataclasses import dataclass

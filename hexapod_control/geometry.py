@@ -1,6 +1,6 @@
 """Where the joints of a crank hexapod are: the paper's parameters or explicit coordinates.
 
-Machines whose leg lengths never fix the pose, recognised by their joints alone.
+Machines whose joints alone show that leg lengths never fix the pose are rejected.
 """
 
 from dataclasses import dataclass, field

@@ -1,10 +1,8 @@
 """Rods and their Jacobian, the same for crank and linear legs: docs/kinematics.md, section 4.
 
-Legs first, poses last: the layout in which arrays of poses are quick to work on.
-
-Whether σmin keeps a margin, for many poses at once and without singular values.
-
-σmin(J) ≥ m exactly when JᵀJ − m²I has no eigenvalue below 0, which the signs of its pivots tell.
+Arrays have legs first and poses last, which is quick for many poses. Whether σmin keeps a margin
+is tested without singular values: σmin(J) ≥ m exactly when JᵀJ − m²I has no eigenvalue below 0,
+which the signs of its pivots tell.
 """
 
 import math

@@ -1,7 +1,4 @@
-"""The `limits` section of a crank hexapod's machine file.
-
-The `limits` section of a linear platform's machine file.
-"""
+"""The `limits` sections of machine files: of crank hexapods and of linear platforms."""
 
 from dataclasses import dataclass
 

@@ -1,6 +1,6 @@
 """The motion of a platform whose legs all move linearly: Lapikov et al. 2014, section 4.
 
-The Euler angles of Lapikov et al. 2014: R = Rz(α)·Rx(β)·Rz(γ).
+Their Euler angles are R = Rz(α)·Rx(β)·Rz(γ).
 """
 
 from collections.abc import Callable

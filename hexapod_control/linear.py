@@ -1,6 +1,7 @@
 """The linear Gough–Stewart platform as a `Kinematics`: six leg lengths, one pose.
 
-Gaps from base to platform joints, all legs of many poses at once: docs/kinematics.md, (2.4).
+The vectors from base to platform joints are computed for all legs of many poses at once:
+docs/kinematics.md, (2.4).
 """
 
 from collections.abc import Iterator

@@ -1,9 +1,8 @@
 """What every subscription does with a message: reject the stale, count the bad, note the good.
 
-Telling old and reordered messages from fresh ones whose source has another clock.
-
-Deadlines are kept on receipt time alone. Stamps only serve to reject what overtook or queued up,
-after the offset between the source's clock and ours, as observed, is taken out.
+Old and reordered messages are told from fresh ones whose source has another clock: the offset
+between the source's clock and ours, as observed, is taken out of stamps. Deadlines are kept on
+receipt time alone.
 """
 
 from collections.abc import Callable

@@ -1,14 +1,11 @@
-"""The parameters of a serial arm: where its six joints are zero, and how its links are built.
-
-What a link may be otherwise than its file says: where it carries the next joint's axis.
+"""The parameters of a serial arm: where its joints are zero, how its links are built.
 
 A line has four freedoms beside another one. The first is the joint's zero angle; the other three
 are, as in the tables of Denavit and Hartenberg, a shift along the joint's axis (offset), a shift
 along the common normal to the next axis (length) and a turn about that normal (twist). Beside a
 parallel axis the offset changes nothing and another turn takes its place, about the third
-direction (skew; Hayati, IEEE CDC 1983).
-
-An identified arm as lines of its machine file, in millimetres and degrees.
+direction (skew; Hayati, IEEE CDC 1983). An identified arm is written as lines of its machine file,
+in millimetres and degrees.
 """
 
 from collections.abc import Iterator

@@ -1,10 +1,7 @@
-"""An identified platform as lines and values of its machine file, in millimetres and degrees.
+"""Platforms whose parameters can be identified, and their values as lines of a machine file.
 
-The parameters of a crank platform: 12 joint centres, 6 cranks, 6 rods, 12 angles.
-
-The parameters of a platform on linear legs: 12 joint centres and 6 lengths at zero.
-
-The model of a platform whose parameters can be identified.
+A crank platform has 12 joint centres, 6 cranks, 6 rods and 12 angles; one on linear legs 12 joint
+centres and 6 lengths at zero. Files hold millimetres and degrees.
 """
 
 import dataclasses

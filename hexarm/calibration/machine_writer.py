@@ -1,6 +1,6 @@
-"""Changes to a machine file on the disc: only what was changed, all of it or nothing.
+"""Identified values written to a machine file: only what has changed, all of it or nothing.
 
-A machine of any kind as a model to identify, and poses at which it may be measured.
+Before that, the machine of a file as a model to identify, and poses at which to measure it.
 """
 
 import contextlib

@@ -1,8 +1,7 @@
-"""The board at the other end of a port that this process has to itself, for one sitting.
+"""The board at the other end of a port that this process uses alone, for one session.
 
-A port that is lost is not opened again: where the servos stand would be anybody's guess.
-
-What a walk through the servos has found, as values of the machine file.
+A port that is lost is not opened again, because the position of the servos would be unknown. What
+the session finds becomes values of the machine file.
 """
 
 import signal

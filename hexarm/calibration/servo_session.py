@@ -1,7 +1,4 @@
-"""What the person at the terminal reads while walking through the servos.
-
-One sitting at the machine: keys in, setpoints out, until the walk is over.
-"""
+"""One servo calibration session: keys in, setpoints out, and the display, until it is over."""
 
 import time
 from collections.abc import Callable

@@ -1,9 +1,7 @@
 """`hexarm calibrate servos MACHINE`: signs and centres, one servo at a time, by the keyboard.
 
-A fake board in this process, with servos that are mounted otherwise than the file says.
-
-So that a calibration can be tried without a board: what the eye would see on a machine stands on
-the screen instead.
+Without a board it uses a fake one in this process, whose servos are mounted otherwise than the
+file says; what one would see on a machine stands on the screen.
 """
 
 import argparse

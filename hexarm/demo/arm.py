@@ -1,6 +1,6 @@
 """The arm's part of the demonstration: a gamepad overrides a goal, then draws and looks.
 
-A gamepad played by a script: Joy messages as an Xbox pad sends them, for joy_teleop.
+The gamepad is played by a script, as Joy messages that an Xbox pad would send.
 """
 
 import time

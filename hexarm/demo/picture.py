@@ -1,7 +1,4 @@
-"""The picture of the demonstration: for both machines path, joint angles, errors over time.
-
-The arm's half of the demonstration's picture: where it stood, and what it held.
-"""
+"""The picture of the demonstration: for both machines path, joint angles, errors over time."""
 
 from pathlib import Path
 

@@ -1,9 +1,8 @@
-"""Six sliders for the goal, the same on every page, each with the range that is reachable now.
+"""The controls of the page: buttons, the machine's state, and six sliders for the goal.
 
-Millimetres and degrees on the page, metres and radians everywhere else. Moving a slider by hand
-asks for the goal; `follow` moves the sliders without asking.
-
-The buttons of the page, and the state of the machine above them.
+Sliders are the same on every page, each with the range that is reachable now: millimetres and
+degrees on the page, metres and radians everywhere else. Moving a slider by hand requests the goal;
+`follow` moves the sliders without a request.
 """
 
 from collections.abc import Callable

@@ -1,7 +1,4 @@
-"""The gripper at the tool: how far it is open, and the lines that show it.
-
-A slider for the gripper: how far it is open, and how far it shall be; the same on all pages.
-"""
+"""The gripper at the tool: how far it is open, the lines that show it, and its slider."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,8 +1,6 @@
 """What a drawing of the machine is made of: bars along strokes, balls at their ends, colours.
 
-Meshes of the few solids that a machine is drawn with: vertices (n, 3) and faces (m, 3).
-
-Strokes as round bars: where each stands, how it is turned, how long and thick it is.
+A bar has a place, a direction, a length and a radius; a mesh has vertices (n, 3) and faces (m, 3).
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,4 @@
-"""What the nodes say of themselves, as a table in Markdown.
-
-How much of each limit's room is left, per leg or joint, and the colour that says so.
-"""
+"""What the page shows as text: the nodes' reports in Markdown, and the margin of each limit."""
 
 import numpy as np
 

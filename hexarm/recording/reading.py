@@ -1,6 +1,6 @@
-"""The messages of an MCAP file, decoded without ROS; a file that was torn off ends at the tear.
+"""A recording without ROS: the messages of an MCAP file, and tables of comma-separated values.
 
-A recording as tables of comma-separated values.
+A file that was torn off ends at the tear.
 """
 
 import csv

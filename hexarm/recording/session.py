@@ -1,7 +1,4 @@
-"""The recorder's node: looks around for topics, and writes what it hears until told to end.
-
-Hears the topics of a machine and keeps each message as it came, undecoded.
-"""
+"""The recorder: looks for topics, and writes each message as it came until it is stopped."""
 
 import contextlib
 import math

@@ -1,9 +1,7 @@
-"""From the messages of a recording to its story.
+"""From the messages of a recording to its run summary.
 
-The text of a message type with everything it is made of: MCAP's schema encoding `ros2msg`.
-
-https://mcap.dev/spec/registry: the type's own .msg file, then each type that it mentions, behind a
-line of 80 equal signs and a line `MSG: package/Name`.
+MCAP's schema encoding `ros2msg` (https://mcap.dev/spec/registry) is the type's own .msg file, then
+each type that it mentions, behind a line of 80 equal signs and a line `MSG: package/Name`.
 """
 
 import re

@@ -1,7 +1,4 @@
-"""Which topics a recording wants, and from when on it may listen to them.
-
-What a recorder says of topics that it did not hear: misspelt, silent, or no machine at all.
-"""
+"""Which topics a recording wants and from when on, and which of them did not come, with why."""
 
 import difflib
 from collections.abc import Collection, Sequence

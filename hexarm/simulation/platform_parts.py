@@ -1,6 +1,6 @@
 """What crank and linear platforms have in common as MuJoCo models: plate, payload, drives.
 
-A universal joint as two hinges: the angles that turn a rod from its home to a direction.
+A universal joint is two hinges: the angles that turn a rod from its home to a direction.
 """
 
 import xml.etree.ElementTree as ET

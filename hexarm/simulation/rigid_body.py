@@ -1,8 +1,7 @@
-"""Rigid bodies: mass, centre and inertia, and those of the shapes that estimates are made of.
+"""Rigid bodies, and the MuJoCo models that are made of them.
 
-What every MuJoCo model of a machine is: its XML, the names in it, and where a pose puts it.
-
-MuJoCo's XML, written element by element.
+Mass, centre and inertia, also of the shapes that estimates are made of; the model's XML, the names
+in it, and where a pose puts it.
 """
 
 import xml.etree.ElementTree as ET

@@ -1,9 +1,7 @@
-"""What the drives must hold against gravity, by virtual work.
+"""What the drives must hold against gravity, by virtual work, and where they cannot.
 
 A drive's effort is how fast the potential energy grows with its joint: τ = Σ m g ∂z/∂q. A rod of
 even density counts half at either end.
-
-Whether the servos hold a machine up along a way, and where they do not.
 """
 
 from typing import Protocol

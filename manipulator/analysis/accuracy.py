@@ -1,6 +1,6 @@
-"""What servos add to the positions that they are sent to.
+"""How exact a pose is: the errors of joints, and the spread of poses that they cause.
 
-The spread of poses that errors cause, to first order and by chance.
+The spread is computed to first order and by chance.
 """
 
 from dataclasses import dataclass

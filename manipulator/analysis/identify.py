@@ -1,9 +1,7 @@
-"""Levenberg–Marquardt with tolerances: the most probable values, given errors and a prior.
+"""From measurements to the machine that they are of: the most probable values, given a prior.
 
 Minimises |r(x)|² + |x|² where r are errors in multiples of their noise and x values in multiples
 of their tolerances; where a tolerance is infinite, that value has no prior and x counts in SI.
-
-From measurements to the machine that they are of.
 """
 
 from collections.abc import Callable, Collection

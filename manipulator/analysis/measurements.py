@@ -1,6 +1,6 @@
-"""What was commanded, what was measured, and how well.
+"""What identification needs: what was commanded, what was measured, and the machine's model.
 
-What identification needs to know of a machine: its parameters and what each does to a pose.
+A model has parameters and tells what each does to a pose.
 """
 
 from dataclasses import dataclass

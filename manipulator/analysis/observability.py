@@ -1,10 +1,8 @@
-"""Which combinations of parameters the measurements cannot tell apart, in words.
+"""Which combinations of parameters the measurements cannot tell apart, and which poses help.
 
 The singular values of the slopes, per noise and tolerance, say how many there are. Each is first
 looked for among the motions that one expects (a whole side of the machine, made up for by where
 the device stands); what is left is named by its largest terms.
-
-Which poses to measure: of many, the few that tell most about the parameters.
 """
 
 from dataclasses import dataclass

@@ -1,6 +1,6 @@
-"""Distances between poses: metres, with rotations made lengths by the characteristic length.
+"""Every limit's reading at a pose: value, range, margin, and how far away the limit is.
 
-Every limit's reading at a pose: value, range, margin, and how far away the limit is.
+Distances between poses are metres; rotations become lengths by the characteristic length.
 """
 
 from dataclasses import dataclass

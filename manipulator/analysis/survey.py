@@ -1,6 +1,6 @@
-"""Positions that a machine reaches with at least one orientation: docs/workspace.md, section 3.
+"""All figures of a machine's workspace in one go: docs/workspace.md, section 3.
 
-All figures of a machine's workspace in one go.
+Among them the positions that it reaches with at least one orientation.
 """
 
 from collections.abc import Callable

@@ -1,6 +1,6 @@
 """The one constraint check that ik, trajectories, teleop and workspace maps share.
 
-A limit that a machine stands beyond, for the way back.
+A limit that a machine stands beyond is stretched for the way back.
 """
 
 from dataclasses import dataclass

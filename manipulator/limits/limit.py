@@ -1,7 +1,4 @@
-"""What a limit is: named values of a configuration and the range that each must keep.
-
-What limits share that speak of another limit: its names.
-"""
+"""What a limit is: named values of a configuration and the range that each must keep."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

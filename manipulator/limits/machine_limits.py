@@ -1,11 +1,4 @@
-"""Each joint's range of travel.
-
-The platform must stay above the body's lid.
-
-Distance from the poses that the joints do not fix.
-
-Rods of fixed length must join crank and platform: what a leg that does not close lacks.
-"""
+"""The limits of machines: joint ranges, body height, distance from singular poses, rod closure."""
 
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable

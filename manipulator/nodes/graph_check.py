@@ -1,9 +1,8 @@
-"""Publishers that a node cannot receive, or of which there may be one only, as the graph has them.
+"""What is wrong with the graph around a node: missing subscribers, publishers not received.
 
-ROS drops in silence what comes with another type or with a weaker quality of service than asked
-for. Looking at the graph takes about 50 µs a topic (measured on a computer of two cores).
-
-Whether anybody hears what a person's hands ask for, in one line whenever that changes.
+ROS drops without a word what comes with another type or with a weaker quality of service than
+requested, and some topics may have only one publisher. Looking at the graph takes about 50 µs a
+topic (measured on a computer of two cores).
 """
 
 from collections.abc import Iterable, Iterator, Sequence

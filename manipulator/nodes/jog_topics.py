@@ -1,10 +1,9 @@
-"""What every node of a person's input device sends: twists while held, mode, gripper, home, stop.
+"""What every node of a person's input device publishes: twists, mode, gripper, home, stop.
 
-A twist means that somebody holds the deadman. Letting go sends one zero and then nothing, so
+A twist means that somebody holds the deadman. Letting go publishes one zero and then nothing, so
 that silence and a node that has died look alike to the trajectory node.
 
-A person's stop button: brakes along the way; where nobody confirms it, the emergency stop.
-
+The stop button brakes along the path; where nobody confirms that, it becomes the emergency stop.
 Braking is gentler, and the machine can go on afterwards. But the trajectory node cannot brake what
 it does not drive (a program that the board plays by itself), nor when it hangs or has died.
 """

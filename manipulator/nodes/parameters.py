@@ -1,6 +1,6 @@
 """Declaring parameters with descriptors that read well in `ros2 param describe`.
 
-The parameters of `~/start_cycle`: six amplitudes, frequencies and phases a term.
+Those of `~/start_cycle` are six amplitudes, frequencies and phases a term.
 """
 
 from typing import Any

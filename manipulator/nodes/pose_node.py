@@ -1,8 +1,7 @@
 """From joint states to the pose of the platform or tool, by forward kinematics.
 
-The machine as lines, for RViz and Foxglove.
-
-The machine as transforms on /tf, where the package tf2_msgs is installed.
+It also publishes the machine as lines, for RViz and Foxglove, and as transforms on /tf where the
+package tf2_msgs is installed.
 """
 
 import re

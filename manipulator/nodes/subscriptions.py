@@ -1,11 +1,8 @@
-"""Messages without a bound on their length, refused by their size before anything decodes them.
+"""Subscriptions behind the message filter, by size before decoding, and from one hand alone.
 
-Decoding one of megabytes takes a second in which no other thread of the process gets a turn, one
-that hears a STOP among them. For subscriptions with `raw=True`.
-
-A subscription's callback: the message filter, with the node's clock and log.
-
-A subscription to what one person's hand sends: it notices when two publishers send at once.
+Decoding a message of megabytes takes a second in which no other thread of the process gets a turn,
+one that receives a STOP among them. So messages without a bound on their length (`raw=True`) are
+rejected by their size first.
 """
 
 import inspect

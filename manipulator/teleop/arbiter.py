@@ -1,14 +1,12 @@
 """Who jogs the machine: a person before the computer, among people whoever moves first.
 
 A source owns the machine until it has been silent for SILENCE. A source that was turned away,
-overridden or stopped must fall silent before it is heard again: so nothing resumes by itself.
+overridden or stopped must fall silent before it is accepted again: so nothing resumes by itself.
 Times are monotonic receipt times in seconds.
 
-Whether the messages of a topic come from one publisher at a time.
-
 Two pads on one topic defeat the deadman: one of them is seen released, the other one drives. A
-message carries the number that its publisher gave it, and every publisher counts for itself. So
-of two that send at once a number comes that does not follow the last one, at the latest with the
+message carries the number that its publisher gave it, and every publisher counts for itself. So of
+two that publish at once a number comes that does not follow the last one, at the latest with the
 third message. A publisher that is still known, but silent (one that was killed stays in the graph
 for up to 20 s) does no harm, and does not count for long.
 """

@@ -1,6 +1,6 @@
 """The mapping file of one kind of gamepad: what its axes and buttons mean.
 
-One axis of a gamepad that moves the machine: deadzone, expo, speed.
+An axis that moves the machine has a deadzone, an exponential curve and a speed.
 """
 
 import dataclasses

@@ -1,14 +1,6 @@
-"""Turns that bring one direction to another, or an orientation to a family of them.
+"""What a jog mode is, and the modes that hold an orientation or a point.
 
-How hard a held orientation or point is pulled back to its reference.
-
-What a jog mode is: a reference latched when motion begins, and a loop closed on it.
-
-The plain jog: the twist as commanded, nothing held.
-
-Jogging with the orientation held constant: the stick translates.
-
-Turning about a coordinate axis of the base or the tool, with the tool point fixed.
+A mode latches a reference when motion begins and closes a loop on it; the plain jog holds nothing.
 """
 
 import math

@@ -1,8 +1,6 @@
 """Following a twist, one tick after the other, within all limits of a machine.
 
-In which axes a commanded twist is meant; it is always the pivot's.
-
-A commanded twist within the machine's limits of speed and acceleration.
+A commanded twist is always that of the pivot; the frame of its axes can be chosen.
 """
 
 import math

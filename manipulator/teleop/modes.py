@@ -1,8 +1,6 @@
-"""Jog modes by the names under which the `jog_mode` topic asks for them.
+"""Jog modes by their names on the topic `jog_mode`; those that keep or point the tool.
 
-Jogging with the tool kept parallel to a coordinate axis of the base.
-
-Jogging with the tool pointing at one point in space, and orbiting it.
+The tool is kept parallel to a coordinate axis of the base, or points at one point in space.
 """
 
 import difflib

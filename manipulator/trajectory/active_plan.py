@@ -1,8 +1,6 @@
-"""What people call each kind of plan, in motion_status.
+"""A plan that is executed, and the time scaling that advances it.
 
-A plan under way.
-
-How fast a plan's own time runs: at 1 it is driven as planned, at 0 it is held up.
+At 1 the plan's own time runs as planned, at 0 it stands.
 """
 
 from dataclasses import dataclass

@@ -4,9 +4,8 @@ Between two poses the position goes along a line and the orientation about one f
 proportion to the path's parameter s. At each pose the rate changes from that of the segment
 before to that of the segment after, evenly over s_i ± d_i: docs/motion.md, (4.1) to (4.3). So
 the path has a continuous tangent and bounded curvature, is exactly straight elsewhere, and where
-poses lie close together (d_i is then half a segment) it is a quadratic spline.
-
-Poses along simple shapes, to make paths of.
+poses lie close together (d_i is then half a segment) it is a quadratic spline. Poses along simple
+shapes are there to make paths of.
 """
 
 from dataclasses import dataclass

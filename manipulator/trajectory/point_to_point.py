@@ -1,16 +1,9 @@
-"""s(t) from 0 to 1, from rest to rest, the quickest within bounds on ṡ, s̈ and s⃛; by ruckig.
+"""Jerk-limited point-to-point moves by ruckig: from rest along a line, or from any motion.
 
-Six coordinates about a reference orientation R₀: the position, and w with R = exp(w)·R₀.
-
-Position and w are taken together as x (..., 6); x, its first and its second derivative make a
-MotionState and back. docs/motion.md, section 2.
-
-Jerk-limited moves from rest to rest: a straight line and a turn about one fixed axis.
-
-Jerk-limited moves from any state of motion to a pose at rest, by ruckig.
-
-The six coordinates are those of `chart` about R_goal: the goal lies at w = 0, far from the
-chart's edge at |w| = π.
+From rest to rest s(t) goes from 0 to 1, the quickest within bounds on ṡ, s̈ and s⃛, along a straight
+line and a turn about one fixed axis. From any state of motion six local coordinates move at once:
+the position, and w with R = exp(w)·R₀, together x (..., 6). R₀ is the goal's, so the goal lies at
+w = 0, far from the edge at |w| = π. docs/motion.md, section 2.
 """
 
 from collections.abc import Sequence

@@ -1,11 +1,8 @@
-"""The motion supervisor: commands, measurements and the bridge's word in, one setpoint a tick out.
+"""The motion supervisor: commands, measurements, the bridge's state in; one setpoint a tick out.
 
-It joins who may drive (pilot.py), who jogs (teleop.py), paths that are being worked out and
-commands that came too early, in the order that a tick has.
-
-How late the ticks of a loop come.
-
-How far the machine is behind a stream of goals that asks for more than it can do.
+It joins who may drive (pilot.py), who jogs (teleop.py), paths that are being planned and commands
+that came too early, in the order that a tick has. It knows how late ticks come, and how far the
+machine lags behind a stream of goals that asks for more than it can do.
 """
 
 from collections import deque
