@@ -2,13 +2,9 @@
 
 #include "vector.h"
 
-/* Where a frame that has been displaced takes a point. */
-static void moved_point(const struct frame *moved, const real point[3], real there[3])
-{
-    rotate3(moved->rotation, point, there);
-    for (int i = 0; i < 3; i++)
-        there[i] += moved->position[i];
-}
+#include <string.h>
+
+static const struct frame UNMOVED = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 
 /* A B. */
 static void product9(const real a[9], const real b[9], real product[9])
@@ -35,41 +31,48 @@ static void rotation_about(const real w[3], real angle, real rotation[9])
     rotation[8] = cosine + z * w[2];
 }
 
-/* `moved` times E(angle) of (1.1): the axis stays, so its point tells where the origin goes. */
-static void turn_on(struct frame *moved, const real axis[3], const real point[3], real angle)
+/* The rotation of the link before each joint, and where the joint's point is; last, the tool's. */
+static void turn_links(const struct chain *chain, const real joints[JOINTS],
+                       struct frame links[JOINTS + 1])
 {
-    struct frame before = *moved;
-    real turn[9], fixed[3], turned[3];
-    rotation_about(axis, angle, turn);
-    product9(before.rotation, turn, moved->rotation);
-    moved_point(&before, point, fixed);
-    rotate3(moved->rotation, point, turned);
-    for (int i = 0; i < 3; i++)
-        moved->position[i] = fixed[i] - turned[i];
+    links[0] = UNMOVED;
+    for (int k = 0; k < 3; k++)
+        links[0].position[k] = chain->point[0][k];
+    for (int i = 0; i < JOINTS; i++) {
+        const real *next = i + 1 < JOINTS ? chain->point[i + 1] : chain->tool.position;
+        real turn[9], length[3];
+        rotation_about(chain->axis[i], joints[i], turn);
+        product9(links[i].rotation, turn, links[i + 1].rotation);
+        for (int k = 0; k < 3; k++)
+            length[k] = next[k] - chain->point[i][k];
+        rotate3(links[i + 1].rotation, length, links[i + 1].position);
+        for (int k = 0; k < 3; k++)
+            links[i + 1].position[k] += links[i].position[k];
+    }
 }
-
-static const struct frame UNMOVED = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 
 void chain_displacements(const struct chain *chain, const real joints[JOINTS],
                          struct frame moved[JOINTS + 1])
 {
-    moved[0] = UNMOVED;
-    for (int i = 0; i < JOINTS; i++) {
-        moved[i + 1] = moved[i];
-        turn_on(&moved[i + 1], chain->axis[i], chain->point[i], joints[i]);
+    turn_links(chain, joints, moved);
+    for (int i = 0; i <= JOINTS; i++) {
+        real turned[3];
+        rotate3(moved[i].rotation, i < JOINTS ? chain->point[i] : chain->tool.position, turned);
+        for (int k = 0; k < 3; k++)
+            moved[i].position[k] -= turned[k];
     }
 }
 
 void chain_posture(const struct chain *chain, const real joints[JOINTS], posture *turned)
 {
-    struct frame moved = UNMOVED;
+    struct frame links[JOINTS + 1];
+    turn_links(chain, joints, links);
     for (int i = 0; i < JOINTS; i++) {
-        rotate3(moved.rotation, chain->axis[i], turned->axis[i]);
-        moved_point(&moved, chain->point[i], turned->point[i]);
-        turn_on(&moved, chain->axis[i], chain->point[i], joints[i]);
+        rotate3(links[i].rotation, chain->axis[i], turned->axis[i]);
+        memcpy(turned->point[i], links[i].position, sizeof links[i].position);
     }
-    product9(moved.rotation, chain->tool.rotation, turned->tool.rotation);
-    moved_point(&moved, chain->tool.position, turned->tool.position);
+    product9(links[JOINTS].rotation, chain->tool.rotation, turned->tool.rotation);
+    memcpy(turned->tool.position, links[JOINTS].position, sizeof links[JOINTS].position);
 }
 
 void chain_jacobian(const posture *turned, real jacobian[6 * JOINTS])
