@@ -54,6 +54,30 @@ class Chain:
     def jacobian(self, joints: Array) -> Array:
         """The tool point's twist in base axes (v, ω) of unit joint rates: (..., 6, 6)."""
         angles = np.ascontiguousarray(joints, np.float64)
-        jacobian = np.empty((*angles.shape, 6))
+        jacobian = np.empty((*angles.shape[:-1], 6, JOINTS))
         _kernel.chain_jacobian(self.numbers, angles, jacobian)
         return jacobian
+
+    def sigma_min(self, joints: Array, length: float) -> Array:
+        """The Jacobian's smallest singular value (...), its metres divided by `length` (m).
+
+        NaN for joints that are not finite.
+        """
+        angles = np.ascontiguousarray(joints, np.float64)
+        sigma = np.empty(angles.shape[:-1])
+        _kernel.chain_sigma_min(self.numbers, np.array([length]), angles, sigma)
+        return sigma
+
+
+def aligned(pose: Pose, joints: Array) -> tuple[Array, Array, Array]:
+    """Position, rotation and joints (..., 6), stretched to the same leading axes, contiguous."""
+    position, rotation = pose.contiguous()
+    joints = np.ascontiguousarray(joints)
+    lead = position.shape[:-1]
+    if joints.shape[:-1] != lead:
+        lead = np.broadcast_shapes(lead, joints.shape[:-1])
+        position, rotation, joints = (
+            np.ascontiguousarray(np.broadcast_to(array, (*lead, *array.shape[kept:])))
+            for array, kept in ((position, -1), (rotation, -2), (joints, -1))
+        )
+    return position, rotation, joints

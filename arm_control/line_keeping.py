@@ -10,7 +10,6 @@ import numpy as np
 
 from arm_control.closed_forms import ParallelAxes, SphericalWrist
 from arm_control.inverse_method import InverseMethod
-from arm_control.numerical import AlmostClosed
 from manipulator.arrays import Array, Mask
 
 TAKES_PART = 0.3
@@ -28,7 +27,7 @@ def singularity(method: InverseMethod, idle: Array) -> str:
     Arms without a spherical wrist or three parallel axes have no such names: the joints that
     cancel each other are listed.
     """
-    ideal = method.ideal if isinstance(method, AlmostClosed) else method
+    ideal = method.form
     parts = np.abs(idle) >= TAKES_PART * np.abs(idle).max()
     if isinstance(ideal, SphericalWrist | ParallelAxes) and parts[0]:
         return SHOULDER

@@ -1,5 +1,6 @@
 /* What Python calls of the arms' mathematics. */
-#include "chain.h"
+#include "arm.h"
+#include "linear6.h"
 #include "python.h"
 
 #include <string.h>
@@ -52,9 +53,122 @@ static Py_ssize_t call_chain_jacobian(real *const *a, Py_ssize_t items)
 }
 FUNCTION(chain_jacobian, {WHOLE, NUMBERS(struct chain)}, {ITEMS, JOINTS}, {WRITTEN, 6 * JOINTS})
 
+/* The smallest singular value of each Jacobian, its metres divided by a length. */
+static Py_ssize_t call_chain_sigma_min(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        real jacobian[6 * JOINTS];
+        posture turned;
+        struct svd6 parts;
+        chain_posture((const struct chain *)a[0], a[2] + JOINTS * i, &turned);
+        chain_jacobian(&turned, jacobian);
+        for (int k = 0; k < 3 * JOINTS; k++)
+            jacobian[k] /= *a[1];
+        svd6(jacobian, &parts);
+        a[3][i] = parts.sigma[SIX - 1];
+    }
+    return 0;
+}
+FUNCTION(chain_sigma_min, {WHOLE, NUMBERS(struct chain)}, {WHOLE, 1}, {ITEMS, JOINTS},
+         {WRITTEN, 1})
+
+static struct frame pose_of(const real *positions, const real *rotations, Py_ssize_t i)
+{
+    struct frame pose;
+    memcpy(pose.position, positions + 3 * i, sizeof pose.position);
+    memcpy(pose.rotation, rotations + 9 * i, sizeof pose.rotation);
+    return pose;
+}
+
+static Py_ssize_t call_closed_branches(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        struct frame pose = pose_of(a[1], a[2], i);
+        closed_branches((const struct closed_form *)a[0], &pose, a[3] + JOINTS * i,
+                        (real(*)[JOINTS])a[4] + CLOSED_BRANCHES * i);
+    }
+    return 0;
+}
+FUNCTION(closed_branches, {WHOLE, NUMBERS(struct closed_form)}, {ITEMS, 3}, {ITEMS, 9},
+         {ITEMS, JOINTS}, {WRITTEN, CLOSED_BRANCHES * JOINTS})
+
+static Py_ssize_t call_closed_gap(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        struct frame pose = pose_of(a[1], a[2], i);
+        closed_gap((const struct closed_form *)a[0], &pose, (struct gap *)a[3] + i);
+    }
+    return 0;
+}
+FUNCTION(closed_gap, {WHOLE, NUMBERS(struct closed_form)}, {ITEMS, 3}, {ITEMS, 9},
+         {WRITTEN, NUMBERS(struct gap)})
+
+/* All branches, unwrapped, and NaN; how many of the joints to be near to are not finite. */
+static Py_ssize_t call_arm_branches(real *const *a, Py_ssize_t items)
+{
+    const struct arm *arm = (const struct arm *)a[0];
+    Py_ssize_t unknown = 0;
+    for (Py_ssize_t i = 0; i < items; i++) {
+        struct frame pose = pose_of(a[1], a[2], i);
+        real(*rows)[JOINTS] = (real(*)[JOINTS])a[4] + MOST_BRANCHES * i;
+        const real *near = a[3] + JOINTS * i;
+        int count = arm_branches(arm, &pose, near, rows);
+        for (int k = 0; k < count; k++)
+            unwrap(&arm->ranges, near, rows[k]);
+        for (real *rest = rows[count]; rest < rows[MOST_BRANCHES]; rest++)
+            *rest = (real)NAN;
+        for (int k = 0, is_known = 1; k < JOINTS; k++) {
+            unknown += is_known && !isfinite(near[k]);
+            is_known &= isfinite(near[k]) != 0;
+        }
+    }
+    return unknown;
+}
+FUNCTION(arm_branches, {WHOLE, NUMBERS(struct arm)}, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, JOINTS},
+         {WRITTEN, MOST_BRANCHES * JOINTS})
+
+static Py_ssize_t call_arm_inverse(real *const *a, Py_ssize_t items)
+{
+    Py_ssize_t lost = 0;
+    for (Py_ssize_t i = 0; i < items; i++) {
+        struct frame pose = pose_of(a[1], a[2], i);
+        lost += !arm_inverse((const struct arm *)a[0], &pose, a[3] + JOINTS * i,
+                             a[4] + JOINTS * i);
+    }
+    return lost;
+}
+FUNCTION(arm_inverse, {WHOLE, NUMBERS(struct arm)}, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, JOINTS},
+         {WRITTEN, JOINTS})
+
+static Py_ssize_t call_arm_miss(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        struct frame pose = pose_of(a[1], a[2], i);
+        arm_miss((const struct arm *)a[0], &pose, a[3] + 6 * i);
+    }
+    return 0;
+}
+FUNCTION(arm_miss, {WHOLE, NUMBERS(struct arm)}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, 6})
+
+static Py_ssize_t call_arm_along(real *const *a, Py_ssize_t items)
+{
+    arm_along((const struct arm *)a[0], (const real(*)[3])a[2], (const real(*)[9])a[3],
+              (long)items, a[1], (real(*)[JOINTS])a[4]);
+    return 0;
+}
+FUNCTION(arm_along, {WHOLE, NUMBERS(struct arm)}, {WHOLE, JOINTS}, {ITEMS, 3}, {ITEMS, 9},
+         {WRITTEN, JOINTS})
+
 PyMethodDef ARM_FUNCTIONS[] = {
     METHOD(chain_forward),
     METHOD(chain_displacements),
     METHOD(chain_jacobian),
+    METHOD(chain_sigma_min),
+    METHOD(closed_branches),
+    METHOD(closed_gap),
+    METHOD(arm_branches),
+    METHOD(arm_inverse),
+    METHOD(arm_miss),
+    METHOD(arm_along),
     {NULL, NULL, 0, NULL},
 };

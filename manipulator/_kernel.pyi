@@ -15,3 +15,28 @@ def chain_displacements(chain: Array, joints: Array, moved: Array) -> int:
 
 def chain_jacobian(chain: Array, joints: Array, jacobian: Array) -> int:
     """Writes it."""
+
+def chain_sigma_min(chain: Array, length: Array, joints: Array, sigma: Array) -> int:
+    """Writes the smallest singular value of each Jacobian, its metres divided by length (1,)."""
+
+def closed_branches(
+    form: Array, position: Array, rotation: Array, near: Array, branches: Array
+) -> int:
+    """Writes eight rows an item: see kernel/closed_forms.h."""
+
+def closed_gap(form: Array, position: Array, rotation: Array, gap: Array) -> int:
+    """Writes four numbers an item: see `struct gap`."""
+
+def arm_branches(
+    arm: Array, position: Array, rotation: Array, near: Array, branches: Array
+) -> int:
+    """Writes sixteen rows an item, unwrapped: see kernel/arm.h."""
+
+def arm_inverse(arm: Array, position: Array, rotation: Array, near: Array, joints: Array) -> int:
+    """How many poses have no branch; `joints` is written."""
+
+def arm_miss(arm: Array, position: Array, rotation: Array, miss: Array) -> int:
+    """Writes the twist that is left after the best attempt."""
+
+def arm_along(arm: Array, near: Array, position: Array, rotation: Array, joints: Array) -> int:
+    """Writes the joints of a row of poses."""

@@ -52,6 +52,10 @@ class Pose:
         pose.__dict__.update(position=position, rotation=rotation)
         return pose
 
+    def contiguous(self) -> tuple[Array, Array]:
+        """Position and rotation, C-contiguous, as the kernel takes them."""
+        return np.ascontiguousarray(self.position), np.ascontiguousarray(self.rotation)
+
     @classmethod
     def identity(cls) -> 'Pose':
         """The pose of a frame in itself."""
