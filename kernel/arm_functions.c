@@ -1,5 +1,7 @@
 /* What Python calls of the arms' mathematics. */
 #include "arm.h"
+#include "line_keeping.h"
+#include "rate_scaling.h"
 #include "linear6.h"
 #include "python.h"
 
@@ -159,6 +161,87 @@ static Py_ssize_t call_arm_along(real *const *a, Py_ssize_t items)
 FUNCTION(arm_along, {WHOLE, NUMBERS(struct arm)}, {WHOLE, JOINTS}, {ITEMS, 3}, {ITEMS, 9},
          {WRITTEN, JOINTS})
 
+static Py_ssize_t call_decompose(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        decompose((const struct chain *)a[0], *a[1], a[2] + JOINTS * i,
+                  (struct decomposed *)a[3] + i);
+    return 0;
+}
+FUNCTION(decompose, {WHOLE, NUMBERS(struct chain)}, {WHOLE, 1}, {ITEMS, JOINTS},
+         {WRITTEN, NUMBERS(struct decomposed)})
+
+static Py_ssize_t call_turning(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        turning((const struct decomposed *)a[0], a[1] + JOINTS * i, a[2] + 6 * i);
+    return 0;
+}
+FUNCTION(turning, {WHOLE, NUMBERS(struct decomposed)}, {ITEMS, JOINTS}, {WRITTEN, 6})
+
+static Py_ssize_t call_line_rates(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        line_rates((const struct decomposed *)a[0], *a[1], a[2] + 6 * i, a[3] ? a[3] + 6 * i : NULL,
+                   (struct line *)a[4] + i);
+    return 0;
+}
+FUNCTION(line_rates, {WHOLE, NUMBERS(struct decomposed)}, {WHOLE, 1}, {ITEMS, 6}, {OPTIONAL, 6},
+         {WRITTEN, NUMBERS(struct line)})
+
+static Py_ssize_t call_damped_rates(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        damped_rates((const struct decomposed *)a[0], *a[1], a[2] + 6 * i, a[3] + JOINTS * i);
+    return 0;
+}
+FUNCTION(damped_rates, {WHOLE, NUMBERS(struct decomposed)}, {WHOLE, 1}, {ITEMS, 6},
+         {WRITTEN, JOINTS})
+
+/* Adds what is missed in a tick of a[1][1] seconds to the way back, in metres again. */
+static Py_ssize_t call_part_driven(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        real missed[6];
+        a[5][i] = part_driven((const struct decomposed *)a[0], a[2] + 6 * i, a[3] + JOINTS * i,
+                              missed);
+        for (int k = 0; k < 6; k++)
+            a[4][6 * i + k] += a[1][1] * missed[k] * (k < 3 ? a[1][0] : 1);
+    }
+    return 0;
+}
+FUNCTION(part_driven, {WHOLE, NUMBERS(struct decomposed)}, {WHOLE, 2}, {ITEMS, 6}, {ITEMS, JOINTS},
+         {WRITTEN, 6}, {WRITTEN, 1})
+
+static Py_ssize_t call_room_of(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        room_of((const struct joint_limits *)a[0], a[1] + JOINTS * i, a[2] + 2 * JOINTS * i);
+    return 0;
+}
+FUNCTION(room_of, {WHOLE, NUMBERS(struct joint_limits)}, {ITEMS, JOINTS}, {WRITTEN, 2 * JOINTS})
+
+static Py_ssize_t call_scale_rates(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        ((struct rate_scale *)a[5])[i] =
+            scale_rates((const struct joint_limits *)a[0], a[1] + 2 * JOINTS * i,
+                        a[2] + JOINTS * i, a[3] + JOINTS * i, a[4][0], a[4][1]);
+    return 0;
+}
+FUNCTION(scale_rates, {WHOLE, NUMBERS(struct joint_limits)}, {ITEMS, 2 * JOINTS}, {ITEMS, JOINTS},
+         {ITEMS, JOINTS}, {WHOLE, 2}, {WRITTEN, NUMBERS(struct rate_scale)})
+
+static Py_ssize_t call_follow_rates(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        follow_rates((const struct joint_limits *)a[0], a[1] + 2 * JOINTS * i, a[3][0],
+                     a[2] + JOINTS * i, a[3][1], a[4] + JOINTS * i, a[5] + JOINTS * i);
+    return 0;
+}
+FUNCTION(follow_rates, {WHOLE, NUMBERS(struct joint_limits)}, {ITEMS, 2 * JOINTS},
+         {ITEMS, JOINTS}, {WHOLE, 2}, {WRITTEN, JOINTS}, {WRITTEN, JOINTS})
+
 PyMethodDef ARM_FUNCTIONS[] = {
     METHOD(chain_forward),
     METHOD(chain_displacements),
@@ -170,5 +253,13 @@ PyMethodDef ARM_FUNCTIONS[] = {
     METHOD(arm_inverse),
     METHOD(arm_miss),
     METHOD(arm_along),
+    METHOD(decompose),
+    METHOD(turning),
+    METHOD(line_rates),
+    METHOD(damped_rates),
+    METHOD(part_driven),
+    METHOD(room_of),
+    METHOD(scale_rates),
+    METHOD(follow_rates),
     {NULL, NULL, 0, NULL},
 };

@@ -40,3 +40,40 @@ def arm_miss(arm: Array, position: Array, rotation: Array, miss: Array) -> int:
 
 def arm_along(arm: Array, near: Array, position: Array, rotation: Array, joints: Array) -> int:
     """Writes the joints of a row of poses."""
+
+def decompose(chain: Array, length: Array, joints: Array, decomposed: Array) -> int:
+    """Writes Jacobians and their singular values: see kernel/line_keeping.h."""
+
+def turning(decomposed: Array, rates: Array, acceleration: Array) -> int:
+    """Writes the tool's acceleration at constant joint rates."""
+
+def line_rates(
+    decomposed: Array, onset: Array, twist: Array, off_line: Array | None, line: Array
+) -> int:
+    """Writes what a scaled twist needs of the joints: see `struct line`."""
+
+def damped_rates(decomposed: Array, onset: Array, twist: Array, rates: Array) -> int:
+    """Writes them."""
+
+def part_driven(
+    decomposed: Array,
+    length_and_dt: Array,
+    twist: Array,
+    rates: Array,
+    off_line: Array,
+    part: Array,
+) -> int:
+    """Writes the part of a scaled twist; adds to `off_line` what is missed in dt, unscaled."""
+
+def room_of(limits: Array, joints: Array, room: Array) -> int:
+    """Writes what is left of the joint ranges: see kernel/rate_scaling.h."""
+
+def scale_rates(
+    limits: Array, room: Array, rates: Array, bend: Array, dt_and_slowing: Array, scale: Array
+) -> int:
+    """Writes the part of rates that can be driven, and what sets it."""
+
+def follow_rates(
+    limits: Array, room: Array, rates: Array, part_and_dt: Array, before: Array, joints: Array
+) -> int:
+    """Changes rates and joints to what they are dt later."""
