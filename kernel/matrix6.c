@@ -1,0 +1,108 @@
+#include "matrix6.h"
+
+enum { MOST_SWEEPS = 40 };
+
+static void swap_rows(real matrix[6][6], real b[6], int i, int j)
+{
+    for (int k = 0; k < 6; k++) {
+        real kept = matrix[i][k];
+        matrix[i][k] = matrix[j][k];
+        matrix[j][k] = kept;
+    }
+    real kept = b[i];
+    b[i] = b[j];
+    b[j] = kept;
+}
+
+real eliminate6(real matrix[6][6], real b[6])
+{
+    real determinant = 1;
+    for (int i = 0; i < 6; i++) {
+        int pivot = i;
+        for (int j = i + 1; j < 6; j++)
+            if (real_fabs(matrix[j][i]) > real_fabs(matrix[pivot][i]))
+                pivot = j;
+        if (pivot != i) {
+            swap_rows(matrix, b, i, pivot);
+            determinant = -determinant;
+        }
+        determinant *= matrix[i][i];
+        real inverse = 1 / matrix[i][i];
+        for (int j = i + 1; j < 6; j++) {
+            real factor = matrix[j][i] * inverse;
+            for (int k = i + 1; k < 6; k++)
+                matrix[j][k] -= factor * matrix[i][k];
+            b[j] -= factor * b[i];
+        }
+    }
+    for (int i = 5; i >= 0; i--) {
+        for (int k = i + 1; k < 6; k++)
+            b[i] -= matrix[i][k] * b[k];
+        b[i] /= matrix[i][i];
+    }
+    return determinant;
+}
+
+static real dot6(const real a[6], const real b[6])
+{
+    return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) +
+           (a[4] * b[4] + a[5] * b[5]);
+}
+
+/* Turns two rows in their plane so that they are orthogonal; returns whether they were not. */
+static int made_orthogonal(real a[6], real b[6])
+{
+    real aa = dot6(a, a), bb = dot6(b, b), ab = dot6(a, b);
+    if (!(ab * ab > REAL_EPSILON * REAL_EPSILON * aa * bb))
+        return 0;
+    real cotangent = (bb - aa) / (2 * ab); /* of twice the angle */
+    real tangent = 1 / (real_fabs(cotangent) + real_sqrt(1 + cotangent * cotangent));
+    tangent = cotangent < 0 ? -tangent : tangent;
+    real cosine = 1 / real_sqrt(1 + tangent * tangent), sine = cosine * tangent;
+    for (int k = 0; k < 6; k++) {
+        real before = a[k];
+        a[k] = cosine * before - sine * b[k];
+        b[k] = sine * before + cosine * b[k];
+    }
+    return 1;
+}
+
+real smallest_singular_value(real matrix[6][6])
+{
+    int turned = 1;
+    for (int sweep = 0; turned && sweep < MOST_SWEEPS; sweep++) {
+        turned = 0;
+        for (int i = 0; i < 5; i++)
+            for (int j = i + 1; j < 6; j++)
+                turned |= made_orthogonal(matrix[i], matrix[j]);
+    }
+    real least = dot6(matrix[0], matrix[0]), sum = least;
+    for (int i = 1; i < 6; i++) {
+        real square = dot6(matrix[i], matrix[i]);
+        least = square < least ? square : least;
+        sum += square;
+    }
+    return real_sqrt(sum >= 0 ? least : sum);
+}
+
+int keeps_singular_value(real matrix[6][6], real minimum)
+{
+    real square[6][6] = {{0}};
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++)
+            for (int j = 0; j < 6; j++)
+                square[i][j] += matrix[k][i] * matrix[k][j];
+    for (int i = 0; i < 6; i++)
+        square[i][i] -= minimum * minimum;
+    int is_positive = 1;
+    for (int i = 0; i < 6; i++) {
+        is_positive &= square[i][i] > 0;
+        real inverse = 1 / square[i][i];
+        for (int j = i + 1; j < 6; j++) {
+            real factor = square[i][j] * inverse;
+            for (int k = i; k < 6; k++)
+                square[j][k] -= factor * square[i][k];
+        }
+    }
+    return is_positive;
+}
