@@ -22,6 +22,7 @@ class End(IntEnum):
     NOT_FOUND = 2
     BELOW_MARGIN = 3
     BEYOND = 4
+    BENT = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,28 +57,32 @@ class ForwardByLengths:
         side is the sign that det J must have, by default that at `start`; margin the least σmin.
         Raises NoSolution when nothing is found, or what is found lies beyond a singularity.
         """
-        base, rods = stretched(base_points, (6, 3)), stretched(lengths, (6,))
-        return self.solve_by(self.rules(side, margin), base, rods, start)
-
-    def rules(self, side: float | None, margin: float) -> Array:
-        """What `solve` trusts, as the kernel takes it."""
-        return frozen([self.characteristic_length, math.nan if side is None else side, margin])
-
-    def solve_by(
-        self, rules: Array, base_points: Array, lengths: Array, start: Pose
-    ) -> ForwardSolution:
-        """As `solve`, by its `rules`; all arrays C-contiguous float64."""
         position, rotation, report = np.empty(3), np.empty((3, 3)), np.empty(5)
         _kernel.forward_by_lengths(
-            self.platform_points, rules, base_points, lengths, start.position, start.rotation,
-            position, rotation, report,
-        )  # fmt: skip
-        end, iterations, miss, residual, sigma = report.tolist()
-        if end != End.FOUND:
-            raise NoSolution(_reason(End(int(end)), int(iterations), miss, sigma, float(rules[2])))
-        return ForwardSolution(
-            Pose.unchecked(position, rotation), int(iterations), residual, sigma
+            self.platform_points,
+            rules(self.characteristic_length, side, margin),
+            stretched(base_points, (6, 3)),
+            stretched(lengths, (6,)),
+            start.position,
+            start.rotation,
+            position,
+            rotation,
+            report,
         )
+        return solution(position, rotation, report, margin)
+
+
+def rules(characteristic_length: float, side: float | None, margin: float) -> Array:
+    """What of a solution is trusted: `newton_rules` of kernel/newton.h."""
+    return frozen([characteristic_length, math.nan if side is None else side, margin])
+
+
+def solution(position: Array, rotation: Array, report: Array, margin: float) -> ForwardSolution:
+    """What the kernel found; NoSolution where it found nothing, or nothing to be trusted."""
+    end, iterations, miss, residual, sigma = report.tolist()
+    if end != End.FOUND:
+        raise NoSolution(_reason(End(int(end)), int(iterations), miss, sigma, margin))
+    return ForwardSolution(Pose.unchecked(position, rotation), int(iterations), residual, sigma)
 
 
 def _reason(end: End, iterations: int, miss: float, sigma: float, margin: float) -> str:
@@ -85,6 +90,8 @@ def _reason(end: End, iterations: int, miss: float, sigma: float, margin: float)
         return f'singularity margin {sigma:.3g} below {margin:.3g}: not trusted'
     if end == End.BEYOND:
         return 'the pose found lies beyond a singularity of the start'
+    if end == End.BENT:
+        return 'the pose found bends a leg the other way than at home'
     if end == End.SINGULAR:
         return 'forward kinematics met a singular pose'
     return (

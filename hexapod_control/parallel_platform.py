@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from hexapod_control.assembly_modes import AssemblyModes, assembly_modes
-from hexapod_control.forward import ForwardByLengths
+from hexapod_control.forward import rules, solution
 from hexapod_control.geometry import LEGS
 from hexapod_control.leg_jacobian import (
     leg_jacobian,
@@ -71,7 +71,6 @@ class ParallelPlatform(ABC):
     legs: Array = field(init=False)
     parameters: Array = field(init=False)
     home: Pose = field(init=False)
-    newton: ForwardByLengths = field(init=False)
     warm: Array = field(init=False)
     cold: Array = field(init=False)
     home_side: float = field(init=False)
@@ -84,28 +83,26 @@ class ParallelPlatform(ABC):
         kernel/crank.h and limits.h.
         """
         home = Pose(np.array([0.0, 0.0, self.geometry.home_height]), np.eye(3))
-        newton = ForwardByLengths(self.geometry.platform_points, self.characteristic_length)
         self._put('home', home)
-        self._put('newton', newton)
-        self._lay_out(np.zeros((LEGS, 3)))
+        self._lay_out(np.zeros((LEGS, 3)), np.zeros(LEGS))
         try:
             joints = self.inverse(home)
         except Unreachable as error:
             raise ConfigError([f'the model does not close at home: {error}']) from error
         gains = self.joint_gains(home, joints)
-        self._lay_out(self.unit_rods(home, joints))
+        self._lay_out(self.unit_rods(home, joints), gains)
         side = float(np.sign(np.linalg.det(self.leg_jacobian(home, joints))))
         self._put('home_side', side)
         self._put('home_bends', np.sign(gains))
-        self._put('warm', newton.rules(None, 0.0))
-        self._put('cold', newton.rules(side, self.trusted_margin))
+        self._put('warm', rules(self.characteristic_length, None, 0.0))
+        self._put('cold', rules(self.characteristic_length, side, self.trusted_margin))
 
     def _put(self, name: str, value: object) -> None:
         object.__setattr__(self, name, value)
 
-    def _lay_out(self, home_rods: Array) -> None:
+    def _lay_out(self, home_rods: Array, home_gains: Array) -> None:
         legs, length = self._legs(), [self.characteristic_length]
-        parameters = frozen(np.concatenate([legs, length, home_rods.T.ravel()]))
+        parameters = frozen(np.concatenate([legs, length, home_rods.T.ravel(), home_gains]))
         self._put('parameters', parameters)
         self._put('legs', parameters[: len(legs)])
 
@@ -187,14 +184,15 @@ class ParallelPlatform(ABC):
         least trusted_margin and no leg bent the other way; a start from `near` must end on near's
         side.
         """
-        checked = checked_joints(joints)
-        base, lengths = self.base_points(checked), self.rod_lengths(checked)
-        if near is not None:
-            return self.newton.solve_by(self.warm, base, lengths, near)
-        solution = self.newton.solve_by(self.cold, base, lengths, self.home)
-        if (self.joint_gains(solution.pose, checked) * self.home_bends <= 0.0).any():
-            raise NoSolution('the pose found bends a leg the other way than at home')
-        return solution
+        checked, margin = checked_joints(joints), self.trusted_margin if near is None else 0.0
+        self.rod_lengths(checked)
+        start, trusted = (self.home, self.cold) if near is None else (near, self.warm)
+        position, rotation, report = np.empty(3), np.empty((3, 3)), np.empty(5)
+        _kernel.platform_forward(
+            self.parameters, trusted, checked, start.position, start.rotation,
+            position, rotation, report,
+        )  # fmt: skip
+        return solution(position, rotation, report, margin)
 
     def forward_all(self, joints: Array) -> AssemblyModes:
         """Every pose that joints (6,) allow: docs/forward-modes.md. NoSolution as `forward`."""

@@ -2,13 +2,7 @@
 #ifndef KERNEL_LIMITS_H
 #define KERNEL_LIMITS_H
 
-#include "crank.h"
-
-struct platform {
-    struct crank_legs legs;
-    real length;            /* L of (5.1), m */
-    real home_rod[3][LEGS]; /* unit vectors along the rods at home, base axes */
-};
+#include "platform.h"
 
 /* The limited values of a configuration, in m and rad, one after the other. */
 enum limited {

@@ -49,32 +49,36 @@ static real dot6(const real a[6], const real b[6])
            (a[4] * b[4] + a[5] * b[5]);
 }
 
-/* Turns two rows in their plane so that they are orthogonal; returns whether they were not. */
+/* Turns two rows in their plane so that they are orthogonal. Returns whether they were far from
+   it: as convergence is quadratic, a sweep in which none was is the last. */
 static int made_orthogonal(real a[6], real b[6])
 {
     real aa = dot6(a, a), bb = dot6(b, b), ab = dot6(a, b);
     if (!(ab * ab > REAL_EPSILON * REAL_EPSILON * aa * bb))
         return 0;
-    real cotangent = (bb - aa) / (2 * ab); /* of twice the angle */
-    real tangent = 1 / (real_fabs(cotangent) + real_sqrt(1 + cotangent * cotangent));
-    tangent = cotangent < 0 ? -tangent : tangent;
+    real difference = bb - aa, twice = 2 * ab; /* whose ratio is that of 2 cosines and 2 sines */
+    real both = real_fabs(difference) + real_sqrt(difference * difference + twice * twice);
+    real tangent = (difference < 0 ? -twice : twice) / both;
     real cosine = 1 / real_sqrt(1 + tangent * tangent), sine = cosine * tangent;
     for (int k = 0; k < 6; k++) {
         real before = a[k];
         a[k] = cosine * before - sine * b[k];
         b[k] = sine * before + cosine * b[k];
     }
-    return 1;
+    return ab * ab > REAL_EPSILON * aa * bb;
 }
 
 real smallest_singular_value(real matrix[6][6])
 {
+    /* Every pair once, in an order in which three neighbours do not wait for each other. */
+    static const unsigned char pairs[15][2] = {{0, 1}, {2, 3}, {4, 5}, {0, 2}, {1, 4},
+                                               {3, 5}, {0, 3}, {1, 5}, {2, 4}, {0, 4},
+                                               {1, 3}, {2, 5}, {0, 5}, {1, 2}, {3, 4}};
     int turned = 1;
     for (int sweep = 0; turned && sweep < MOST_SWEEPS; sweep++) {
         turned = 0;
-        for (int i = 0; i < 5; i++)
-            for (int j = i + 1; j < 6; j++)
-                turned |= made_orthogonal(matrix[i], matrix[j]);
+        for (int i = 0; i < 15; i++)
+            turned |= made_orthogonal(matrix[pairs[i][0]], matrix[pairs[i][1]]);
     }
     real least = dot6(matrix[0], matrix[0]), sum = least;
     for (int i = 1; i < 6; i++) {

@@ -18,8 +18,8 @@ struct newton_rules {
     real margin; /* the least sigma */
 };
 
-/* How it ended. */
-enum newton_end { FOUND, SINGULAR, NOT_FOUND, BELOW_MARGIN, BEYOND };
+/* How it ended; BENT is for platform.h to say. */
+enum newton_end { FOUND, SINGULAR, NOT_FOUND, BELOW_MARGIN, BEYOND, BENT };
 
 struct newton_report {
     real end;

@@ -131,6 +131,22 @@ FUNCTION(forward_by_lengths, {WHOLE, 3 * LEGS}, {WHOLE, NUMBERS(struct newton_ru
          {ITEMS, 3 * LEGS}, {ITEMS, LEGS}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, 3}, {WRITTEN, 9},
          {WRITTEN, NUMBERS(struct newton_report)})
 
+static Py_ssize_t call_platform_forward(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        real *position = a[5] + 3 * i, *rotation = a[6] + 9 * i;
+        memcpy(position, a[3] + 3 * i, 3 * sizeof(real));
+        memcpy(rotation, a[4] + 9 * i, 9 * sizeof(real));
+        ((struct newton_report *)a[7])[i] =
+            platform_forward((const struct platform *)a[0], (const struct newton_rules *)a[1],
+                             a[2] + LEGS * i, position, rotation);
+    }
+    return 0;
+}
+FUNCTION(platform_forward, {WHOLE, NUMBERS(struct platform)},
+         {WHOLE, NUMBERS(struct newton_rules)}, {ITEMS, LEGS}, {ITEMS, 3}, {ITEMS, 9},
+         {WRITTEN, 3}, {WRITTEN, 9}, {WRITTEN, NUMBERS(struct newton_report)})
+
 static Py_ssize_t call_limited_values(real *const *a, Py_ssize_t items)
 {
     for (Py_ssize_t i = 0; i < items; i++)
@@ -210,6 +226,7 @@ PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(leg_jacobian),
     METHOD(smallest_singular_value),
     METHOD(forward_by_lengths),
+    METHOD(platform_forward),
     METHOD(limited_values),
     METHOD(limit_ranges),
     METHOD(keeps_limits),

@@ -48,6 +48,18 @@ def forward_by_lengths(
 ) -> int:
     """0; the last three are written: kernel/newton.h."""
 
+def platform_forward(
+    platform: Array,
+    rules: Array,
+    joints: Array,
+    start_position: Array,
+    start_rotation: Array,
+    position: Array,
+    rotation: Array,
+    report: Array,
+) -> int:
+    """0; the last three are written: kernel/platform.h."""
+
 def limited_values(
     platform: Array, position: Array, rotation: Array, joints: Array, values: Array
 ) -> int:
