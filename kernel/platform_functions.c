@@ -200,12 +200,17 @@ FUNCTION(rotation_log, {ITEMS, 9}, {WRITTEN, 3})
 
 static Py_ssize_t call_moved(real *const *a, Py_ssize_t items)
 {
+    Py_ssize_t endless = 0;
     for (Py_ssize_t i = 0; i < items; i++) {
-        memcpy(a[3] + 3 * i, a[0] + 3 * i, 3 * sizeof(real));
-        memcpy(a[4] + 9 * i, a[1] + 9 * i, 9 * sizeof(real));
-        se3_move(a[2] + 6 * i, a[3] + 3 * i, a[4] + 9 * i);
+        real *position = a[3] + 3 * i, *rotation = a[4] + 9 * i, sum = 0;
+        memcpy(position, a[0] + 3 * i, 3 * sizeof(real));
+        memcpy(rotation, a[1] + 9 * i, 9 * sizeof(real));
+        se3_move(a[2] + 6 * i, position, rotation);
+        for (int k = 0; k < 3; k++)
+            sum += real_fabs(position[k]) + real_fabs(rotation[4 * k]);
+        endless += !(sum < INFINITY);
     }
-    return 0;
+    return endless;
 }
 FUNCTION(moved, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, 6}, {WRITTEN, 3}, {WRITTEN, 9})
 

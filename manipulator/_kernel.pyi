@@ -82,7 +82,7 @@ def rotation_log(rotation: Array, vector: Array) -> int:
 def moved(
     position: Array, rotation: Array, twist: Array, new_position: Array, new_rotation: Array
 ) -> int:
-    """0; the last two are written: kernel/se3.h."""
+    """How many poses are not finite; the last two are written: kernel/se3.h."""
 
 def twist_between(
     position: Array, rotation: Array, to_position: Array, to_rotation: Array, twist: Array
