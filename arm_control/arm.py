@@ -115,7 +115,9 @@ class SerialArm:
     def inverse_along(self, poses: Pose, near: Array) -> Array:
         """See `Kinematics`: joints go on beyond their ranges, without turning back by 360°."""
         joints = np.empty((len(poses.position), JOINTS))
-        _kernel.arm_along(self._numbers, self._checked(near), *poses.contiguous(), joints)
+        _kernel.arm_along(
+            self._numbers, self._checked(near), poses.position, poses.rotation, joints
+        )
         return joints
 
     def forward(self, joints: Array, near: Pose | None = None) -> ForwardSolution:

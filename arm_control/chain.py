@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from manipulator import _kernel
-from manipulator.arrays import Array, frozen
+from manipulator.arrays import Array, frozen, stretched
 from manipulator.pose import Pose
 
 JOINTS = 6
@@ -71,13 +71,12 @@ class Chain:
 
 def aligned(pose: Pose, joints: Array) -> tuple[Array, Array, Array]:
     """Position, rotation and joints (..., 6), stretched to the same leading axes, contiguous."""
-    position, rotation = pose.contiguous()
-    joints = np.ascontiguousarray(joints)
+    position, rotation = pose.position, pose.rotation
     lead = position.shape[:-1]
     if joints.shape[:-1] != lead:
         lead = np.broadcast_shapes(lead, joints.shape[:-1])
-        position, rotation, joints = (
-            np.ascontiguousarray(np.broadcast_to(array, (*lead, *array.shape[kept:])))
-            for array, kept in ((position, -1), (rotation, -2), (joints, -1))
-        )
-    return position, rotation, joints
+    return (
+        stretched(position, (*lead, 3)),
+        stretched(rotation, (*lead, 3, 3)),
+        stretched(joints, (*lead, JOINTS)),
+    )

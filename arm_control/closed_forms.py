@@ -66,7 +66,7 @@ class ClosedForm(ABC):
     def refusal(self, pose: Pose) -> str:
         """Which triangle of the arm does not close."""
         gap = np.empty(4)
-        _kernel.closed_gap(self.numbers, *pose.contiguous(), gap)
+        _kernel.closed_gap(self.numbers, pose.position, pose.rotation, gap)
         is_at_shoulder, distance, least, most = gap.tolist()
         if not is_at_shoulder:
             place = f"wrist centre {distance:.4g} m from joint 1's axis"

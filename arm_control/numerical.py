@@ -79,7 +79,7 @@ class Numerical:
     def refusal(self, pose: Pose) -> str:
         """How near the best attempt came."""
         miss = np.empty(6)
-        _kernel.arm_miss(self.numbers, *pose.contiguous(), miss)
+        _kernel.arm_miss(self.numbers, pose.position, pose.rotation, miss)
         distance, angle = np.linalg.norm(miss[:3]), np.degrees(np.linalg.norm(miss[3:]))
         return f'no joint angles found: the best of {STARTS} starts missed by ' + (
             f'{distance:.4g} m and {angle:.3g}°'

@@ -1,7 +1,6 @@
 #include "arm.h"
 
 #include "numerical.h"
-#include "twist.h"
 #include "vector.h"
 
 /* Of descent: from anywhere, and from the branches of the ideal arm. */
@@ -161,7 +160,7 @@ void arm_miss(const struct arm *arm, const struct frame *pose, real miss[6])
             posture there;
             least = left;
             chain_posture(&arm->chain, joints, &there);
-            twist_between(&there.tool, pose, miss);
+            twist_to_pose(&there.tool, pose, miss);
         }
     }
 }

@@ -1,8 +1,8 @@
 /* What Python calls of the arms' mathematics. */
 #include "arm.h"
 #include "line_keeping.h"
+#include "matrix6.h"
 #include "rate_scaling.h"
-#include "linear6.h"
 #include "python.h"
 
 #include <string.h>
@@ -49,7 +49,7 @@ static Py_ssize_t call_chain_jacobian(real *const *a, Py_ssize_t items)
     for (Py_ssize_t i = 0; i < items; i++) {
         posture turned;
         chain_posture((const struct chain *)a[0], a[1] + JOINTS * i, &turned);
-        chain_jacobian(&turned, a[2] + 6 * JOINTS * i);
+        chain_jacobian(&turned, (real(*)[JOINTS])a[2] + 6 * i);
     }
     return 0;
 }
@@ -59,15 +59,12 @@ FUNCTION(chain_jacobian, {WHOLE, NUMBERS(struct chain)}, {ITEMS, JOINTS}, {WRITT
 static Py_ssize_t call_chain_sigma_min(real *const *a, Py_ssize_t items)
 {
     for (Py_ssize_t i = 0; i < items; i++) {
-        real jacobian[6 * JOINTS];
+        real jacobian[6][JOINTS];
         posture turned;
-        struct svd6 parts;
         chain_posture((const struct chain *)a[0], a[2] + JOINTS * i, &turned);
         chain_jacobian(&turned, jacobian);
-        for (int k = 0; k < 3 * JOINTS; k++)
-            jacobian[k] /= *a[1];
-        svd6(jacobian, &parts);
-        a[3][i] = parts.sigma[SIX - 1];
+        scale_jacobian(*a[1], jacobian);
+        a[3][i] = smallest_singular_value(jacobian);
     }
     return 0;
 }

@@ -14,7 +14,8 @@ from setuptools import build_meta
 from setuptools.build_meta import *  # noqa: F403  the hooks that stay as they are
 
 SOURCES = Path(__file__).parent
-FLAGS = ['-std=c11', '-O3', '-fno-math-errno', '-fPIC', '-shared', '-fvisibility=hidden']
+FLAGS = ['-std=c11', '-O3', '-fno-math-errno', '-fno-trapping-math', '-fPIC', '-shared']
+FLAGS += ['-fvisibility=hidden']
 
 
 def compiler() -> list[str]:

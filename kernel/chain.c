@@ -75,7 +75,7 @@ void chain_posture(const struct chain *chain, const real joints[JOINTS], posture
     memcpy(turned->tool.position, links[JOINTS].position, sizeof links[JOINTS].position);
 }
 
-void chain_jacobian(const posture *turned, real jacobian[6 * JOINTS])
+void chain_jacobian(const posture *turned, real jacobian[6][JOINTS])
 {
     for (int i = 0; i < JOINTS; i++) {
         real arm[3], velocity[3];
@@ -83,8 +83,15 @@ void chain_jacobian(const posture *turned, real jacobian[6 * JOINTS])
             arm[k] = turned->tool.position[k] - turned->point[i][k];
         cross3(turned->axis[i], arm, velocity);
         for (int k = 0; k < 3; k++) {
-            jacobian[JOINTS * k + i] = velocity[k];
-            jacobian[JOINTS * (3 + k) + i] = turned->axis[i][k];
+            jacobian[k][i] = velocity[k];
+            jacobian[3 + k][i] = turned->axis[i][k];
         }
     }
+}
+
+void scale_jacobian(real length, real jacobian[6][JOINTS])
+{
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < JOINTS; i++)
+            jacobian[k][i] /= length;
 }

@@ -30,6 +30,9 @@ void chain_displacements(const struct chain *chain, const real joints[JOINTS],
 void chain_posture(const struct chain *chain, const real joints[JOINTS], posture *turned);
 
 /* The tool's twist (v, w) in base axes for unit joint rates, six rows of six: (1.3). */
-void chain_jacobian(const posture *turned, real jacobian[6 * JOINTS]);
+void chain_jacobian(const posture *turned, real jacobian[6][JOINTS]);
+
+/* Divides the metres of a Jacobian by a length. */
+void scale_jacobian(real length, real jacobian[6][JOINTS]);
 
 #endif

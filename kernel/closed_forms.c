@@ -96,9 +96,9 @@ static void spherical_wrist(const struct chain *chain, const real tool[3], const
         rotate_about(w5, turn_back(q5), aside, turned);
         for (int i = 0; i < 3; i++)
             branches[way][i] = inner[i];
-        branches[way][3] = angle_of(q4);
-        branches[way][4] = angle_of(q5);
-        branches[way][5] = angle_of(facing(w6, across, turned, free[5]));
+        branches[way][3] = turn_angle(q4);
+        branches[way][4] = turn_angle(q5);
+        branches[way][5] = turn_angle(facing(w6, across, turned, free[5]));
     }
 }
 
@@ -123,7 +123,7 @@ static void with_spherical_wrist(const struct closed_form *form, const struct fr
             continue;
         for (int elbow = 0; elbow < 2; elbow++) {
             struct turn q[3] = {q1[front], q2[elbow], q3[elbow]};
-            real inner[3] = {angle_of(q[0]), angle_of(q[1]), angle_of(q[2])};
+            real inner[3] = {turn_angle(q[0]), turn_angle(q[1]), turn_angle(q[2])};
             undo_three(chain, q, far_tool, tool);
             undo_three(chain, q, far_side, side);
             spherical_wrist(chain, tool, across, side, free, inner,
@@ -194,12 +194,12 @@ static void elbow_branches(const struct closed_form *form, const struct frame *m
     for (int elbow = 0; elbow < 2; elbow++) {
         struct turn back_3 = is_same_3 ? turn_back(q3[elbow]) : q3[elbow];
         struct turn q4 = turn_on(turn_on(all, turn_back(q2[elbow])), back_3);
-        branches[elbow][0] = angle_of(outer[0]);
-        branches[elbow][1] = angle_of(q2[elbow]);
-        branches[elbow][2] = angle_of(q3[elbow]);
-        branches[elbow][3] = angle_of(is_same_4 ? q4 : turn_back(q4));
-        branches[elbow][4] = angle_of(outer[1]);
-        branches[elbow][5] = angle_of(outer[2]);
+        branches[elbow][0] = turn_angle(outer[0]);
+        branches[elbow][1] = turn_angle(q2[elbow]);
+        branches[elbow][2] = turn_angle(q3[elbow]);
+        branches[elbow][3] = turn_angle(is_same_4 ? q4 : turn_back(q4));
+        branches[elbow][4] = turn_angle(outer[1]);
+        branches[elbow][5] = turn_angle(outer[2]);
     }
 }
 

@@ -30,12 +30,12 @@ static real largest(const real a[6])
 }
 
 /* v' M: for U the parts along the left singular vectors, for V' a sum of the right ones. */
-static void times6(const real vector[6], const real matrix[SQUARE], real product[6])
+static void times6(const real vector[6], const real matrix[6][6], real product[6])
 {
     for (int k = 0; k < 6; k++) {
         product[k] = 0;
         for (int i = 0; i < 6; i++)
-            product[k] += vector[i] * matrix[6 * i + k];
+            product[k] += vector[i] * matrix[i][k];
     }
 }
 
@@ -54,8 +54,7 @@ void decompose(const struct chain *chain, real length, const real joints[JOINTS]
     posture turned;
     chain_posture(chain, joints, &turned);
     chain_jacobian(&turned, at->jacobian);
-    for (int k = 0; k < 3 * JOINTS; k++)
-        at->jacobian[k] /= length;
+    scale_jacobian(length, at->jacobian);
     svd6(at->jacobian, &at->svd);
 }
 
@@ -67,8 +66,8 @@ void turning(const struct decomposed *at, const real rates[JOINTS], real acceler
     for (int i = 0; i < JOINTS; i++) {
         real velocity[3], turn[3], both[3], linear[3], angular[3];
         for (int k = 0; k < 3; k++) {
-            velocity[k] = at->jacobian[JOINTS * k + i] * rates[i];
-            turn[k] = at->jacobian[JOINTS * (3 + k) + i] * rates[i];
+            velocity[k] = at->jacobian[k][i] * rates[i];
+            turn[k] = at->jacobian[3 + k][i] * rates[i];
             both[k] = 2 * before[k] + turn[k];
         }
         cross3(both, velocity, linear);
@@ -159,7 +158,7 @@ real part_driven(const struct decomposed *at, const real twist[6], const real ra
 {
     real moving[6], size = dot6(twist, twist);
     for (int k = 0; k < 6; k++)
-        moving[k] = dot6(at->jacobian + 6 * k, rates);
+        moving[k] = dot6(at->jacobian[k], rates);
     real part = size > 0 ? dot6(moving, twist) / size : 0;
     for (int k = 0; k < 6; k++)
         missed[k] = size > 0 ? part * twist[k] - moving[k] : 0;

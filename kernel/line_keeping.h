@@ -7,7 +7,7 @@
 
 /* The Jacobian with its metres divided by the arm's length, J = U S V'. Twists are scaled alike. */
 struct decomposed {
-    real jacobian[SQUARE];
+    real jacobian[6][JOINTS];
     struct svd6 svd;
 };
 

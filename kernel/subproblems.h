@@ -4,6 +4,7 @@
 #ifndef KERNEL_SUBPROBLEMS_H
 #define KERNEL_SUBPROBLEMS_H
 
+#include "trigonometry.h"
 #include "vector.h"
 
 /* An angle by its cosine and sine: whole turns do not matter until it is a joint's. */
@@ -16,9 +17,9 @@ static inline struct turn turn_by(real angle)
     return (struct turn){real_cos(angle), real_sin(angle)};
 }
 
-static inline real angle_of(struct turn turn)
+static inline real turn_angle(struct turn turn)
 {
-    return real_atan2(turn.sine, turn.cosine);
+    return angle_of(turn.sine, turn.cosine);
 }
 
 static inline struct turn turn_back(struct turn turn)
