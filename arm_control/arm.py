@@ -80,7 +80,9 @@ class SerialArm:
         NaN rows are branches that do not close. k is 8 where there is a closed form; without one
         it is 16, and a branch may be missing.
         """
-        position, rotation, start = aligned(pose, self._near(near))
+        position, rotation, start = pose.position, pose.rotation, self._near(near)
+        if start.shape[:-1] != position.shape[:-1]:
+            position, rotation, start = aligned(pose, start)
         found = np.empty((*start.shape[:-1], MOST_BRANCHES, JOINTS))
         if _kernel.arm_branches(self._numbers, position, rotation, start, found):
             self._checked(start)
@@ -105,7 +107,9 @@ class SerialArm:
 
     def _nearest(self, pose: Pose, near: Array | None) -> tuple[Array, int]:
         """Joints (..., 6), and how many of them are NaN."""
-        position, rotation, start = aligned(pose, self._near(near))
+        position, rotation, start = pose.position, pose.rotation, self._near(near)
+        if start.shape[:-1] != position.shape[:-1]:
+            position, rotation, start = aligned(pose, start)
         joints = np.empty(start.shape)
         lost = _kernel.arm_inverse(self._numbers, position, rotation, start, joints)
         if lost:
@@ -167,7 +171,7 @@ class SerialArm:
         return self.rest if near is None else self._checked(near, finite=False)
 
     def _checked(self, joints: Array, finite: bool = True) -> Array:
-        array = np.asarray(joints, dtype=np.float64)
+        array = np.ascontiguousarray(joints, np.float64)
         if array.shape[-1:] != (JOINTS,):
             raise InvalidInput(f'joints have shape {array.shape}, needs (..., 6)')
         if finite and not np.isfinite(array).all():

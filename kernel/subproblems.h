@@ -4,7 +4,6 @@
 #ifndef KERNEL_SUBPROBLEMS_H
 #define KERNEL_SUBPROBLEMS_H
 
-#include "trigonometry.h"
 #include "vector.h"
 
 /* An angle by its cosine and sine: whole turns do not matter until it is a joint's. */
@@ -19,7 +18,7 @@ static inline struct turn turn_by(real angle)
 
 static inline real turn_angle(struct turn turn)
 {
-    return angle_of(turn.sine, turn.cosine);
+    return real_atan2(turn.sine, turn.cosine);
 }
 
 static inline struct turn turn_back(struct turn turn)

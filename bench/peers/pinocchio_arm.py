@@ -3,7 +3,7 @@
 import numpy as np
 import pinocchio as pin
 
-from bench.peers.arm_library import ArmLibrary, compared
+from bench.peers.arm_library import ArmLibrary, compared, compared_without_closed_form
 from bench.peers.published_arms import links
 from bench.row import Row
 from manipulator.arrays import Array
@@ -53,4 +53,5 @@ class PinocchioArm:
 def rows() -> list[Row]:
     arm = PinocchioArm('ur5')
     name = f'Pinocchio {pin.__version__}'
-    return compared(ArmLibrary(name, arm.forward, arm.jacobian, arm.inverse))
+    found = compared(ArmLibrary(name, arm.forward, arm.jacobian, arm.inverse))
+    return found + compared_without_closed_form(name, PinocchioArm('skew_puma').inverse)
