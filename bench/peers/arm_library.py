@@ -25,13 +25,15 @@ SHARE = 0.15  # of another's time, that our inverse may take
 class ArmLibrary:
     """A library's UR5: joints to pose (4, 4) and Jacobian (6, 6), pose and start to joints.
 
-    The Jacobian's rows are v of the tool point, then ω, in base axes.
+    The Jacobian's rows are v of the tool point, then ω, in base axes. pose is forward into what
+    ours returns, where the library holds position and rotation by themselves.
     """
 
     name: str
     forward: Callable[[Array], Array]
     jacobian: Callable[[Array], Array] | None
-    inverse: Callable[[Array, Array], Array] | None
+    inverse: Callable[[Array, Array], Array | None] | None
+    pose: Callable[[Array], Pose] | None = None
 
 
 def compared(library: ArmLibrary) -> list[Row]:
@@ -115,14 +117,19 @@ def agreement_row(library: ArmLibrary) -> Row:
 def speed_rows(library: ArmLibrary) -> list[Row]:
     chain = load('ur5').kinematics.chain
     joints = np.random.default_rng(2).uniform(-np.pi, np.pi, (ROUNDS, 6))
-    pairs = {'forward': (library.forward, chain.forward)}
-    if library.jacobian is not None:
-        pairs['Jacobian'] = (library.jacobian, chain.jacobian)
     found = []
-    for what, pair in pairs.items():
+    for what, task, own_task, has_goal in (
+        ('forward', library.forward, chain.forward, library.pose is None),
+        ('forward into a Pose', library.pose, chain.forward, True),
+        ('Jacobian', library.jacobian, chain.jacobian, True),
+    ):
+        if task is None:
+            continue
+        pair = task, own_task
         theirs, own = interleaved_medians([lambda k, f=f: f(joints[k]) for f in pair], ROUNDS)
         text = f'{1e6 * theirs:.1f} µs, ours {1e6 * own:.1f} µs = {own / theirs:.2f}×'
-        found.append(Row(f'{library.name}: {what}', text, '≤ 1×', own <= theirs))
+        goal, reached = ('≤ 1×', own <= theirs) if has_goal else ('', True)
+        found.append(Row(f'{library.name}: {what}', text, goal, reached))
     return found
 
 
