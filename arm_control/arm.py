@@ -80,7 +80,8 @@ class SerialArm:
         NaN rows are branches that do not close. k is 8 where there is a closed form; without one
         it is 16, and a branch may be missing.
         """
-        position, rotation, start = pose.position, pose.rotation, self._near(near)
+        position, rotation = pose.position, pose.rotation
+        start = self.rest if near is None else self._checked(near, finite=False)
         if start.shape[:-1] != position.shape[:-1]:
             position, rotation, start = aligned(pose, start)
         found = np.empty((*start.shape[:-1], MOST_BRANCHES, JOINTS))
@@ -106,8 +107,9 @@ class SerialArm:
         return self._nearest(pose, near)[0]
 
     def _nearest(self, pose: Pose, near: Array | None) -> tuple[Array, int]:
-        """Joints (..., 6), and how many of them are NaN."""
-        position, rotation, start = pose.position, pose.rotation, self._near(near)
+        """Joints (..., 6), and how many of them are NaN: as all are near what is not finite."""
+        position, rotation = pose.position, pose.rotation
+        start = self.rest if near is None else self._checked(near, finite=False)
         if start.shape[:-1] != position.shape[:-1]:
             position, rotation, start = aligned(pose, start)
         joints = np.empty(start.shape)
@@ -165,10 +167,6 @@ class SerialArm:
         return self.chain.sigma_min(
             self._checked(joints, finite=False), self.characteristic_length
         )
-
-    def _near(self, near: Array | None) -> Array:
-        """Six numbers; the kernel finds no branch near what is not finite."""
-        return self.rest if near is None else self._checked(near, finite=False)
 
     def _checked(self, joints: Array, finite: bool = True) -> Array:
         array = np.ascontiguousarray(joints, np.float64)
