@@ -8,7 +8,7 @@ from arm_control.chain import JOINTS, Chain, aligned
 from arm_control.closed_forms import BRANCHES
 from arm_control.geometry import JOINT_NAMES, JointLimits
 from arm_control.inverse_method import InverseMethod, fitting_method
-from arm_control.numerical import MOST_BRANCHES, arm_numbers
+from arm_control.numerical import MOST_BRANCHES
 from manipulator import _kernel
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
@@ -50,7 +50,7 @@ class SerialArm:
         object.__setattr__(self, 'home', self.chain.forward(rest))
         length, low, high = self.characteristic_length, self.limits.low, self.limits.high
         method = fitting_method(self.chain, self.limits, length)
-        numbers = arm_numbers(self.chain, method.form, length, low, high)
+        numbers = method.arm_numbers(length, low, high)
         object.__setattr__(self, 'method', method)
         object.__setattr__(self, '_numbers', numbers)
 
