@@ -2,6 +2,9 @@
 
 #include "subproblems.h"
 
+/* Radians between two q3 that may be the same. */
+#define CLOSE REAL(0.02)
+
 enum { EQUATIONS = 14, UNKNOWN = 8, SIZE = 12, DEGREE = 8, SAMPLES = 2 * DEGREE + 1 };
 
 /* A joint's axis: a unit vector and a point. */
@@ -367,9 +370,15 @@ static void all_roots(const complex_number polynomial[SAMPLES], complex_number r
     }
 }
 
-/* The angles q3 at which the series is zero, or nearly; how many. */
+static real distance(complex_number a, complex_number b)
+{
+    real across = a.cosine - b.cosine, along = a.sine - b.sine;
+    return real_sqrt(across * across + along * along);
+}
+
+/* The angles q3 at which the series is zero, or nearly, and how far the next ones are; how many. */
 static int series_roots(const real cosines[DEGREE + 1], const real sines[DEGREE + 1],
-                        real angles[MOST_CANDIDATES])
+                        real angles[MOST_CANDIDATES], real rooms[MOST_CANDIDATES])
 {
     const real nearly = REAL(0.2), rounding = REAL(1e-4);
     complex_number polynomial[SAMPLES], roots[2 * DEGREE];
@@ -379,15 +388,20 @@ static int series_roots(const real cosines[DEGREE + 1], const real sines[DEGREE 
     for (int k = 0; k < 2 * DEGREE; k++) {
         real size = real_sqrt(roots[k].cosine * roots[k].cosine + roots[k].sine * roots[k].sine);
         /* Roots beside the circle are pairs z, 1/z*: one is enough. */
-        if (size > 1 - nearly && size < 1 + rounding)
-            angles[count++] = turn_angle(roots[k]);
+        if (!(size > 1 - nearly && size < 1 + rounding))
+            continue;
+        rooms[count] = 1;
+        for (int j = 0; j < 2 * DEGREE; j++)
+            if (j != k && distance(roots[j], roots[k]) < rooms[count])
+                rooms[count] = distance(roots[j], roots[k]);
+        angles[count++] = turn_angle(roots[k]);
     }
     return count;
 }
 
 /* Newton's method on "the matrix is singular": with M v = 0 wanted, M u = M' v gives the step
    -1/(v.u), and u is the next v. */
-static void refine(six_equations six, real *q3, real v[SIZE])
+static void refine(six_equations six, real room, real *q3, real v[SIZE])
 {
     enum { STEPS = 3 };
     for (int k = 0; k < SIZE; k++)
@@ -411,9 +425,76 @@ static void refine(six_equations six, real *q3, real v[SIZE])
             v[k] = u[k];
         }
         real change = step ? -1 / (size * along) : 0;
-        if (real_fabs(change) < REAL(0.1))
+        if (real_fabs(change) < room / 4)
             *q3 += change;
     }
+}
+
+static real dot12(const real a[SIZE], const real b[SIZE])
+{
+    real sum = 0;
+    for (int k = 0; k < SIZE; k++)
+        sum += a[k] * b[k];
+    return sum;
+}
+
+/* Two vectors that the matrix almost takes to zero, by inverse iteration. */
+static void null_pair(six_equations six, real q3, real pair[2][SIZE])
+{
+    enum { STEPS = 2 };
+    real at[3], matrix[SIZE][SIZE], next[SIZE];
+    int order[SIZE];
+    trigonometry(q3, at);
+    twelve(six, at, matrix);
+    factors(matrix, order);
+    for (int k = 0; k < SIZE; k++) {
+        pair[0][k] = 1;
+        pair[1][k] = k % 2 ? -1 : 1;
+    }
+    for (int step = 0; step < STEPS; step++)
+        for (int n = 0; n < 2; n++) {
+            solve_with(matrix, order, pair[n], next);
+            real along = n ? dot12(next, pair[0]) : 0;
+            for (int k = 0; k < SIZE; k++)
+                pair[n][k] = next[k] - along * pair[0][k];
+            real size = real_sqrt(dot12(pair[n], pair[n]));
+            for (int k = 0; k < SIZE; k++)
+                pair[n][k] /= size;
+        }
+}
+
+/* Where two branches have almost the same q3, each one's powers are a mixture w of the pair: those
+   from x on are x times those from 1 on, so that w is an eigenvector of G^-1 H. How many are. */
+static int separated(six_equations six, real q3, real mixtures[2][SIZE])
+{
+    real pair[2][SIZE], g[2][2], h[2][2], a[2][2];
+    null_pair(six, q3, pair);
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++) {
+            g[i][j] = h[i][j] = 0;
+            for (int k = 0; k + 3 < SIZE; k++) {
+                g[i][j] += pair[i][k] * pair[j][k];
+                h[i][j] += pair[i][k] * pair[j][k + 3];
+            }
+        }
+    real determinant = g[0][0] * g[1][1] - g[0][1] * g[1][0];
+    for (int j = 0; j < 2; j++) {
+        a[0][j] = (g[1][1] * h[0][j] - g[0][1] * h[1][j]) / determinant;
+        a[1][j] = (g[0][0] * h[1][j] - g[1][0] * h[0][j]) / determinant;
+    }
+    real middle = (a[0][0] + a[1][1]) / 2;
+    real square = middle * middle - (a[0][0] * a[1][1] - a[0][1] * a[1][0]);
+    if (!(square > 0))
+        return 0;
+    for (int n = 0; n < 2; n++) {
+        real x = middle + (n ? real_sqrt(square) : -real_sqrt(square));
+        int row = real_fabs(a[0][1]) + real_fabs(a[0][0] - x)
+                  < real_fabs(a[1][0]) + real_fabs(a[1][1] - x);
+        real w[2] = {row ? a[1][1] - x : -a[0][1], row ? -a[1][0] : a[0][0] - x};
+        for (int k = 0; k < SIZE; k++)
+            mixtures[n][k] = w[0] * pair[0][k] + w[1] * pair[1][k];
+    }
+    return 2;
 }
 
 /* Twice the angle whose sine and cosine are the longest pair of neighbours among powers. */
@@ -483,20 +564,25 @@ int general_candidates(const struct chain *chain, real length, int first, const 
     struct loop loop;
     struct equations equations;
     six_equations six;
-    real cosines[DEGREE + 1], sines[DEGREE + 1], roots[MOST_CANDIDATES];
+    real cosines[DEGREE + 1], sines[DEGREE + 1], roots[MOST_CANDIDATES], rooms[MOST_CANDIDATES];
     eliminated(chain, length, first, pose, &loop, &equations, six);
     determinant_series(six, cosines, sines);
-    int count = series_roots(cosines, sines, roots);
+    int count = series_roots(cosines, sines, roots, rooms);
+    int found = 0;
     for (int n = 0; n < count; n++) {
-        real v[SIZE], q[JOINTS];
+        real v[3][SIZE], q[JOINTS];
         q[2] = roots[n];
-        refine(six, &q[2], v);
-        q[3] = doubled(v, 3);
-        q[4] = doubled(v, 1);
-        inner_joints(&equations, q, &q[0], &q[1]);
-        q[5] = last_joint(&loop, q);
-        for (int i = 0; i < JOINTS; i++)
-            candidates[n][(first + i) % JOINTS] = q[i];
+        refine(six, rooms[n], &q[2], v[0]);
+        int kinds = rooms[n] < CLOSE ? 1 + separated(six, q[2], v + 1) : 1;
+        for (int kind = 0; kind < kinds && found < MOST_CANDIDATES; kind++) {
+            q[3] = doubled(v[kind], 3);
+            q[4] = doubled(v[kind], 1);
+            inner_joints(&equations, q, &q[0], &q[1]);
+            q[5] = last_joint(&loop, q);
+            for (int i = 0; i < JOINTS; i++)
+                candidates[found][(first + i) % JOINTS] = q[i];
+            found++;
+        }
     }
-    return count;
+    return found;
 }
