@@ -1,4 +1,4 @@
-"""The arm jogged at 500 setpoints a second through the whole graph: what comes, and when."""
+"""The arm jogged at 500 setpoints a second through the whole graph: message rates and jitter."""
 
 import os
 import tempfile

@@ -1,4 +1,4 @@
-"""The running machine: `hexarm up` with its nodes in one process, and in one each."""
+"""The running machine: `hexarm up` with its nodes in one process, and in separate processes."""
 
 import json
 import os

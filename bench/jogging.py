@@ -1,4 +1,4 @@
-"""One jog tick through the player, modes and all, against one 6×6 linear solve in the same run."""
+"""One jog tick of the executor with a jog mode, against one 6×6 linear solve in the same run."""
 
 import time
 
@@ -36,12 +36,12 @@ def tick_rows(name: str) -> list[Row]:
     p99 = float(np.percentile(taken, 99)) * 1e-6
     return [
         tick_row(name, one / solve),
-        Row(f'{name}: one jog tick of the player, CPU at p99', f'{p99:.3f} ms', '≤ 1', p99 <= 1),
+        Row(f'{name}: one jog tick of the executor, CPU at p99', f'{p99:.3f} ms', '≤ 1', p99 <= 1),
     ]
 
 
 def tick_row(name: str, ratio: float) -> Row:
-    shown = f'{name}: one jog tick of the player', f'{ratio:.0f} × a 6×6 solve'
+    shown = f'{name}: one jog tick of the executor', f'{ratio:.0f} × a 6×6 solve'
     return Row(*shown, '≤ 25', ratio <= 25) if name.startswith('arm') else Row(*shown)
 
 

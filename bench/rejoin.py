@@ -1,4 +1,4 @@
-"""A process killed and started again: seconds until it hears the others and they hear it.
+"""A process killed and restarted: seconds until messages arrive in both directions.
 
 `python -m bench.rejoin` is the process that is killed: it sends back what it hears.
 """

@@ -1,4 +1,4 @@
-"""How soon the servo targets stand still when a process dies or freezes, and after a STOP."""
+"""Seconds until the servo targets stop after a process dies or freezes, and after a STOP."""
 
 import os
 import random

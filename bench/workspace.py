@@ -80,7 +80,7 @@ def reach_rows(machine: Machine) -> list[Row]:
         Row('reach of one pose, every limit and its distance', f'{1e3 * seconds:.2f} ms'),
         Row('nearest reachable pose, median', f'{1e3 * np.median(times):.0f} ms'),
         Row(
-            'nearest reachable pose: what random search can better',
+            'nearest reachable pose: improvement by random search',
             f'{1e3 * max(gains):.4f} mm at most',
             '0.02 mm',
             max(gains) <= 2e-5,
