@@ -14,7 +14,7 @@ setup(
     license='Apache-2.0',
     python_requires='>=3.10',
     packages=find_packages(include=[pattern for r in PACKAGES for pattern in (r, f'{r}.*')]),
-    package_data={'hexarm': ['fastdds.xml', 'panel/joystick.html']},
+    package_data={'hexarm': ['*.xml', 'panel/joystick.html']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),

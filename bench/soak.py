@@ -20,7 +20,7 @@ from std_srvs.srv import SetBool
 
 from bridge.fake.faults import Faults
 from bridge.protocol import Arm, Disarm, ResetCause, Setpoint
-from hexarm import machines
+from hexarm import keep_to_this_computer, machines
 from hexarm.rig import Rig
 from manipulator.errors import ManipulatorError
 from manipulator.nodes.qos import COMMAND
@@ -163,7 +163,7 @@ def main(arguments):
     parser.add_argument('--seconds', type=float, default=600.0, help='of both machines together')
     seconds = parser.parse_args(arguments).seconds / len(MACHINES)
     os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    keep_to_this_computer()
     results = []
     for kind in MACHINES:
         with tempfile.TemporaryDirectory() as folder:

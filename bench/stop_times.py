@@ -14,6 +14,7 @@ from std_msgs.msg import Bool
 
 from bench.row import Row
 from bridge.protocol import Stop
+from hexarm import keep_to_this_computer
 from hexarm.rig import Rig
 from manipulator.nodes.qos import COMMAND
 
@@ -25,7 +26,7 @@ SIGNALS = {'killed': signal.SIGKILL, 'frozen': signal.SIGSTOP}
 
 def rows():
     os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    keep_to_this_computer()
     with tempfile.TemporaryDirectory() as folder, Rig(Path(folder), SPACE) as rig:
         rig.enable()
         times = {

@@ -31,8 +31,6 @@ from manipulator.errors import ManipulatorError, Refused
 Pulses = tuple[float | None, ...]
 
 TRIES = 10
-RESTARTS = (3, 6)
-"""Tries before which every node is started again."""
 PULSE_PERIOD = 0.02
 FROZEN = 1.0
 """Seconds for which the servo targets must be still to be called so."""
@@ -192,24 +190,16 @@ class Rig:
 
     def enable(self) -> None:
         """Asks again where the bridge is no more, or lost its board on a computer that stalls."""
-        for attempt in range(TRIES):
-            self._restart_at(attempt)
+        for _ in range(TRIES):
             with contextlib.suppress(NotReady, Refused):
                 self.user.enable()
                 return
         raise NotReady(f'not enabled in {TRIES} tries: {self.user.summary}')
 
-    def _restart_at(self, attempt: int) -> None:
-        """Starts all nodes again: Fast DDS now and then never hears one that was killed."""
-        if attempt in RESTARTS:
-            for name in self._nodes:
-                self.start(name)
-
     def circle(self, seconds: float) -> None:
         """Has the platform circle about home for a while; again, where this computer stalls."""
         last: ManipulatorError | None = None
-        for attempt in range(TRIES):
-            self._restart_at(attempt)
+        for _ in range(TRIES):
             try:
                 if self.user.machine_state.message not in ENABLING:
                     self.enable()

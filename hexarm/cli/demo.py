@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from hexarm import keep_to_this_computer
 from hexarm.cli.answers import picture_file
 from hexarm.cli.statuses import INTERRUPTED
 from hexarm.cli.up import Interrupted, StopSignal, check_alive
@@ -52,7 +53,8 @@ def run(arguments: argparse.Namespace) -> int:
     from hexarm.demo import arm_report as demo_arm_report  # noqa: PLC0415
 
     picture: Path = arguments.picture
-    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    if 'ROS_AUTOMATIC_DISCOVERY_RANGE' not in os.environ:
+        keep_to_this_computer()
     os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
     stop = StopSignal()
     try:
