@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 SETTLES = 1.0
 """Seconds within which a STOP from before is said to the board, and obeyed."""
-LOOKS = 1.0
-"""Seconds in which a graph that runs already is found."""
+LOOKS = 0.7
+"""Seconds in which a graph that runs already is found: at most 0.46 s in 64 tries."""
 OURS = ('trajectory', 'ik', 'pose', 'serial_bridge')
 """Nodes of which a namespace has one; a fake board may be there for `--port` to name."""
 SERVOS_OFF = ('not heard of', 'disconnected', 'booting', 'disarmed')
