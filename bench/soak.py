@@ -23,7 +23,7 @@ from bridge.protocol import Arm, Disarm, ResetCause, Setpoint
 from hexarm import keep_to_this_computer, machines
 from hexarm.rig import Rig
 from manipulator.errors import ManipulatorError
-from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.qos import COMMAND, EVERY_WORD
 from manipulator.pose import Pose
 
 FAULTS_PER_MINUTE = 150.0
@@ -45,7 +45,7 @@ class Soak:
         self.random = Random(seed)
         self.home = machines.load(machine).kinematics.home
         node = self.user.node
-        self.stops = node.create_publisher(Bool, 'emergency_stop', COMMAND)
+        self.stops = node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         self.overrides = node.create_publisher(Float64, 'speed_override', COMMAND)
         self.moves = self.enablings = 0
         self.is_calm = False

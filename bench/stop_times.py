@@ -16,7 +16,7 @@ from bench.row import Row
 from bridge.protocol import Stop
 from hexarm import keep_to_this_computer
 from hexarm.rig import Rig
-from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.qos import EVERY_WORD
 
 RUNS, STOPS = 5, 20
 GOAL, STOP_GOAL_MS = 0.5, 50.0
@@ -27,7 +27,14 @@ SIGNALS = {'killed': signal.SIGKILL, 'frozen': signal.SIGSTOP}
 def rows():
     os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
     keep_to_this_computer()
-    with tempfile.TemporaryDirectory() as folder, Rig(Path(folder), SPACE) as rig:
+    return [*rows_of('one process', is_separate=False), *rows_of('separate', is_separate=True)]
+
+
+def rows_of(what, is_separate):
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        Rig(Path(folder), SPACE, is_separate=is_separate) as rig,
+    ):
         rig.enable()
         times = {
             (name, how): [stop_time(rig, name, how) for _ in range(RUNS)]
@@ -37,20 +44,19 @@ def rows():
         cable = [cable_time(rig) for _ in range(RUNS)]
         stops = emergency_stops(rig)
         commands = [command_time(rig) for _ in range(STOPS)]
-        load = os.getloadavg()[0] / (os.cpu_count() or 1)
-    found = [row(f'{name} {how}', values) for (name, how), values in times.items()]
     p50, worst = 1e3 * np.median(stops), 1e3 * np.max(stops)
+    load = os.getloadavg()[0] / (os.cpu_count() or 1)
     return [
-        *found,
-        row('cable pulled', cable),
+        *(row(f'{what}: {name} {how}', values) for (name, how), values in times.items()),
+        row(f'{what}: cable pulled', cable),
         Row(
-            f'emergency_stop published to STOP frame, median, worst of {STOPS}',
+            f'{what}: emergency_stop published to STOP frame, median, worst of {STOPS}',
             f'{p50:.1f}, {worst:.1f} ms',
             f'median ≤ {STOP_GOAL_MS:g} ms',
             p50 <= STOP_GOAL_MS,
         ),
         Row(
-            f'`hexarm stop`, from its start to the STOP frame, median, worst of {STOPS}',
+            f'{what}: `hexarm stop`, from its start to the STOP frame, median, worst of {STOPS}',
             f'{np.median(commands):.3f}, {np.max(commands):.3f} s, {load:.1f} processes a core',
             f'≤ {GOAL:g} s',
             max(commands) <= GOAL,
@@ -110,7 +116,7 @@ def clear(rig):
 
 
 def emergency_stops(rig):
-    publisher = rig.user.node.create_publisher(Bool, 'emergency_stop', COMMAND)
+    publisher = rig.user.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
     rig.user.wait('the bridge', lambda: publisher.get_subscription_count() == 1, 10.0)
     times = []
     for _ in range(STOPS):

@@ -124,7 +124,9 @@ class Rig:
         machine: str = 'robocake',
         boot_s: float = 0.2,
         faults: Faults | None = None,
+        is_separate: bool = True,
     ) -> None:
+        """`is_separate`: a process for each node, otherwise one for all four, named 'machine'."""
         config = BoardConfig.from_machine(machines.read(machine))
         self._path = folder / 'board'
         self.tap = Tap()
@@ -133,7 +135,7 @@ class Rig:
         self.board = BoardThread(self.recorder, line, lambda positions: None, faults)
         self.calibration = self.recorder.calibration
         self._space = space
-        nodes = machine_graph(machine, str(self._path), self._path, is_separate=True)
+        nodes = machine_graph(machine, str(self._path), self._path, is_separate)
         self._nodes = {node.name: node for node in nodes}
         self._graphs: dict[str, Graph] = {}
         self._stack = ExitStack()

@@ -12,7 +12,7 @@ from std_msgs.msg import Bool
 
 from bridge.protocol import Setpoint, Stop
 from hexarm.rig import Rig
-from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.qos import EVERY_WORD
 
 pytestmark = pytest.mark.graph
 
@@ -83,7 +83,7 @@ def test_a_killed_process_stops_the_machine_and_nothing_jumps_when_it_is_started
 
 def test_after_stop_and_clear_nothing_moves_until_a_new_command(circling):
     rig = circling
-    stops = rig.user.node.create_publisher(Bool, 'emergency_stop', COMMAND)
+    stops = rig.user.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
     rig.user.wait('a listener', lambda: stops.get_subscription_count() > 0, PATIENCE)
     begin = time.monotonic()
     stops.publish(Bool(data=True))

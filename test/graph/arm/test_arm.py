@@ -14,7 +14,7 @@ from std_msgs.msg import Bool, Float64
 
 from hexarm.machines import load
 from manipulator.nodes.messages import joints_of
-from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.qos import COMMAND, EVERY_WORD
 from manipulator.trajectory.path import arc
 
 pytestmark = pytest.mark.graph
@@ -141,7 +141,7 @@ def test_gripper_opens_while_the_arm_stands(arm, listen):
 
 
 def test_emergency_stop_ends_a_motion_and_nothing_resumes_after_the_clear(arm, listen):
-    stops = arm.node.create_publisher(Bool, 'emergency_stop', COMMAND)
+    stops = arm.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
     arm.wait('a listener', lambda: stops.get_subscription_count() > 0)
     goals = itertools.cycle([HOME.moved([0.25, 0, 0, 0, 0, 0]), HOME])
 
