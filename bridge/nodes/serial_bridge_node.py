@@ -35,7 +35,7 @@ from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.subscriptions import decoded
 
 HEARTBEAT = 0.5
-"""Seconds between two `machine_state`; who needs it gives up after three (trajectory/pilot.py)."""
+"""Seconds between two `machine_state`; receivers time out after three."""
 MOST_BYTES = 10_000
 """Of a joint_command: that of seven joints has less than 500."""
 

@@ -25,10 +25,10 @@ from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.subscriptions import Intake, decoded
 from manipulator.pose import Pose
+from manipulator.trajectory.controller import MotionController
 from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.path_planning import PathGoal
 from manipulator.trajectory.path_timing import PathRequest
-from manipulator.trajectory.supervisor import Supervisor
 
 MOST_POSES = 2000
 MOST_BYTES = 100 * MOST_POSES
@@ -49,9 +49,9 @@ class RawPath:
 class PathGoals:
     """The topic and its parameters."""
 
-    def __init__(self, node: Node, supervisor: Supervisor) -> None:
-        self._node, self._supervisor = node, supervisor
-        fastest = supervisor.pilot.machine.motion.linear.speed
+    def __init__(self, node: Node, controller: MotionController) -> None:
+        self._node, self._controller = node, controller
+        fastest = controller.supervisor.machine.motion.linear.speed
         for name, default, description, bounds in (
             ('path_speed', fastest, 'speed along paths without stamps (m/s)', (1e-4, 10.0)),
             ('path_tolerance', 1e-4, 'how far a path may cut its corners (m)', (1e-6, 0.1)),
@@ -70,7 +70,7 @@ class PathGoals:
                 f'a path of {length:,} bytes, limit {MOST_BYTES:,}: {MOST_POSES:,} poses take less'
             )
         check_frame(message.header.frame_id, (BASE_FRAME, WORK_FRAME))
-        self._supervisor.follow(
+        self._controller.follow(
             self._goal_of(message),
             lambda error: self._intake.refuse(message, error),
             time.monotonic(),
@@ -88,7 +88,7 @@ class PathGoals:
         return float(self._node.get_parameter(name).value)
 
     def _on_bad_path(self, message: RawPath, error: ManipulatorError) -> None:
-        self._supervisor.refuse(seconds(message.header.stamp), error)
+        self._controller.refuse(seconds(message.header.stamp), error)
 
 
 def raw_path(serialized: bytes) -> RawPath:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from manipulator.errors import ManipulatorError, Refused
-from manipulator.trajectory.pilot import NotYet
+from manipulator.trajectory.supervisor import NotYet
 
 PATIENCE = 1.0
 """Seconds from the first command that comes too early to its refusal, at most."""

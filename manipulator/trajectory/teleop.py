@@ -1,4 +1,4 @@
-"""From the sources of twists to the player: who has the machine, in which mode, what he wants."""
+"""From the sources of twists to the executor: the owner, its jog mode and its jog commands."""
 
 from typing import NoReturn
 
@@ -11,26 +11,26 @@ from manipulator.teleop.jog_modes import Feedback, JogMode
 from manipulator.teleop.jogger import check_axes
 from manipulator.teleop.modes import check_name, jog_mode
 from manipulator.trajectory.jogging import Wish
-from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.supervisor import MotionSupervisor
 
 PLAIN = 'free'
 
 
 class Teleop:
-    """Hears twists and modes; `drive` hands what counts to the player, once a tick.
+    """Hears twists and modes; `drive` hands what counts to the executor, once a tick.
 
     Times are monotonic, in seconds.
     """
 
-    def __init__(self, pilot: Pilot, delay: float) -> None:
+    def __init__(self, supervisor: MotionSupervisor, delay: float) -> None:
         """delay: how old a measured pose is by the time that its correction moves the joints."""
-        self._pilot = pilot
+        self._supervisor = supervisor
         self._delay = delay
         self._arbiter = Arbiter()
         self._wish: tuple[Array, str] = (np.zeros(6), '')
         self._name = PLAIN
         self._point: Array | None = None
-        self._is_measured = pilot.is_measured
+        self._is_measured = supervisor.is_measured
         self._made_name, self._mode = PLAIN, self._made(PLAIN)
 
     @property
@@ -46,7 +46,7 @@ class Teleop:
         """A twist (6,) of the pivot in the axes of `frame`; Refused says why it does not count."""
         check_axes(frame)
         try:
-            is_busy = self._pilot.player.is_busy
+            is_busy = self._supervisor.executor.is_busy
         except Refused as refusal:
             self._arbiter.turn_away(source, now, str(refusal))
         self._arbiter.hear(source, now, is_busy)
@@ -67,7 +67,7 @@ class Teleop:
 
     def look_at(self, point: Array, is_in_work: bool = False) -> None:
         """The point (3,) of the mode look_at, in the base frame or the work frame."""
-        to_work = self._pilot.machine.frames.T_base_work.inverse()
+        to_work = self._supervisor.machine.frames.T_base_work.inverse()
         self._point = frozen(point if is_in_work else to_work.transform(point[None])[0])
         self._take(self._name)
 
@@ -78,19 +78,19 @@ class Teleop:
     def drive(self, now: float) -> None:
         """Hands on what the source that has the machine wants."""
         try:
-            player = self._pilot.player
+            executor = self._supervisor.executor
         except Refused:
             self._arbiter.stop()
             return
         source = self._arbiter.owner(now)
         if not source:
-            player.jog(None)
+            executor.jog(None)
             return
-        if self._pilot.is_measured != self._is_measured:
-            self._is_measured = self._pilot.is_measured
+        if self._supervisor.is_measured != self._is_measured:
+            self._is_measured = self._supervisor.is_measured
             self._take(self._made_name)
         twist, frame = self._wish
-        player.jog(Wish(source, twist, frame, self._mode))
+        executor.jog(Wish(source, twist, frame, self._mode))
 
     def _take(self, name: str) -> None:
         self._mode = self._made(name)

@@ -1,4 +1,4 @@
-"""One machine's whole chain without processes: pilot, command check, driver, board."""
+"""One machine's whole chain without processes: supervisor, command check, driver, board."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from manipulator.command_check import CommandCheck
 from manipulator.errors import ManipulatorError
 from manipulator.frames import Frames
 from manipulator.pose import Pose
-from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.supervisor import MotionSupervisor
 from manipulator.trajectory.teleop import Teleop
 
 DT = 0.01
@@ -52,8 +52,8 @@ class Loop:
         self.driver = BoardDriver(config, self)
         self.monitor, self._link = self.driver.monitor, self.driver.link
         self.check = CommandCheck(self.machine)
-        self.pilot = Pilot(self.machine, DT)
-        self.teleop = Teleop(self.pilot, delay=0.06)
+        self.supervisor = MotionSupervisor(self.machine, DT)
+        self.teleop = Teleop(self.supervisor, delay=0.06)
         calibration = self.driver.calibration
         self.park = calibration.counts(calibration.park)
         self._names = list(self.machine.kinematics.joint_names)
@@ -105,9 +105,9 @@ class Loop:
             self.fake.step(dt)
             self.true_joints.append(self.fake.servos.positions[self._order])
         self._turn(self.board.take_output())
-        self.pilot.note_machine_state(*self._state)
+        self.supervisor.note_machine_state(*self._state)
         self.teleop.drive(self.now)
-        pose = self.pilot.step()
+        pose = self.supervisor.step()
         if pose is not None and not self.is_stalled:
             self._send(pose)
 
@@ -128,7 +128,7 @@ class Loop:
                 self.refusals.append(f'tick {self.tick}: {error}')
             return
         pulses = self._turn()
-        frames, mode = self.pilot.machine.frames, self.pilot.status.mode
+        frames, mode = self.supervisor.machine.frames, self.supervisor.status.mode
         counts = np.array(self._written.setpoint.counts, dtype=float)
         is_first = mode == 'disabled'
         self.sent.append(
@@ -156,8 +156,8 @@ class Loop:
         near = self._measured
         self._measured = self.machine.kinematics.forward(positions, near).pose
         self.check.note_joints(positions)
-        self.pilot.note_joints(positions)
-        self.pilot.note_pose(self._measured)
+        self.supervisor.note_joints(positions)
+        self.supervisor.note_pose(self._measured)
 
 
 @pytest.fixture

@@ -89,8 +89,8 @@ def test_a_person_takes_the_machine_from_the_computer_which_must_let_go_first(wo
         world.run(0.02)
         world.links['twists'].send(world.user.stamp, 'cmd_vel', FORWARD)
         world.run(0.02)
-    assert world.supervisor.teleop.owner(world.now) == 'cmd_vel/joy'
-    reasons = [reason for _, reason in world.supervisor.on_twist.refusals]
+    assert world.controller.teleop.owner(world.now) == 'cmd_vel/joy'
+    reasons = [reason for _, reason in world.controller.on_twist.refusals]
     assert any('cmd_vel/joy took the machine over' in reason for reason in reasons)
 
 
@@ -101,14 +101,14 @@ def test_a_stick_overrides_a_goal_in_motion_smoothly_and_the_goal_does_not_resum
     arm.wait('5 cm', lambda: arm.pose.position[0] > home.position[0] + 0.05)
     assert arm.status.mode == 'move'
     hold(arm, UP, 1.0)
-    told = [(s.goal_stamp, s.result, s.mode) for _, s in arm.supervisor.statuses]
+    told = [(s.goal_stamp, s.result, s.mode) for _, s in arm.controller.statuses]
     assert (stamp, 'moving', 'move') in told
     assert told[-1][1:] == ('moving', 'jog')
     refused = arm.send_goal(home)
     hold(arm, UP, 0.1)
     assert any(
         s.goal_stamp == refused and f'{JOY} has the machine' in s.reason
-        for _, s in arm.supervisor.statuses
+        for _, s in arm.controller.statuses
     )
     hold(arm, np.zeros(6), 0.02)
     arm.run(1.0)

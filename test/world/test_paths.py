@@ -19,14 +19,14 @@ def circle(count, turns=1.0):
 def end_of(world, stamp, seconds=60.0):
     """Positions (n, 3) and statuses until something came of it."""
     seen, ends = [], ('reached', 'refused', 'stopped')
-    since = len(world.supervisor.statuses)
+    since = len(world.controller.statuses)
 
     def is_over():
         seen.append(world.pose.position)
         return world.status.goal_stamp == stamp and world.status.result in ends
 
     world.wait('end of the path', is_over, seconds)
-    return np.array(seen), [status for _, status in world.supervisor.statuses[since:]]
+    return np.array(seen), [status for _, status in world.controller.statuses[since:]]
 
 
 def off_circle(points):

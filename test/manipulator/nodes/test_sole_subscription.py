@@ -75,16 +75,16 @@ def test_second_publisher_is_trouble_until_a_second_after_its_end(graph_of, cloc
         assert seen[-1] == ''
 
 
-class IdlePilot:
+class IdleSupervisor:
     """A machine that nothing drives."""
 
     is_measured = False
-    player = SimpleNamespace(is_busy=False, jog=lambda wish: None)
+    executor = SimpleNamespace(is_busy=False, jog=lambda wish: None)
 
 
 @pytest.mark.parametrize('source', SOURCES)
 def test_twists_of_two_publishers_move_nothing_until_there_was_silence(graph, clock, source):
-    teleop, heard = Teleop(IdlePilot(), 0.06), []
+    teleop, heard = Teleop(IdleSupervisor(), 0.06), []
     topics = TeleopTopics(graph.node('machine'), teleop)
 
     def received():

@@ -1,11 +1,11 @@
-"""The process of the motion supervisor, with its thread for plans."""
+"""The process of the motion controller, with its thread for plans."""
 
 from concurrent.futures import Future
 from threading import Event
 
 from manipulator.errors import ManipulatorError
+from manipulator.trajectory.controller import MotionController
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.supervisor import Supervisor
 from manipulator.trajectory.worker import Effort, Job
 from world.intake import Intake
 from world.timeline import Process
@@ -39,7 +39,7 @@ class Thread:
                 future.set_exception(error)
 
 
-class SupervisorProcess(Process):
+class ControllerProcess(Process):
     """Goals, paths, twists, poses, joints and the bridge's word in; setpoints and statuses out.
 
     statuses: as they were published, with their times. ages: of each setpoint when it went out, s.
@@ -48,7 +48,7 @@ class SupervisorProcess(Process):
     def __init__(self, timeline, machine, setpoints):
         super().__init__(timeline)
         self.thread = Thread(timeline)
-        self.core = Supervisor(machine, DT, worker=self.thread)
+        self.core = MotionController(machine, DT, worker=self.thread)
         self.statuses, self.ages = [], []
         self.pause_in_next_tick = 0.0
         self._setpoints = setpoints
@@ -60,8 +60,8 @@ class SupervisorProcess(Process):
         self.every(DT, self._tick)
 
     @property
-    def pilot(self):
-        return self.core.pilot
+    def supervisor(self):
+        return self.core.supervisor
 
     @property
     def teleop(self):

@@ -30,7 +30,7 @@ TAKEN_OVER = 'the machine was taken over anew while the path was worked out'
 """Why a path that was expected is not driven."""
 
 
-class Player:
+class Executor:
     """Owns the commanded state of one machine from the moment that it is enabled."""
 
     def __init__(

@@ -8,10 +8,10 @@ import pytest
 from hexarm.machines import load
 from manipulator.errors import NoSolution, Refused
 from manipulator.pose import Pose
+from manipulator.trajectory.controller import MotionController
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.early_command import PATIENCE
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.supervisor import Supervisor
 
 MACHINE = load('robocake')
 HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))
@@ -26,7 +26,7 @@ def at(pose, expected):
 
 
 def test_goals_are_of_the_platform_or_of_the_pivot(stage):
-    stage.core.pilot.set_pivot([0.0, 0.0, 0.01])
+    stage.core.supervisor.set_pivot([0.0, 0.0, 0.01])
     stage.run(2)
     stage.pursue(Goal(HIGHER, 1.0))
     stage.run(200)
@@ -92,21 +92,23 @@ def test_home_and_park_arrive_with_their_own_joints(staged, name):
     stage.core.park(1.0, stage.now)
     stage.run(1500)
     assert (stage.status.result, stage.status.goal_stamp) == ('reached', 1.0)
-    np.testing.assert_allclose(stage.player.joints, park, atol=1e-6)
+    np.testing.assert_allclose(stage.executor.joints, park, atol=1e-6)
     stage.core.home(2.0, stage.now)
     stage.run(1500)
     assert (stage.status.result, stage.status.goal_stamp) == ('reached', 2.0)
-    np.testing.assert_allclose(stage.player.joints, kinematics.inverse(kinematics.home), atol=1e-6)
+    np.testing.assert_allclose(
+        stage.executor.joints, kinematics.inverse(kinematics.home), atol=1e-6
+    )
 
 
 def test_home_is_the_platforms_whatever_the_pivot(stage):
     stage.pursue(Goal(HIGHER, 1.0))
     stage.run(200)
-    stage.core.pilot.set_pivot([0.0, 0.0, 0.01])
+    stage.core.supervisor.set_pivot([0.0, 0.0, 0.01])
     stage.run(2)
     stage.core.home(2.0, stage.now)
     home = stage.machine.kinematics.home
-    assert at(stage.core.pilot.machine.frames.platform(stage.player.pursued), home)
+    assert at(stage.core.supervisor.machine.frames.platform(stage.executor.pursued), home)
     stage.run(200)
     assert at(stage.pose, home)
 
@@ -121,7 +123,7 @@ def test_home_that_waits_and_comes_to_nothing_is_news(stage):
 
 def test_park_of_a_machine_without_servos_is_refused():
     with pytest.raises(Refused, match='no usable park position'):
-        Supervisor(replace(MACHINE, park=None), 0.01).park(1.0, 0.0)
+        MotionController(replace(MACHINE, park=None), 0.01).park(1.0, 0.0)
 
 
 def test_park_of_a_machine_whose_pose_there_is_unknown_is_refused():
@@ -133,7 +135,7 @@ def test_park_of_a_machine_whose_pose_there_is_unknown_is_refused():
             raise NoSolution('two assembly modes fit')
 
     with pytest.raises(Refused, match='no pose that can be trusted: two assembly modes fit'):
-        Supervisor(replace(MACHINE, kinematics=Lost()), 0.01).park(1.0, 0.0)
+        MotionController(replace(MACHINE, kinematics=Lost()), 0.01).park(1.0, 0.0)
 
 
 def test_stop_brakes_drops_what_waits_and_silences_the_stick(stage):

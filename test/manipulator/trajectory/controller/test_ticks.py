@@ -6,7 +6,7 @@ import pytest
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.pilot import POSE_DEADLINE, POSE_PATIENCE, STATE_DEADLINE
+from manipulator.trajectory.supervisor import POSE_DEADLINE, POSE_PATIENCE, STATE_DEADLINE
 
 HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))
 DT = 0.01
@@ -36,7 +36,7 @@ def test_a_goal_is_reached_and_each_status_is_news_once(stage):
     assert len(stage.statuses) == len(set(stage.statuses))
 
 
-def test_a_supervisor_that_stood_still_between_ticks_lets_go(moving):
+def test_a_controller_that_stood_still_between_ticks_lets_go(moving):
     assert moving.tick(period=POSE_DEADLINE + 0.1) is None
     assert (moving.status.result, moving.status.goal_stamp) == ('stopped', 7.0)
     assert 'stood still' in moving.status.reason
@@ -44,7 +44,7 @@ def test_a_supervisor_that_stood_still_between_ticks_lets_go(moving):
     assert moving.status.result != 'reached'
 
 
-def test_a_supervisor_that_stood_still_within_a_tick_says_no_setpoint(moving):
+def test_a_controller_that_stood_still_within_a_tick_says_no_setpoint(moving):
     assert moving.tick(within=POSE_DEADLINE + 0.1) is None
     assert 'stood still' in moving.status.reason
     moving.run(100)
@@ -59,7 +59,7 @@ def test_a_tick_that_is_a_little_late_changes_nothing(moving):
 
 
 def test_without_poses_it_first_pauses_and_then_lets_go(stage):
-    stage.core.pilot.override(0.1)
+    stage.core.supervisor.override(0.1)
     stage.pursue(Goal(HIGHER, 7.0))
     stage.run(10)
     stage.does_pose_come = False
@@ -82,7 +82,7 @@ def test_without_the_bridges_word_it_lets_go(stage):
     assert 'no word of the bridge' in stage.status.reason
 
 
-def test_what_the_bridge_said_while_the_supervisor_stood_still_counts_as_said(stage):
+def test_what_the_bridge_said_while_the_controller_stood_still_counts_as_said(stage):
     stage.does_bridge_say = False
     stage.run(100)  # 1 s, and then 0.4 s three times, each too short to let go
     for _ in range(3):

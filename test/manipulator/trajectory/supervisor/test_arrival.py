@@ -7,42 +7,42 @@ from hexarm.machines import load
 from manipulator.pose import Pose
 from manipulator.trajectory.following import ARRIVAL_PATIENCE, Tolerances
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.supervisor import MotionSupervisor
 
 DT = 0.01
 
 
 class Machine:
-    """A pilot and joints that are measured, each off its command by `play` (n,)."""
+    """A supervisor and joints that are measured, each off its command by `play` (n,)."""
 
     def __init__(self, name, play, tolerances=None):
         self.machine = load(name)
         self.kinematics = self.machine.kinematics
-        self.pilot = Pilot(self.machine, DT, tolerances)
+        self.supervisor = MotionSupervisor(self.machine, DT, tolerances)
         self.play = np.asarray(play)
-        self.pilot.note_machine_state('enabled', is_followed=False, is_measured=True)
+        self.supervisor.note_machine_state('enabled', is_followed=False, is_measured=True)
         joints = self.kinematics.inverse(self.kinematics.home)
         self.see(joints)
-        self.pilot.step()
-        self.pilot.note_machine_state('enabled', is_followed=True, is_measured=True)
+        self.supervisor.step()
+        self.supervisor.note_machine_state('enabled', is_followed=True, is_measured=True)
 
     def see(self, joints):
         pose = self.kinematics.forward(joints, self.kinematics.home).pose
-        self.pilot.note_joints(joints)
-        self.pilot.note_pose(pose)
+        self.supervisor.note_joints(joints)
+        self.supervisor.note_pose(pose)
 
     def go(self, goal, ticks=600):
         """The results that were reported, in turn, and the last status."""
-        self.pilot.player.pursue(Goal(goal, 1.0))
+        self.supervisor.executor.pursue(Goal(goal, 1.0))
         results = []
         for _ in range(ticks):
-            pose = self.pilot.step()
+            pose = self.supervisor.step()
             if pose is None:
                 break
-            self.see(self.pilot.player.joints + self.play)
-            if self.pilot.status.result not in results[-1:]:
-                results.append(self.pilot.status.result)
-        return results, self.pilot.status
+            self.see(self.supervisor.executor.joints + self.play)
+            if self.supervisor.status.result not in results[-1:]:
+                results.append(self.supervisor.status.result)
+        return results, self.supervisor.status
 
 
 def test_an_arm_with_two_degrees_of_play_is_stopped_with_joint_and_distance():
@@ -53,7 +53,7 @@ def test_an_arm_with_two_degrees_of_play_is_stopped_with_joint_and_distance():
     assert 'joint_2 is 2° away from the goal (tolerance 0.5°)' in status.reason
     assert 'missed by' in status.reason
     assert 'mm' in status.reason
-    assert arm.pilot.is_driving  # it holds, and takes the next goal
+    assert arm.supervisor.is_driving  # it holds, and takes the next goal
     arm.play[:] = 0.0
     results, status = arm.go(arm.kinematics.home)
     assert status.result == 'reached'
@@ -79,8 +79,8 @@ def test_a_stuck_leg_of_a_linear_platform_ends_the_motion_and_is_named():
     def see_stuck(joints):
         joints = joints.copy()
         joints[2] = stuck
-        platform.pilot.note_joints(joints)
-        platform.pilot.note_pose(platform.kinematics.home)
+        platform.supervisor.note_joints(joints)
+        platform.supervisor.note_pose(platform.kinematics.home)
 
     platform.see = see_stuck
     goal = Pose.from_xyz_rpy((0.0, 0.0, platform.kinematics.home.position[2] + 0.02))
@@ -93,30 +93,30 @@ def test_a_stuck_leg_of_a_linear_platform_ends_the_motion_and_is_named():
 
 def test_joints_that_come_within_the_patience_reach_the_goal():
     arm = Machine('arm_6r_stepper', np.radians([0, 2.0, 0, 0, 0, 0]))
-    arm.pilot.player.pursue(Goal(arm.kinematics.home.moved([0.05, 0, 0, 0, 0, 0]), 1.0))
-    while arm.pilot.player.status.result != 'reached':
-        arm.pilot.step()
-        arm.see(arm.pilot.player.joints + arm.play)
+    arm.supervisor.executor.pursue(Goal(arm.kinematics.home.moved([0.05, 0, 0, 0, 0, 0]), 1.0))
+    while arm.supervisor.executor.status.result != 'reached':
+        arm.supervisor.step()
+        arm.see(arm.supervisor.executor.joints + arm.play)
     for _ in range(round(0.5 * ARRIVAL_PATIENCE / DT)):
-        arm.pilot.step()
-        arm.see(arm.pilot.player.joints + arm.play)
-    assert arm.pilot.status.result == 'moving'
-    arm.see(arm.pilot.player.joints)
-    arm.pilot.step()
-    assert arm.pilot.status.result == 'reached'
+        arm.supervisor.step()
+        arm.see(arm.supervisor.executor.joints + arm.play)
+    assert arm.supervisor.status.result == 'moving'
+    arm.see(arm.supervisor.executor.joints)
+    arm.supervisor.step()
+    assert arm.supervisor.status.result == 'reached'
 
 
 def test_a_pivot_that_is_set_meanwhile_waits_for_what_becomes_of_the_goal():
     arm = Machine('arm_6r_stepper', np.radians([0, 2.0, 0, 0, 0, 0]))
-    arm.pilot.set_pivot((0.0, 0.0, 0.1))
+    arm.supervisor.set_pivot((0.0, 0.0, 0.1))
     results, status = arm.go(arm.kinematics.home.moved([0.05, 0, 0, 0, 0, 0]))
     assert results == ['moving', 'stopped']
     assert status.goal_stamp == 1.0
     arm.play[:] = 0.0
-    arm.pilot.set_pivot((0.0, 0.0, 0.2))
-    results, status = arm.go(arm.pilot.machine.kinematics.home)
+    arm.supervisor.set_pivot((0.0, 0.0, 0.2))
+    results, status = arm.go(arm.supervisor.machine.kinematics.home)
     assert results == ['moving', 'reached']
-    assert arm.pilot.machine.frames.T_platform_pivot.position[2] == pytest.approx(0.2)
+    assert arm.supervisor.machine.frames.T_platform_pivot.position[2] == pytest.approx(0.2)
 
 
 @pytest.mark.parametrize('name', ['robocake', 'stewart_6_6', 'arm_6r', 'ur5'])

@@ -1,4 +1,4 @@
-"""The player against the RoboCake: what it commands is checked by its own differences."""
+"""The executor against the RoboCake: what it commands is checked by its own differences."""
 
 import contextlib
 import itertools
@@ -13,17 +13,17 @@ from hexarm.machines import load
 from manipulator.errors import Refused, Unreachable
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
-from manipulator.trajectory.player import Player
 
 MACHINE = load('robocake')
 HOME = MACHINE.kinematics.home
 DT = 0.01
 
 
-def player():
-    return Player(MACHINE, HOME, MACHINE.kinematics.inverse(HOME), DT)
+def executor():
+    return Executor(MACHINE, HOME, MACHINE.kinematics.inverse(HOME), DT)
 
 
 def pose(x=0.0, y=0.0, z=0.0412, roll=0.0, pitch=0.0, yaw=0.0):
@@ -54,7 +54,7 @@ def check_limits(poses, joints):
 
 
 def test_it_begins_by_holding_and_names_no_goal():
-    motion = player()
+    motion = executor()
     assert motion.status == MotionStatus('hold', 'idle', 0.0, '', None)
     assert motion.newest_stamp == 0.0
     motion.stop()
@@ -62,7 +62,7 @@ def test_it_begins_by_holding_and_names_no_goal():
 
 
 def test_goal_is_reached_and_named_by_its_stamp():
-    motion = player()
+    motion = executor()
     motion.pursue(Goal(pose(x=0.005, z=0.045), 12.5))
     poses, joints = run(motion, 100)
     assert (motion.status.result, motion.status.goal_stamp) == ('reached', 12.5)
@@ -71,7 +71,7 @@ def test_goal_is_reached_and_named_by_its_stamp():
 
 
 def test_unreachable_goal_is_refused_with_the_leg_and_the_old_one_goes_on():
-    motion = player()
+    motion = executor()
     motion.pursue(Goal(pose(x=0.01), 1.0))
     run(motion, 10)
     motion.pursue(Goal(pose(x=0.04), 2.0))
@@ -85,7 +85,7 @@ def test_unreachable_goal_is_refused_with_the_leg_and_the_old_one_goes_on():
 
 
 def test_good_goal_after_a_refused_one_is_driven():
-    motion = player()
+    motion = executor()
     motion.pursue(Goal(pose(z=0.2), 1.0))
     run(motion, 1)
     motion.pursue(Goal(pose(z=0.045), 2.0))
@@ -94,7 +94,7 @@ def test_good_goal_after_a_refused_one_is_driven():
 
 
 def test_of_many_goals_within_a_tick_the_newest_wins():
-    motion = player()
+    motion = executor()
     for k in range(20):
         motion.pursue(Goal(pose(x=0.0005 * k), float(k)))
     run(motion, 100)
@@ -103,7 +103,7 @@ def test_of_many_goals_within_a_tick_the_newest_wins():
 
 
 def test_stop_brakes_along_the_straight_way_and_holds():
-    motion = player()
+    motion = executor()
     motion.pursue(Goal(pose(x=0.012, y=0.006), 1.0))
     run(motion, 15)
     motion.stop()
@@ -118,7 +118,7 @@ def test_stop_brakes_along_the_straight_way_and_holds():
 
 
 def test_goal_that_comes_while_stopping_is_driven_afterwards():
-    motion = player()
+    motion = executor()
     motion.pursue(Goal(pose(x=0.012), 1.0))
     run(motion, 15)
     motion.stop()
@@ -129,7 +129,7 @@ def test_goal_that_comes_while_stopping_is_driven_afterwards():
 
 
 def test_pause_and_going_on_end_at_the_goal_without_a_jump():
-    motion = player()
+    motion = executor()
     motion.pursue(Goal(pose(x=0.01, yaw=0.05), 1.0))
     before = run(motion, 15)
     motion.pause(True)
@@ -146,7 +146,7 @@ def test_pause_and_going_on_end_at_the_goal_without_a_jump():
 
 
 def test_speed_override_makes_the_same_way_slower():
-    fast, slow = player(), player()
+    fast, slow = executor(), executor()
     slow.override(0.25)
     ticks = []
     for motion in (fast, slow):
@@ -162,11 +162,11 @@ def test_speed_override_makes_the_same_way_slower():
 @pytest.mark.parametrize('rate', [-0.1, 1.1, float('nan')])
 def test_override_outside_its_range_is_refused(rate):
     with pytest.raises(Refused, match='override'):
-        player().override(rate)
+        executor().override(rate)
 
 
 def test_cycle_ramps_in_and_out_within_the_limits():
-    motion = player()
+    motion = executor()
     motion.start_cycle(
         Cycle(HOME, [0.003, 0.003, 0.0015, 0.05, 0.05, 0.04], [0.5] * 6, [0, 1, 2, 0, 1, 2])
     )
@@ -180,7 +180,7 @@ def test_cycle_ramps_in_and_out_within_the_limits():
 
 
 def test_papers_own_amplitudes_in_phase_are_out_of_reach_and_refused_before_anything_moves():
-    motion = player()
+    motion = executor()
     motion.start_cycle(Cycle(HOME, [0.006, 0.006, 0.003, 0.1, 0.1, -0.08], [0.5] * 6, [0] * 6))
     poses, _ = run(motion, 10)
     assert motion.status.result == 'refused'
@@ -189,7 +189,7 @@ def test_papers_own_amplitudes_in_phase_are_out_of_reach_and_refused_before_anyt
 
 
 def test_cycle_that_is_too_fast_says_by_how_much():
-    motion = player()
+    motion = executor()
     motion.start_cycle(Cycle(HOME, [0.005, 0, 0, 0, 0, 0], [10.0] * 6, [0] * 6))
     run(motion, 1)
     assert motion.status.result == 'refused'
@@ -210,7 +210,7 @@ commands = st.one_of(
 @settings(max_examples=25, deadline=None)
 @given(st.lists(st.tuples(commands, st.integers(1, 40)), min_size=1, max_size=12))
 def test_no_stream_of_commands_leaves_the_limits(stream):
-    motion, stamp = player(), 0.0
+    motion, stamp = executor(), 0.0
     all_poses, all_joints = [motion.state.pose], [motion.joints]
     for command, ticks in stream:
         match command:

@@ -1,4 +1,4 @@
-"""When a pilot takes its machine over, from where, and why it does not."""
+"""When a supervisor takes its machine over, from where, and why it does not."""
 
 import numpy as np
 import pytest
@@ -6,62 +6,62 @@ import pytest
 from hexarm.machines import load
 from manipulator.errors import Refused
 from manipulator.pose import Pose
-from manipulator.trajectory.player import Goal
+from manipulator.trajectory.executor import Goal
 
 MACHINE = load('robocake')
 HOME = MACHINE.kinematics.home
 ELSEWHERE = Pose.from_xyz_rpy((0.004, 0.002, 0.044), (0.0, 0.05, 0.0))
 
 
-def test_nothing_goes_out_before_the_machine_is_enabled_and_its_pose_known(pilot):
-    assert pilot.step() is None
-    pilot.see(HOME)
-    assert pilot.step() is None
-    pilot.note_machine_state('enabled', is_followed=False)
-    assert pilot.step() is None
+def test_nothing_goes_out_before_the_machine_is_enabled_and_its_pose_known(supervisor):
+    assert supervisor.step() is None
+    supervisor.see(HOME)
+    assert supervisor.step() is None
+    supervisor.note_machine_state('enabled', is_followed=False)
+    assert supervisor.step() is None
     with pytest.raises(Refused, match='its pose is not known'):
-        _ = pilot.player
+        _ = supervisor.executor
 
 
-def test_no_goal_is_taken_until_the_board_follows(pilot):
-    pilot.note_machine_state('enabled', is_followed=False)
-    pilot.see(HOME)
-    assert pilot.step() is not None
+def test_no_goal_is_taken_until_the_board_follows(supervisor):
+    supervisor.note_machine_state('enabled', is_followed=False)
+    supervisor.see(HOME)
+    assert supervisor.step() is not None
     with pytest.raises(Refused, match='does not follow'):
-        _ = pilot.player
-    pilot.note_machine_state('enabled', is_followed=True)
-    pilot.player.pursue(Goal(ELSEWHERE, 1.0))
-    pilot.run(100)
-    assert pilot.status.result == 'reached'
+        _ = supervisor.executor
+    supervisor.note_machine_state('enabled', is_followed=True)
+    supervisor.executor.pursue(Goal(ELSEWHERE, 1.0))
+    supervisor.run(100)
+    assert supervisor.status.result == 'reached'
 
 
-def test_a_machine_that_was_never_enabled_is_disabled_and_says_so_of_no_goal(pilot):
-    said = pilot.status
+def test_a_machine_that_was_never_enabled_is_disabled_and_says_so_of_no_goal(supervisor):
+    said = supervisor.status
     assert (said.mode, said.result, said.goal_stamp) == ('disabled', 'idle', 0.0)
     assert said.reason == 'the servos are not enabled'
 
 
 @pytest.mark.parametrize('is_followed', [False, True])
-def test_a_machine_that_is_taken_over_holds_once_its_board_follows(pilot, is_followed):
-    pilot.note_machine_state('enabled', is_followed)
-    pilot.see(HOME)
-    assert pilot.is_driving
+def test_a_machine_that_is_taken_over_holds_once_its_board_follows(supervisor, is_followed):
+    supervisor.note_machine_state('enabled', is_followed)
+    supervisor.see(HOME)
+    assert supervisor.is_driving
     expected = ('hold', '') if is_followed else ('disabled', 'does not follow setpoints yet')
-    assert pilot.status.mode == expected[0]
-    assert pilot.status.reason.endswith(expected[1])
-    assert (pilot.status.reason == '') == is_followed
+    assert supervisor.status.mode == expected[0]
+    assert supervisor.status.reason.endswith(expected[1])
+    assert (supervisor.status.reason == '') == is_followed
 
 
-def test_motion_begins_where_the_joints_are(pilot):
-    pilot.enable_at(ELSEWHERE)
-    assert np.abs(pilot.step().twist_to(ELSEWHERE)).max() < 1e-12
+def test_motion_begins_where_the_joints_are(supervisor):
+    supervisor.enable_at(ELSEWHERE)
+    assert np.abs(supervisor.step().twist_to(ELSEWHERE)).max() < 1e-12
 
 
 @pytest.mark.parametrize('state', ['disarmed', 'stopped', 'fault', 'disconnected', 'holding'])
 def test_leaving_enabled_drops_the_goal_and_the_next_motion_begins_where_the_joints_are(
     driving, state
 ):
-    driving.player.pursue(Goal(ELSEWHERE, 7.0))
+    driving.executor.pursue(Goal(ELSEWHERE, 7.0))
     driving.run(5)
     driving.note_machine_state(state, is_followed=False)
     assert (driving.status.result, driving.status.goal_stamp) == ('stopped', 7.0)
@@ -79,7 +79,7 @@ def test_holding_board_is_taken_up_again_without_asking(driving):
 
 
 def test_goal_that_still_waited_when_the_machine_was_lost_is_named(driving):
-    driving.player.pursue(Goal(ELSEWHERE, 9.0))
+    driving.executor.pursue(Goal(ELSEWHERE, 9.0))
     driving.note_machine_state('disarmed', is_followed=False)
     assert (driving.status.result, driving.status.goal_stamp) == ('stopped', 9.0)
 
@@ -92,7 +92,7 @@ def test_what_became_of_a_goal_is_still_said_once_the_machine_is_taken_over_agai
     said = moving.status
     assert (said.mode, said.result, said.goal_stamp) == ('hold', 'stopped', 7.0)
     assert 'holding' in said.reason
-    moving.player.pursue(Goal(HOME, 8.0))
+    moving.executor.pursue(Goal(HOME, 8.0))
     moving.run(200)
     assert (moving.status.result, moving.status.goal_stamp) == ('reached', 8.0)
 
@@ -117,7 +117,7 @@ def test_a_machine_that_is_enabled_anew_is_idle(moving):
 def test_a_machine_that_nobody_may_drive_says_what_is_missing(driving, state, way_out):
     driving.note_machine_state(state, is_followed=False)
     with pytest.raises(Refused, match=f'the machine is {state}: {way_out}'):
-        _ = driving.player
+        _ = driving.executor
 
 
 def elbow_in_and_almost_straight():
@@ -134,28 +134,28 @@ def elbow_in_and_almost_straight():
     return pose, min(one_in, key=lambda joints: np.abs(joints - out).max())
 
 
-def test_a_leg_bent_the_wrong_way_and_almost_straight_is_named(pilot):
+def test_a_leg_bent_the_wrong_way_and_almost_straight_is_named(supervisor):
     pose, joints = elbow_in_and_almost_straight()
-    pilot.note_machine_state('enabled', is_followed=True)
-    pilot.note_joints(joints)
+    supervisor.note_machine_state('enabled', is_followed=True)
+    supervisor.note_joints(joints)
     for _ in range(60):
-        pilot.note_pose(pose)
+        supervisor.note_pose(pose)
     with pytest.raises(
         Refused, match=r'crank_\d, which is off by 0\.0\d+ rad: disable and enable'
     ):
-        _ = pilot.player
-    assert 'disable and enable it' in pilot.status.reason
-    pilot.note_machine_state('disarmed', is_followed=False)
-    assert 'disable and enable it' not in pilot.status.reason
-    pilot.note_machine_state('enabled', is_followed=True)
-    pilot.see(HOME)
-    assert pilot.step() is not None
-    assert pilot.player.status.reason == ''
+        _ = supervisor.executor
+    assert 'disable and enable it' in supervisor.status.reason
+    supervisor.note_machine_state('disarmed', is_followed=False)
+    assert 'disable and enable it' not in supervisor.status.reason
+    supervisor.note_machine_state('enabled', is_followed=True)
+    supervisor.see(HOME)
+    assert supervisor.step() is not None
+    assert supervisor.executor.status.reason == ''
 
 
-def test_a_pose_that_is_late_for_a_moment_is_no_trouble(pilot):
-    pilot.note_machine_state('enabled', is_followed=True)
-    pilot.note_joints(MACHINE.kinematics.inverse(HOME))
+def test_a_pose_that_is_late_for_a_moment_is_no_trouble(supervisor):
+    supervisor.note_machine_state('enabled', is_followed=True)
+    supervisor.note_joints(MACHINE.kinematics.inverse(HOME))
     for _ in range(10):
-        pilot.note_pose(ELSEWHERE)
-    assert 'off by' not in pilot.status.reason
+        supervisor.note_pose(ELSEWHERE)
+    assert 'off by' not in supervisor.status.reason

@@ -7,11 +7,11 @@ import pytest
 
 from manipulator.errors import InvalidInput, Refused
 from manipulator.pose import Pose
+from manipulator.trajectory.executor import OVERTAKEN
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.path_planning import PathGoal
 from manipulator.trajectory.path_timing import PathRequest
-from manipulator.trajectory.player import OVERTAKEN
 
 HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))
 FAR = Pose.from_xyz_rpy((0.008, 0.0, 0.045))
@@ -54,7 +54,7 @@ def test_a_path_is_planned_approached_and_driven(slow):
 
 
 def test_poses_of_the_platform_are_turned_into_those_of_the_pivot(slow):
-    slow.core.pilot.set_pivot([0.0, 0.0, 0.01])
+    slow.core.supervisor.set_pivot([0.0, 0.0, 0.01])
     slow.run(2)
     slow.follow(path(circle()))
     slow.run(2000)
@@ -201,7 +201,7 @@ def test_a_path_for_which_the_worker_has_no_room_is_refused(slow, monkeypatch):
     assert 'plans wait already' in slow.status.reason
 
 
-def test_a_supervisor_that_is_closed_gives_its_path_up(slow):
+def test_a_controller_that_is_closed_gives_its_path_up(slow):
     reads = []
     slow.follow(path(circle(), reads=reads))
     slow.core.close()
