@@ -9,7 +9,7 @@ from hexarm.machines import load
 from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.jogging import Wish
+from manipulator.trajectory.jogging import JogCommand
 
 TICK, ROUNDS, PERIOD = 0.01, 3000, 200
 MACHINES = ('robocake', 'stewart_6_3', 'arm_6r')
@@ -21,14 +21,14 @@ def rows() -> list[Row]:
 
 def tick_rows(name: str) -> list[Row]:
     """To and fro about home, with the orientation held; CPU time of the same ticks at p99."""
-    executor, wish = jogged(name)
+    executor, command = jogged(name)
     rng = np.random.default_rng(1)
     matrices, right = rng.normal(size=(ROUNDS, 6, 6)), rng.normal(size=6)
     taken = []
 
     def tick(k: int) -> None:
         before = time.thread_time_ns()
-        executor.jog(wish[k % PERIOD])
+        executor.jog(command[k % PERIOD])
         executor.step()
         taken.append(time.thread_time_ns() - before)
 
@@ -45,7 +45,7 @@ def tick_row(name: str, ratio: float) -> Row:
     return Row(*shown, '≤ 25', ratio <= 25) if name.startswith('arm') else Row(*shown)
 
 
-def jogged(name: str) -> tuple[Executor, list[Wish]]:
+def jogged(name: str) -> tuple[Executor, list[JogCommand]]:
     machine = load(name)
     home = machine.kinematics.home
     executor = Executor(machine, home, machine.kinematics.inverse(home), TICK)
@@ -53,4 +53,4 @@ def jogged(name: str) -> tuple[Executor, list[Wish]]:
     speed = 0.3 * machine.motion.linear.speed
     angles = 2 * np.pi * np.arange(PERIOD) / PERIOD
     twists = np.stack([speed * np.cos(angles), speed * np.sin(angles)] + [0 * angles] * 4, axis=1)
-    return executor, [Wish('cmd_vel/joy', twist, '', mode) for twist in twists]
+    return executor, [JogCommand('cmd_vel/joy', twist, '', mode) for twist in twists]

@@ -22,7 +22,7 @@ from manipulator.nodes.path_goals import path_message
 from manipulator.nodes.qos import COMMAND, LATCHED
 from manipulator.pose import Pose
 
-UNHEARD = 'not heard of'
+UNHEARD = 'unknown'
 """The state of a machine that has said none."""
 
 ASKED_AT_MOST, ANSWERED_WITHIN = 4, 4.0

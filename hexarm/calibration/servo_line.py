@@ -86,7 +86,7 @@ class ServoLine:
         self._thread = LinkThread(self._open_once, self._link)
 
     def __enter__(self) -> 'ServoLine':
-        """LinkError where no board answers."""
+        """LinkError where the board does not answer."""
         self._thread.start()
         try:
             self._await_board()
@@ -174,7 +174,7 @@ class ServoLine:
 
     def _await_board(self) -> None:
         if not self._is_ready.wait(CONNECT_WITHIN):
-            reason = self.trouble or 'no board answers: is its firmware on it?'
+            reason = self.trouble or 'the board does not answer: is its firmware on it?'
             raise LinkError(reason)
         if self.mode is None:
             raise LinkError(self.trouble or 'the board has fallen silent')

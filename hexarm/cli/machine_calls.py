@@ -72,16 +72,16 @@ def run(call: Call, arguments: argparse.Namespace) -> int:
             client.spin(SETTLES)
             words = f' ({said})' if said else ''
             space = arguments.namespace
-            print(f'/{space}: {client.summary}{words}{way_out(client, space)}')
+            print(f'/{space}: {client.summary}{words}{remedy(client, space)}')
     except Refused as error:
-        print(f'hexarm: {error}{way_out(client, arguments.namespace)}', file=sys.stderr)
+        print(f'hexarm: {error}{remedy(client, arguments.namespace)}', file=sys.stderr)
         return REFUSED
     except Interrupted:
         return INTERRUPTED
     return 0
 
 
-def way_out(client: 'Client', namespace: str) -> str:
+def remedy(client: 'Client', namespace: str) -> str:
     """What ends a stop or a fault, where the machine has one."""
     if client.machine_state.message not in ('stopped', 'fault'):
         return ''

@@ -31,7 +31,7 @@ LOOKS = 0.7
 """Seconds in which a graph that runs already is found: at most 0.46 s in 64 tries."""
 OURS = ('trajectory', 'ik', 'pose', 'serial_bridge')
 """Nodes of which a namespace has one; a fake board may be there for `--port` to name."""
-SERVOS_OFF = ('not heard of', 'disconnected', 'booting', 'disarmed')
+SERVOS_OFF = ('unknown', 'disconnected', 'booting', 'disarmed')
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
 NAME = 'a shipped name or the path of a machine file'
 SHORT = ', '.join(f'{kind} is short for {name}' for kind, name in MACHINES.items())

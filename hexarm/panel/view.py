@@ -38,7 +38,7 @@ class View:
     measured: Stance | None = None
     commanded: Stance | None = None
     frames: Frames = field(default_factory=Frames)
-    machine_state: str = 'not heard of'
+    machine_state: str = 'unknown'
     machine_reason: str = ''
     mode: str = ''
     motion: str = ''

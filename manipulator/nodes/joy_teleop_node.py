@@ -47,7 +47,7 @@ class JoyTeleop(Node):
 
     def _on_joy(self, message: Joy) -> None:
         axes, buttons = message.axes.tolist(), message.buttons.tolist()
-        self._reader = self._reader.hear(axes, buttons, time.monotonic(), self._pad.trouble)
+        self._reader = self._reader.receive(axes, buttons, time.monotonic(), self._pad.trouble)
         if self._reader.fault:
             raise InvalidInput(self._reader.fault)
 

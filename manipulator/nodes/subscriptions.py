@@ -132,7 +132,7 @@ class SoleSubscription:
     def __call__(self, *received: Any) -> None:
         """The subscription's callback."""
         message, info = received if len(received) == 2 else received[0]
-        self._source = self._source.hear(
+        self._source = self._source.receive(
             info['publication_sequence_number'],
             self._subscription.get_publisher_count(),
             time.monotonic(),

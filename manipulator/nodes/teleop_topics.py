@@ -45,8 +45,8 @@ class TeleopTopics:
         def accept(message: TwistStamped) -> None:
             now = time.monotonic()
             if sole.trouble:
-                self._teleop.turn_away(source, now, sole.trouble)
-            self._teleop.hear(source, twist_of(message), message.header.frame_id, now)
+                self._teleop.reject(source, now, sole.trouble)
+            self._teleop.receive(source, twist_of(message), message.header.frame_id, now)
 
         intake = Intake(self._node, source, accept)
         self._intakes.append(intake)

@@ -35,7 +35,7 @@ from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
 from manipulator.teleop.arbiter import PEOPLE
 from manipulator.trajectory.controller import MEASUREMENT_DELAY, MotionController, lag_of
-from manipulator.trajectory.following import Tolerances
+from manipulator.trajectory.following_error import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.motion_status import MotionStatus
 

@@ -44,7 +44,7 @@ class SoleSource:
     heard: float = NEVER
     mixed: float = NEVER
 
-    def hear(self, sequence: int | None, publishers: int, now: float) -> 'SoleSource':
+    def receive(self, sequence: int | None, publishers: int, now: float) -> 'SoleSource':
         """After a message with its publisher's `sequence` number, while `publishers` are known.
 
         Where the middleware tells no numbers (None), a second known publisher counts as sending.
@@ -82,7 +82,7 @@ class Arbiter:
     _blocked: dict[str, str] = field(default_factory=dict)
     _owner: str = ''
 
-    def hear(self, source: str, now: float, is_computer_busy: bool = False) -> None:
+    def receive(self, source: str, now: float, is_computer_busy: bool = False) -> None:
         """A message of `source` has come: it owns the machine now, or Refused says who does.
 
         is_computer_busy: a goal, path or cycle is being driven.
@@ -94,11 +94,11 @@ class Arbiter:
         if source in self._blocked:
             raise Refused(f'{self._blocked[source]}: let go first')
         if owner and owner != source and not self._overrides(source, owner):
-            self.turn_away(source, now, f'{owner} has the machine')
+            self.reject(source, now, f'{owner} controls the machine')
         if source == COMPUTER and is_computer_busy and owner != source:
-            self.turn_away(source, now, 'a goal is being driven')
+            self.reject(source, now, 'a goal is being driven')
         if owner and owner != source:
-            self._blocked[owner] = f'{source} took the machine over'
+            self._blocked[owner] = f'{source} took over the machine'
         self._owner = source
 
     def owner(self, now: float) -> str:
@@ -113,7 +113,7 @@ class Arbiter:
             self._blocked[self._owner] = 'the machine was stopped'
             self._owner = ''
 
-    def turn_away(self, source: str, now: float, reason: str) -> NoReturn:
+    def reject(self, source: str, now: float, reason: str) -> NoReturn:
         """Raises Refused with the reason; the source has nothing, and must let go first."""
         self._heard_at[source] = now
         self._blocked[source] = reason

@@ -100,7 +100,7 @@ class JoyReader:
     stops: int = 0
     fault: str = ''
 
-    def hear(
+    def receive(
         self, axes: Sequence[float], buttons: Sequence[int], now: float, crowd: str = ''
     ) -> 'JoyReader':
         """After a message; a bad one counts as all released, and `fault` says what is bad.

@@ -19,7 +19,7 @@ from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.executor import STOPPED
-from manipulator.trajectory.following import Tolerances
+from manipulator.trajectory.following_error import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.motion_status import MotionNews, MotionStatus
 from manipulator.trajectory.path_planning import PathGoal, PathPlanning
@@ -56,14 +56,14 @@ def lag_of(supervisor: MotionSupervisor) -> dict[str, float]:
 
     The newest goal is always the one pursued; those in between were dropped.
     """
-    way = np.zeros(6)
+    gap = np.zeros(6)
     try:
         goal = supervisor.executor.pursued
     except Refused:
         goal = None
     if goal is not None:
-        way = supervisor.executor.state.pose.twist_to(goal)
-    shift, turn = (float(np.linalg.norm(part)) for part in (way[:3], way[3:]))
+        gap = supervisor.executor.state.pose.twist_to(goal)
+    shift, turn = (float(np.linalg.norm(part)) for part in (gap[:3], gap[3:]))
     return {'lag_mm': 1e3 * shift, 'lag_deg': degrees(turn)}
 
 
@@ -74,12 +74,12 @@ OVERTAKING = 0.5
 """Seconds by which a goal may overtake a path, which takes longer to send, or a path a goal."""
 
 Refuse = Callable[[ManipulatorError], object]
-"""Is told why a command that was taken came to nothing before it began."""
+"""Receives the reason why an accepted command was dropped before it began."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """To a request: whether it is obeyed, and in words what will happen, or why it will not."""
+    """To a request: accepted or not, and in words what will happen, or why it will not."""
 
     is_obeyed: bool
     text: str
@@ -89,8 +89,8 @@ class MotionController:
     """One machine's; poses are the platform's in the base frame, unless it says otherwise.
 
     Times are monotonic, in seconds; stamps are those of the messages, and name their commands. It
-    is called from one thread. Commands raise Refused where nobody may drive; what comes while the
-    machine is about to be taken over waits for that (early_command.py).
+    is called from one thread. Commands raise Refused where nobody may drive; commands that
+    come while the machine is about to be taken over wait for that (early_command.py).
     """
 
     def __init__(
@@ -113,28 +113,28 @@ class MotionController:
         self._state_at = self._pose_at = self._tick_at = float('-inf')
         self._pose: Pose | None = None
 
-    # What is reported
+    # Measurements
 
     def note_machine_state(
         self, state: str, is_followed: bool, is_measured: bool, now: float
     ) -> None:
-        """What the bridge says: see `MotionSupervisor`. A stop ends what waits."""
+        """The reported machine state: see `MotionSupervisor`. A stop ends waiting commands."""
         self._state_at = now
         self.supervisor.note_machine_state(state, is_followed, is_measured)
         self._early.poll(now)
-        self.news.look(self.supervisor.status)
+        self.news.update(self.supervisor.status)
 
     def note_joints(self, joints: Array | None) -> None:
-        """Where the joints (n,) are; None, not known of all of them, changes nothing."""
+        """The reported joints (n,); None, not all known, changes nothing."""
         if joints is not None:
             self.supervisor.note_joints(joints)
 
     def note_pose(self, T_base_platform: Pose, now: float) -> None:
-        """Where the platform is."""
+        """The reported pose of the platform."""
         self.supervisor.note_pose(T_base_platform)
         self._pose_at = now
 
-    # What is asked for
+    # Commands
 
     def pursue(self, goal: Goal, refuse: Refuse, now: float, is_of_platform: bool = True) -> None:
         """A goal: the platform's pose in the base frame, or the pivot's in the work frame."""
@@ -142,14 +142,14 @@ class MotionController:
         self._pursue(goal, refuse, now, is_of_platform)
 
     def follow(self, path: PathGoal, refuse: Refuse, now: float) -> None:
-        """A path: it is worked out, then driven like a goal, unless a newer command comes."""
+        """A path: it is planned, then executed like a goal, unless a newer command comes."""
         self._check_order(path.stamp, now)
         self._early.take(lambda: self._paths.begin(path), refuse, now)
 
     def home(self, stamp: float, now: float) -> None:
         """A goal at home, along a line or else by a joint move."""
         kinematics = self.supervisor.machine.kinematics
-        self._go(kinematics.home, kinematics.inverse(kinematics.home), stamp, now)
+        self._pursue_joints(kinematics.home, kinematics.inverse(kinematics.home), stamp, now)
 
     def park(self, stamp: float, now: float) -> None:
         """As `home`, to where the servos are switched on and off."""
@@ -159,22 +159,22 @@ class MotionController:
         try:
             pose = machine.kinematics.forward(machine.park).pose
         except NoSolution as error:
-            raise Refused(f'the park position is no pose that can be trusted: {error}') from error
-        self._go(pose, machine.park, stamp, now)
+            raise Refused(f'the forward solution of the park position failed: {error}') from error
+        self._pursue_joints(pose, machine.park, stamp, now)
 
     def stop(self) -> None:
-        """Brakes along the way, then holds; whoever jogs is not heard until he lets go."""
+        """Brakes along the path, then holds; a jogging source is rejected until it releases."""
         self._early.drop(STOPPED)
         self.supervisor.executor.stop()
         self.teleop.stop()
 
     def start_cycle(self, made: Callable[[Pose], Cycle], stamp: float) -> None:
-        """The cycle that is made about the present pose; `cycle_answer` says what comes of it."""
+        """The cycle that is made about the present pose; `cycle_answer` returns its result."""
         executor = self.supervisor.executor
         executor.start_cycle(made(executor.state.pose), stamp)
 
     def cycle_answer(self, stamp: float) -> Answer | None:
-        """Whether the cycle of that stamp has begun, or why not; None while it is on its way."""
+        """Whether the cycle of that stamp has begun, or why not; None while that is open."""
         status = self.supervisor.status
         if status.goal_stamp == stamp and status.result == 'moving':
             return Answer(True, 'cycling until stopped')
@@ -182,10 +182,10 @@ class MotionController:
             return Answer(False, status.reason or status.result)
         if self._is_newest(stamp):
             return None
-        return Answer(False, 'a newer command came before it began')
+        return Answer(False, 'replaced by a newer command before it began')
 
     def refuse(self, stamp: float, error: ManipulatorError) -> None:
-        """Makes it news that the goal or path of that stamp came to nothing."""
+        """Reports the goal or path of that stamp as refused."""
         self.news.add(MotionStatus(self.supervisor.status.mode, 'refused', stamp, str(error)))
 
     # The tick
@@ -193,7 +193,7 @@ class MotionController:
     def begin_tick(self, now: float) -> None:
         """Advances by one tick; take the setpoint's stamp before `end_tick`."""
         since_last, self._tick_at = self.jitter.tick(now), now
-        # What the bridge said while this process stood still is not heard yet.
+        # Messages that the bridge sent while this process stalled have not been received yet.
         self._state_at += max(since_last - self._dt, 0.0)
         self.supervisor.note_stall(since_last)
         self.supervisor.note_silence(now - self._pose_at)
@@ -204,20 +204,20 @@ class MotionController:
         self._pose = self.supervisor.step()
 
     def end_tick(self, now: float) -> Pose | None:
-        """The setpoint, None while nobody drives or where the tick took too long.
+        """The setpoint, None while the machine is not driven or where the tick took too long.
 
-        Frozen before its stamp was taken, it is late; frozen from then on, its stamp tells.
+        A stall before the stamp is detected here; after it, receivers reject the old stamp.
         """
         self.supervisor.note_stall(now - self._tick_at)
-        self.news.look(self.supervisor.status)
+        self.news.update(self.supervisor.status)
         return self._pose if self.supervisor.is_driving else None
 
     def close(self) -> None:
-        """Gives up the path that is being worked out."""
+        """Cancels the planning of a path."""
         self._paths.cancel()
 
-    def _go(self, pose: Pose, joints: Array, stamp: float, now: float) -> None:
-        """To joints (n,) at a pose of the pivot in the work frame."""
+    def _pursue_joints(self, pose: Pose, joints: Array, stamp: float, now: float) -> None:
+        """Pursues joints (n,) at a pose of the pivot in the work frame."""
         goal = Goal(pose, stamp, motion=Motion.ANY, joints=joints)
         self._pursue(goal, lambda error: self.refuse(stamp, error), now, is_of_platform=False)
 

@@ -1,15 +1,15 @@
-"""What people hear about the motion, and which of it is news."""
+"""The status of the motion, and which statuses are new."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class MotionStatus:
-    """What goes out on motion_status.
+    """The contents of `motion_status`.
 
     mode: hold, move, path, cycle, jog. result: idle, planning (a path), moving, reached, refused,
-    stopped. goal_stamp is that of the goal which the result is about. reason: why so, or what
-    holds a jog back. percent: how much of a path's time is over.
+    stopped. goal_stamp: of the goal that the result refers to. reason: of the result, or
+    what limits a jog. percent: elapsed share of a path's time.
     """
 
     mode: str = 'hold'
@@ -29,14 +29,14 @@ class MotionNews:
         self._last: MotionStatus | None = None
         self._new: list[MotionStatus] = []
 
-    def look(self, status: MotionStatus) -> None:
-        """The motion's own status: news when it is another than at the last look."""
+    def update(self, status: MotionStatus) -> None:
+        """The status of the active motion: published when it has changed."""
         if status != self._seen:
             self._seen = status
             self.add(status)
 
     def add(self, status: MotionStatus) -> None:
-        """What became of one command, which the motion itself need not know of."""
+        """The result of one command, independent of the active motion."""
         if status == self._last:
             return
         self._last = status
@@ -46,6 +46,6 @@ class MotionNews:
             self.last_refusal = status.reason
 
     def take(self) -> list[MotionStatus]:
-        """What is to be published since the last call, oldest first."""
+        """The statuses to publish since the last call, oldest first."""
         taken, self._new = self._new, []
         return taken

@@ -3,13 +3,13 @@
 With ' for d/ds, a joint moves at q'·ṡ and accelerates by q'·s̈ + q''·ṡ²; platform and tool alike.
 On each interval between two nodes q'' is the mean, Δq'/Δs.
 
-A fast way along a path in the phase plane: two passes over squared path speeds.
+Fast timing of a path in the phase plane: two passes over squared path speeds.
 
 On each interval of the path the acceleration is constant, so that the squares x and y of the
 speed ṡ at its two ends fix it: s̈ = (y − x)/2Δ. Every limit is then a row A·x + B·y ≤ C, and one
 of the two is eliminated: backwards the largest x from which y is not passed, forwards the largest
 y. As in Pham, Pham 2018 (TOPP-RA, section VI), but no speed is allowed that could not be kept
-(x = y): then one pass each way always succeeds. docs/motion.md, section 5.
+(x = y): then one pass in each direction always succeeds. docs/motion.md, section 5.
 """
 
 from collections.abc import Sequence
@@ -89,7 +89,7 @@ class PathLimits:
     row_names: tuple[str, ...]
 
     def most_at(self, square: float) -> tuple[float, str, float]:
-        """What ṡ² = square all the way asks for most: slowness (see check.py), limit, s."""
+        """The highest utilisation (see check.py) at ṡ² = square everywhere, its limit, and s."""
         speeds = np.sqrt(square / self.highest)
         demanded = square * (self.rows.on_begin + self.rows.on_end) / self.rows.bound
         rows = np.sqrt(np.maximum(demanded, 0.0))

@@ -1,7 +1,7 @@
-"""The path that is being worked out, while the machine goes on with what it does.
+"""Planning of paths, while the active plan continues.
 
-A path is expected from its arrival until it has been worked out; then it is pursued like a goal.
-Whatever newer command comes meanwhile takes its place.
+A path is expected from its arrival until it is planned; then it is pursued like a goal. Any newer
+command replaces it.
 """
 
 from collections.abc import Callable
@@ -21,9 +21,9 @@ from manipulator.trajectory.worker import Effort, Job, Worker
 
 @dataclass(frozen=True, eq=False)
 class PathGoal:
-    """A path to drive, known to its sender by the stamp of the message.
+    """A path to execute, known to its sender by the stamp of the message.
 
-    read: what was asked for; called where the path is worked out, because thousands of poses take
+    read: returns the request; called where the path is planned, because thousands of poses take
     their time; raises InvalidInput. is_of_platform: the poses are the platform's in the base
     frame, else the pivot's in the work frame.
     """
@@ -53,7 +53,7 @@ class PathPlanning:
         self._job: Job[TimedPath | Pose] | None = None
 
     def begin(self, path: PathGoal) -> None:
-        """Has it worked out, instead of the one before; Refused as `Executor.expect`."""
+        """Plans it, in place of the one before; Refused as `Executor.expect`."""
         executor, machine = self._supervisor.executor, self._supervisor.machine
         near, dt = executor.joints, self._dt
         executor.expect(path.stamp)
@@ -65,7 +65,7 @@ class PathPlanning:
             executor.refuse(path.stamp, str(error))
 
     def step(self) -> None:
-        """Pursues the path once it is worked out; that it was dropped is news."""
+        """Pursues the path once it is planned; reports it where it was dropped."""
         if self._job is None:
             return
         reason = self._unexpected
@@ -76,13 +76,13 @@ class PathPlanning:
             self._pursue(job, self._supervisor.executor)
 
     def cancel(self) -> None:
-        """Nobody waits for it any more."""
+        """Gives it up."""
         if self._job is not None:
             self._job.cancel()
             self._job = None
 
     def _drop(self, reason: str) -> None:
-        """What nobody waits for any more, if anything, is given up, and reported as stopped."""
+        """Gives up a path, if any, and reports it as stopped."""
         if self._job is not None:
             self.cancel()
             mode = self._supervisor.status.mode

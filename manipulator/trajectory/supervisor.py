@@ -16,50 +16,50 @@ from manipulator.frames import Frames
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.following import Arrival, Following, Tolerances
+from manipulator.trajectory.following_error import Arrival, FollowingError, Tolerances
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.worker import Worker
 
 HOLDING = 'holding'
 DRIVABLE = ('enabled', HOLDING)
-"""States in which the board follows setpoints; it holds when they came too late."""
+"""Machine states in which the board follows setpoints; it holds after its deadline."""
 
-WAYS_OUT = {
-    '': 'no bridge says how it is',
-    'disconnected': 'no board answers',
-    'booting': 'its board is not there yet',
+REMEDIES = {
+    '': 'no machine_state received from serial_bridge',
+    'disconnected': 'the board does not answer',
+    'booting': 'its board is still booting',
     'arming': 'its servos are being switched on',
     'playing': 'its board plays a program of its own',
     'stopped': 'clear the stop first',
     'fault': 'clear the fault first',
 }
-"""What is missing before anybody may drive, by the bridge's word."""
+"""What is missing before the machine can be driven, by machine state."""
 
 POSE_PATIENCE, POSE_DEADLINE = 0.2, 0.5
 """Seconds without a pose after which motion pauses, and after which it is dropped."""
 
 STATE_DEADLINE = 1.5
-"""Seconds without the bridge's word after which its last one counts for nothing."""
+"""Seconds without a machine state after which the last one is discarded."""
 
 PRESENT = 0.1
-"""Of the tolerance of following, how far the joints may be from the pose where motion begins."""
+"""Of the following tolerance: how far joints may be from the pose at takeover."""
 
-MISFITS = 50
-"""Poses in a row that do not fit the joints before that is said: some are only late."""
+MISMATCHES = 50
+"""Poses in a row that do not match the joints before that is reported: some are only late."""
 
 RESULTS = ('reached', 'refused', 'stopped')
-"""What became of a goal: still reported where a machine that held is taken over again at once."""
+"""Results of goals: still reported where a machine that held is taken over again at once."""
 
 DISABLED = MotionStatus('disabled', 'idle', 0.0, 'the servos are not enabled')
 CONNECTING = MotionStatus('disabled', 'idle', 0.0, 'the board does not follow setpoints yet')
 
 
 class NotYet(Refused):
-    """Nobody may drive yet, but the machine is about to be taken over."""
+    """The machine cannot be driven yet, but is about to be taken over."""
 
 
 class MotionSupervisor:
-    """One machine's driver; poses that come and go are the platform's, in the base frame."""
+    """One machine's; poses in arguments and results are the platform's, in the base frame."""
 
     def __init__(
         self,
@@ -68,7 +68,7 @@ class MotionSupervisor:
         tolerances: Tolerances | None = None,
         worker: Worker | None = None,
     ) -> None:
-        """tolerances: by default by the joints' ranges; worker: where plans are worked out."""
+        """tolerances: by default by the joints' ranges; worker: where plans are made."""
         self.status = DISABLED
         self.machine = in_frames(machine, machine.frames)
         self._bare = machine
@@ -76,26 +76,26 @@ class MotionSupervisor:
         self._tolerances = tolerances or Tolerances.of(machine)
         self._worker = worker
         self._executor: Executor | None = None
-        self._following: Following | None = None
+        self._following_error: FollowingError | None = None
         self._state = ''
         self._is_followed = False
         self._is_measured = False
         self._joints: Array | None = None
         self._pose: Pose | None = None
         self._arrival = Arrival(dt)
-        self._misfits = 0
-        self._misfit = ''
+        self._mismatches = 0
+        self._mismatch = ''
         self._override = 1.0
         self._is_paused = False
         self._next_frames: Frames | None = None
 
     @property
     def executor(self) -> Executor:
-        """What takes commands; Refused while nobody may drive, NotYet where that soon ends."""
+        """Takes commands; Refused while the machine cannot be driven, NotYet where it soon can."""
         if self._executor is None:
-            is_soon = self._state in DRIVABLE and not self._misfit
+            is_soon = self._state in DRIVABLE and not self._mismatch
             kind = NotYet if is_soon else Refused
-            raise kind(f'the machine is {self._state or "not heard of"}: {self._missing}')
+            raise kind(f'the machine is {self._state or "unknown"}: {self._missing}')
         if not self._is_followed:
             raise NotYet(CONNECTING.reason)
         return self._executor
@@ -103,8 +103,8 @@ class MotionSupervisor:
     @property
     def _missing(self) -> str:
         if self._state in DRIVABLE:
-            return self._misfit or 'its pose is not known yet'
-        return WAYS_OUT.get(self._state, 'enable it first')
+            return self._mismatch or 'its pose is not known yet'
+        return REMEDIES.get(self._state, 'enable it first')
 
     @property
     def is_driving(self) -> bool:
@@ -113,17 +113,17 @@ class MotionSupervisor:
 
     @property
     def is_measured(self) -> bool:
-        """Whether poses tell where the joints are, and not only where they were sent."""
+        """Whether poses come from measured joints, not from commanded ones."""
         return self._is_measured
 
     def note_machine_state(self, state: str, is_followed: bool, is_measured: bool = False) -> None:
-        """What the bridge says: its word, whether the board follows setpoints and measures."""
+        """The reported machine state; whether the board follows setpoints, and measures."""
         self._is_measured = is_measured
         is_lost = state not in DRIVABLE or (state == HOLDING and state != self._state)
         is_new = state in DRIVABLE and self._state not in DRIVABLE
         was_followed, self._state, self._is_followed = self._is_followed, state, is_followed
         if is_lost:
-            self._forget_misfit()
+            self._clear_mismatch()
             self.release(f'the machine is {state}')
         elif self._executor is None and is_new:
             self.status = DISABLED
@@ -131,13 +131,13 @@ class MotionSupervisor:
             self.status = self._executor.status
 
     def note_joints(self, joints: Array) -> None:
-        """Where the joints are: on their branch the machine is taken over; they must follow."""
+        """The reported joints (n,): they select the branch at takeover, and must follow."""
         self._joints = joints
-        if self._following is not None:
-            self._following.measure(joints)
+        if self._following_error is not None:
+            self._following_error.measure(joints)
 
     def note_pose(self, T_base_platform: Pose) -> None:
-        """Where the platform is: there a machine that may be driven is taken over."""
+        """The reported pose: a machine that can be driven is taken over there."""
         self._pose = T_base_platform
         if self._executor is not None:
             if self._is_measured:
@@ -149,33 +149,33 @@ class MotionSupervisor:
         if (gaps < PRESENT * self._tolerances.following).all():
             self._take_over(T_base_platform, self._joints)
         else:
-            self._note_misfit(gaps)
+            self._note_mismatch(gaps)
 
     def note_silence(self, seconds: float) -> None:
-        """How long no pose was heard: soon the plan brakes on its way, later it is dropped."""
+        """Seconds without a pose: first the plan brakes on its path, later it is dropped."""
         if seconds > POSE_DEADLINE:
-            self.release(f'no pose for {POSE_DEADLINE:g} s')
+            self.release(f'no pose received for {POSE_DEADLINE:g} s')
         elif self._executor is not None:
             self._executor.blind(seconds > POSE_PATIENCE)
 
     def note_bridge_silence(self, seconds: float) -> None:
-        """How long the bridge has not said the machine's state: a dead one's must not be used."""
+        """Seconds without a machine state: that of a dead bridge must not be used."""
         if seconds > STATE_DEADLINE and self._state:
             self._state, self._is_followed = '', False
-            self._forget_misfit()
-            self.release(f'no word of the bridge for {STATE_DEADLINE:g} s')
+            self._clear_mismatch()
+            self.release(f'machine_state timed out ({STATE_DEADLINE:g} s)')
 
     def note_stall(self, seconds: float) -> None:
-        """How long the caller itself stood still: by then the board holds, and goals are old."""
+        """Seconds for which the caller itself stalled: by then the board holds, goals are stale."""
         if seconds > POSE_DEADLINE:
-            self.release(f'setpoints stood still for {seconds:.1f} s')
+            self.release(f'the control loop stalled for {seconds:.1f} s')
 
     def release(self, reason: str) -> None:
-        """Lets go of the machine: no setpoints until its pose is known again."""
+        """Releases the machine: no setpoints until its pose is known again."""
         if self._executor is not None:
             stamp = self._executor.newest_stamp
             self._executor.close()
-            self._executor = self._following = None
+            self._executor = self._following_error = None
             self.status = MotionStatus('disabled', 'stopped', stamp, reason)
 
     def override(self, rate: float) -> None:
@@ -187,7 +187,7 @@ class MotionSupervisor:
             self._executor.override(rate)
 
     def pause(self, is_paused: bool) -> None:
-        """Holds all motion up, or lets it go on; Refused while nobody may drive.
+        """Pauses all motion, or continues it; Refused while the machine cannot be driven.
 
         A machine that is lost while paused is paused when it is taken over again.
         """
@@ -195,28 +195,28 @@ class MotionSupervisor:
         self._is_paused = is_paused
 
     def set_pivot(self, point: Sequence[float]) -> None:
-        """Another pivot (platform frame, m), taken once the machine stands still."""
+        """Another pivot (platform frame, m), used once the machine is at rest."""
         self._next_frames = self.machine.frames.with_pivot(point)
 
     def step(self) -> Pose | None:
-        """Advances by one tick: the pose to command, None while nobody drives."""
+        """Advances by one tick: the pose to command, None while not driving."""
         if self._next_frames is not None and self._is_settled:
             self._take_frames(self._next_frames)
-        if self._following is not None and self._following.trouble:
-            self.release(self._following.trouble)
-        if self._executor is None or self._following is None:
+        if self._following_error is not None and self._following_error.violation:
+            self.release(self._following_error.violation)
+        if self._executor is None or self._following_error is None:
             return None
         pose = self._executor.step()
-        self._following.command(self._executor.joints)
+        self._following_error.command(self._executor.joints)
         if self._is_followed:
-            missing = self._following.missing(self._is_measured)
-            words = f'{missing}{self._distance_words()}' if missing else ''
+            words = self._following_error.deviation(self._is_measured)
+            words = f'{words}{self._distance_words()}' if words else ''
             self.status = self._arrival.judged(self._executor.status, words) or self.status
         return self.machine.frames.platform(pose)
 
     @property
     def _is_settled(self) -> bool:
-        """Whether nothing moves, and what became of the last goal has been reported."""
+        """Whether nothing moves, and the result of the last goal has been reported."""
         if self._executor is None:
             return True
         status = self._executor.status
@@ -228,12 +228,12 @@ class MotionSupervisor:
         if not self._is_measured or self._pose is None or self._executor is None:
             return ''
         commanded = self.machine.frames.platform(self._executor.state.pose)
-        way = commanded.twist_to(self._pose)
-        shift, turn = (float(np.linalg.norm(part)) for part in (way[:3], way[3:]))
+        gap = commanded.twist_to(self._pose)
+        shift, turn = (float(np.linalg.norm(part)) for part in (gap[:3], gap[3:]))
         return f': the goal is missed by {1e3 * shift:.3g} mm and {np.degrees(turn):.2g}°'
 
     def _take_over(self, T_base_platform: Pose, near: Array) -> None:
-        self._forget_misfit()
+        self._clear_mismatch()
         pose = self.machine.frames.pivot(T_base_platform)
         joints = self.machine.kinematics.inverse(pose, near)
         if self._executor is not None:
@@ -244,36 +244,36 @@ class MotionSupervisor:
         if self.status.result in RESULTS:
             executor.status = replace(self.status, mode=executor.status.mode)
         kinematics = self.machine.kinematics
-        self._following = Following(
+        self._following_error = FollowingError(
             kinematics.joint_names, kinematics.joint_unit, self._tolerances, self._dt
         )
         self._arrival = Arrival(self._dt)
         self.status = executor.status if self._is_followed else CONNECTING
 
     def _gaps(self, T_base_platform: Pose, joints: Array) -> Array:
-        """How far each joint is from a pose, which may be late: from where the joints were."""
+        """Distance of each joint from those of a pose, which may be late."""
         gaps: Array = np.abs(self._bare.kinematics.inverse(T_base_platform, joints) - joints)
         return gaps
 
-    def _note_misfit(self, gaps: Array) -> None:
-        """Says which joint keeps the machine from being taken over, once that lasts.
+    def _note_mismatch(self, gaps: Array) -> None:
+        """Reports the joint that prevents the takeover, once that lasts.
 
-        So it is where a leg is bent the wrong way and nearly straight: no motion begins there.
+        This happens where a leg is on the other branch and nearly straight: no motion begins there.
         """
-        self._misfits += 1
-        if self._misfits == MISFITS:
+        self._mismatches += 1
+        if self._mismatches == MISMATCHES:
             worst = int(np.argmax(gaps))
             kinematics = self._bare.kinematics
-            self._misfit = (
-                f'its pose does not fit {kinematics.joint_names[worst]}, which is off by '
-                f'{gaps[worst]:.2g} {kinematics.joint_unit}: disable and enable it, it then parks'
+            self._mismatch = (
+                f'its pose does not match {kinematics.joint_names[worst]}, which differs by '
+                f'{gaps[worst]:.2g} {kinematics.joint_unit}: disable and enable it; it then parks'
             )
-            self.status = MotionStatus('disabled', 'idle', self.status.goal_stamp, self._misfit)
+            self.status = MotionStatus('disabled', 'idle', self.status.goal_stamp, self._mismatch)
 
-    def _forget_misfit(self) -> None:
-        if self._misfit:
+    def _clear_mismatch(self) -> None:
+        if self._mismatch:
             self.status = DISABLED
-        self._misfits, self._misfit = 0, ''
+        self._mismatches, self._mismatch = 0, ''
 
     def _take_frames(self, frames: Frames) -> None:
         old, self.machine = self.machine, in_frames(self._bare, frames)

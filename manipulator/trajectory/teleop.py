@@ -10,14 +10,14 @@ from manipulator.teleop.arbiter import Arbiter
 from manipulator.teleop.jog_modes import Feedback, JogMode
 from manipulator.teleop.jogger import check_axes
 from manipulator.teleop.modes import check_name, jog_mode
-from manipulator.trajectory.jogging import Wish
+from manipulator.trajectory.jogging import JogCommand
 from manipulator.trajectory.supervisor import MotionSupervisor
 
 PLAIN = 'free'
 
 
 class Teleop:
-    """Hears twists and modes; `drive` hands what counts to the executor, once a tick.
+    """Receives twists and jog modes; `drive` passes the jog command to the executor, once a tick.
 
     Times are monotonic, in seconds.
     """
@@ -27,7 +27,7 @@ class Teleop:
         self._supervisor = supervisor
         self._delay = delay
         self._arbiter = Arbiter()
-        self._wish: tuple[Array, str] = (np.zeros(6), '')
+        self._twist: tuple[Array, str] = (np.zeros(6), '')
         self._name = PLAIN
         self._point: Array | None = None
         self._is_measured = supervisor.is_measured
@@ -35,26 +35,26 @@ class Teleop:
 
     @property
     def mode(self) -> str:
-        """The name of the jog mode that was asked for last."""
+        """The name of the jog mode that was requested last."""
         return self._name
 
     def owner(self, now: float) -> str:
-        """The source that has the machine, '' where nobody has."""
+        """The source that controls the machine, '' where none does."""
         return self._arbiter.owner(now)
 
-    def hear(self, source: str, twist: Array, frame: str, now: float) -> None:
-        """A twist (6,) of the pivot in the axes of `frame`; Refused says why it does not count."""
+    def receive(self, source: str, twist: Array, frame: str, now: float) -> None:
+        """A twist (6,) of the pivot in the axes of `frame`; Refused with the reason."""
         check_axes(frame)
         try:
             is_busy = self._supervisor.executor.is_busy
         except Refused as refusal:
-            self._arbiter.turn_away(source, now, str(refusal))
-        self._arbiter.hear(source, now, is_busy)
-        self._wish = frozen(twist), frame
+            self._arbiter.reject(source, now, str(refusal))
+        self._arbiter.receive(source, now, is_busy)
+        self._twist = frozen(twist), frame
 
-    def turn_away(self, source: str, now: float, reason: str) -> NoReturn:
-        """Raises Refused with the reason; the source must let go before it is heard again."""
-        self._arbiter.turn_away(source, now, reason)
+    def reject(self, source: str, now: float, reason: str) -> NoReturn:
+        """Raises Refused with the reason; the source must release before it is accepted again."""
+        self._arbiter.reject(source, now, reason)
 
     def set_mode(self, name: str) -> None:
         """Another jog mode; Refused for unknown names, the last one stays.
@@ -72,11 +72,11 @@ class Teleop:
         self._take(self._name)
 
     def stop(self) -> None:
-        """Whoever has the machine is not heard until he has let go."""
+        """The owning source is rejected until it releases."""
         self._arbiter.stop()
 
     def drive(self, now: float) -> None:
-        """Hands on what the source that has the machine wants."""
+        """Passes on the jog command of the owning source."""
         try:
             executor = self._supervisor.executor
         except Refused:
@@ -89,8 +89,8 @@ class Teleop:
         if self._supervisor.is_measured != self._is_measured:
             self._is_measured = self._supervisor.is_measured
             self._take(self._made_name)
-        twist, frame = self._wish
-        executor.jog(Wish(source, twist, frame, self._mode))
+        twist, frame = self._twist
+        executor.jog(JogCommand(source, twist, frame, self._mode))
 
     def _take(self, name: str) -> None:
         self._mode = self._made(name)

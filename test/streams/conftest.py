@@ -38,7 +38,7 @@ class Sent:
 
 
 class Loop:
-    """Ticks of 10 ms from the user's wishes to the board's pulses and back, in one time.
+    """Ticks of 10 ms from the user's commands to the board's pulses and back, in one time.
 
     times_of_a_tick: the steps in which the board's thread lets a tick pass; true_joints are heard
     after each. While `is_stalled` no setpoint gets through, as when ik is kept from running.

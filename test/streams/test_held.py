@@ -48,7 +48,7 @@ def driven(arm, mode, commands, stall=0, point=None):
     arm.run(30)
     arm.true_joints.clear()
     for tick, twist in enumerate([part for part, ticks in commands for _ in range(ticks)]):
-        arm.teleop.hear('cmd_vel/joy', np.resize([*twist, 0, 0, 0], 6), '', arm.now)
+        arm.teleop.receive('cmd_vel/joy', np.resize([*twist, 0, 0, 0], 6), '', arm.now)
         arm.is_stalled = tick % STALL_EVERY >= STALL_EVERY - stall
         arm.run(1)
     arm.is_stalled = False

@@ -53,15 +53,15 @@ STREAMS = st.lists(st.tuples(WISHES, st.sampled_from([1, 2, 5, 17, 60])), max_si
 
 
 class User:
-    """Does to a loop what a stream of wishes says; refusals are answers like any other."""
+    """Does to a loop what a stream of commands says; refusals are answers like any other."""
 
     def __init__(self, loop):
         self.loop = loop
         self.machine = loop.machine
 
-    def ask(self, wish, ticks):
+    def ask(self, command, ticks):
         with contextlib.suppress(ManipulatorError):
-            getattr(self, wish[0])(*wish[1:])
+            getattr(self, command[0])(*command[1:])
         self.loop.run(ticks)
 
     def near_home(self, six, part=1.0):
@@ -89,7 +89,7 @@ class User:
         motion = self.machine.motion
         twist = 2 * np.array(six) * ([motion.linear.speed] * 3 + [motion.angular.speed] * 3)
         for _ in range(ticks):
-            self.loop.teleop.hear(source, twist, '', self.loop.now)
+            self.loop.teleop.receive(source, twist, '', self.loop.now)
             self.loop.run(1)
 
     def mode(self, name):
@@ -207,10 +207,10 @@ def norms(vectors):
 )
 @example(stream=[(('goal', (0.1,) * 6, 1.0), 9), (('enable',), 9)])
 @given(stream=STREAMS)
-def test_no_stream_of_wishes_breaks_a_limit(loop_of, name, stream):
+def test_no_stream_of_jog_commands_breaks_a_limit(loop_of, name, stream):
     loop = loop_of(name)
     user = User(loop)
-    for wish, ticks in stream:
-        user.ask(wish, ticks)
+    for command, ticks in stream:
+        user.ask(command, ticks)
     loop.run(30)
     check(loop)

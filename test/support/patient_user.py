@@ -104,4 +104,4 @@ class PatientUser(Client):
 
 
 SERVOS_ON = ('enabled', 'holding')
-WITHOUT_BOARD = ('not heard of', 'disconnected', 'booting')
+WITHOUT_BOARD = ('unknown', 'disconnected', 'booting')

@@ -91,7 +91,7 @@ def test_a_person_takes_the_machine_from_the_computer_which_must_let_go_first(wo
         world.run(0.02)
     assert world.controller.teleop.owner(world.now) == 'cmd_vel/joy'
     reasons = [reason for _, reason in world.controller.on_twist.refusals]
-    assert any('cmd_vel/joy took the machine over' in reason for reason in reasons)
+    assert any('cmd_vel/joy took over the machine' in reason for reason in reasons)
 
 
 def test_a_stick_overrides_a_goal_in_motion_smoothly_and_the_goal_does_not_resume(arm):
@@ -107,7 +107,7 @@ def test_a_stick_overrides_a_goal_in_motion_smoothly_and_the_goal_does_not_resum
     refused = arm.send_goal(home)
     hold(arm, UP, 0.1)
     assert any(
-        s.goal_stamp == refused and f'{JOY} has the machine' in s.reason
+        s.goal_stamp == refused and f'{JOY} controls the machine' in s.reason
         for _, s in arm.controller.statuses
     )
     hold(arm, np.zeros(6), 0.02)

@@ -62,7 +62,7 @@ class Hearing:
             name: _Newest(JointState if 'joint' in name else PoseStamped) for name in STREAMS
         }
         self._subscriptions: list[Any] = []
-        self.machine_state = DiagnosticStatus(message='not heard of')
+        self.machine_state = DiagnosticStatus(message='unknown')
         self.motion_status = DiagnosticStatus()
         self._reports: dict[str, tuple[DiagnosticStatus, float]] = {}
         subscribe = node.create_subscription

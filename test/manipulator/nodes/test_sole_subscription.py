@@ -79,7 +79,7 @@ class IdleSupervisor:
     """A machine that nothing drives."""
 
     is_measured = False
-    executor = SimpleNamespace(is_busy=False, jog=lambda wish: None)
+    executor = SimpleNamespace(is_busy=False, jog=lambda request: None)
 
 
 @pytest.mark.parametrize('source', SOURCES)

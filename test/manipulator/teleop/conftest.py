@@ -28,7 +28,7 @@ class User:
     def send(self):
         """One message of the present state; what is wanted right after it."""
         self.now += PERIOD
-        self.reader = self.reader.hear(self.axes, self.buttons, self.now)
+        self.reader = self.reader.receive(self.axes, self.buttons, self.now)
         return self.wanted
 
     def push(self, **axes):

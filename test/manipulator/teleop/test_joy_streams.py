@@ -38,7 +38,7 @@ def test_no_stream_of_messages_moves_anything_without_a_deadman_pressed_after_re
         now += pause
         if pause > XBOX.lost_after:
             was_released = False
-        reader = reader.hear(axes, buttons, now)
+        reader = reader.receive(axes, buttons, now)
         is_whole = len(axes) >= 7 and len(buttons) >= 8
         is_whole = is_whole and all(abs(a) <= 1.05 for a in axes)
         is_whole = is_whole and all(b in (0, 1) for b in buttons)
@@ -58,6 +58,6 @@ def test_twist_never_exceeds_turbo_speed(stream):
     reader, now = JoyReader(XBOX), 0.0
     for axes, buttons, pause in stream:
         now += pause
-        reader = reader.hear(axes, buttons, now)
+        reader = reader.receive(axes, buttons, now)
         twist = np.abs(reader.wanted(now).twist)
         assert (twist <= np.array([0.1] * 3 + [1.0] * 3) + 1e-12).all()

@@ -14,7 +14,7 @@ from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.jogging import Wish
+from manipulator.trajectory.jogging import JogCommand
 from manipulator.trajectory.plan import MotionState
 from manipulator.trajectory.planner import Start, plan_goal
 from manipulator.trajectory.worker import MOST_POSES, Effort
@@ -103,7 +103,7 @@ def test_home_is_reached_from_wherever_a_stick_has_led(direction):
     twist = np.zeros(6)
     axis, sign = direction % 6, 1 - 2 * (direction // 6)
     twist[axis] = sign * (0.2 if axis < 3 else 1.2)
-    executor.jog(Wish('cmd_vel/joy', twist, '', FREE))
+    executor.jog(JogCommand('cmd_vel/joy', twist, '', FREE))
     for tick in range(600):
         before, pose = executor.state.pose, executor.step()
         if tick > 20 and not before.twist_to(pose).any():

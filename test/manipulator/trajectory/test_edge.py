@@ -9,7 +9,7 @@ from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.jogging import Wish
+from manipulator.trajectory.jogging import JogCommand
 from sampling import some
 
 TICK = 0.01
@@ -65,7 +65,9 @@ class Driven:
 def test_home_is_reached_from_the_edge_where_branches_meet(name, direction):
     machine = load(name)
     driven = Driven(machine)
-    driven.executor.jog(Wish('cmd_vel/joy', FULL * direction / np.abs(direction).max(), '', FREE))
+    driven.executor.jog(
+        JogCommand('cmd_vel/joy', FULL * direction / np.abs(direction).max(), '', FREE)
+    )
     driven.run(0.1)
     driven.run_until_it_stands(4.0)
     driven.executor.jog(None)

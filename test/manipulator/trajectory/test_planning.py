@@ -12,11 +12,11 @@ from manipulator.errors import ManipulatorError, Refused
 from manipulator.pose import Pose
 from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
-from manipulator.trajectory.active_plan import Playing
+from manipulator.trajectory.active_plan import ActivePlan
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.jogging import Wish
+from manipulator.trajectory.jogging import JogCommand
 from manipulator.trajectory.joint_move import plan_joint_move
 from manipulator.trajectory.planning import LEADS, Planning
 from manipulator.trajectory.worker import Effort, Job
@@ -156,7 +156,7 @@ def test_a_jog_that_begins_while_a_goal_is_planned_drops_it():
     slow = Slow(30)
     slow.executor.pursue(Goal(pose(x=0.01), 1.0))
     slow.run(10)
-    slow.executor.jog(Wish('cmd_vel/joy', np.array([0, 0.01, 0, 0, 0, 0.0]), '', FREE))
+    slow.executor.jog(JogCommand('cmd_vel/joy', np.array([0, 0.01, 0, 0, 0, 0.0]), '', FREE))
     slow.run(60)
     slow.executor.jog(None)
     slow.run(60)
@@ -301,12 +301,12 @@ def test_a_goal_during_a_joint_move_is_planned_from_the_joints_that_the_move_has
     begin = np.array([0.2, 0.6, -0.9, -1.0, 0.5, 2.0])
     end = np.array([-0.2, 0.5, 0.6, 1.0, -0.5, 1.0])
     move = plan_joint_move(arm, arm.kinematics.forward(begin).pose, begin, end)
-    playing, worker = Playing(move), Later(1)
+    active, worker = ActivePlan(move), Later(1)
     for time in np.arange(DT, move.duration - LEADS[0] * DT, DT):
-        playing.time = time
+        active.time = time
         planning = Planning(replace(arm, kinematics=Costly(arm.kinematics)), DT, worker)
-        planning.ask(Goal(arm.kinematics.home, 1.0))
-        planning.step(playing, move.joints_at(time))
+        planning.request(Goal(arm.kinematics.home, 1.0))
+        planning.step(active, move.joints_at(time))
         _, task, *_ = worker.waiting[-1]
         _, ahead = task.args
         assert ahead.joints_at_end(arm) == pytest.approx(

@@ -86,7 +86,7 @@ class ControllerProcess(Process):
         self._publish_news()
 
     def _take_twist(self, stamp, source, twist):
-        self.teleop.hear(source, twist, '', self.now)
+        self.teleop.receive(source, twist, '', self.now)
 
     def _tick(self):
         self.core.begin_tick(self.now)

@@ -140,13 +140,13 @@ def test_park_of_a_machine_whose_pose_there_is_unknown_is_refused():
 
 def test_stop_brakes_drops_what_waits_and_silences_the_stick(stage):
     twist = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])
-    stage.core.teleop.hear('cmd_vel/joy', twist, '', stage.now)
+    stage.core.teleop.receive('cmd_vel/joy', twist, '', stage.now)
     stage.run(10)
     stage.core.stop()
     for _ in range(30):
         stage.tick()
         with pytest.raises(Refused):
-            stage.core.teleop.hear('cmd_vel/joy', twist, '', stage.now)
+            stage.core.teleop.receive('cmd_vel/joy', twist, '', stage.now)
     assert (stage.status.mode, stage.status.result) == ('hold', 'stopped')
 
 
@@ -192,7 +192,10 @@ def test_a_cycle_that_a_newer_goal_replaces_is_answered_so(slow):
     slow.pursue(Goal(HIGHER, 6.0))
     slow.run(1)
     answer = slow.core.cycle_answer(5.0)
-    assert (answer.is_obeyed, answer.text) == (False, 'a newer command came before it began')
+    assert (answer.is_obeyed, answer.text) == (
+        False,
+        'replaced by a newer command before it began',
+    )
 
 
 def test_a_cycle_whose_machine_is_lost_before_it_began_is_answered_so(slow):
@@ -210,7 +213,10 @@ def test_a_cycle_whose_machine_was_lost_and_waits_to_be_driven_again_is_answered
     slow.state = 'enabled'
     slow.run(1)
     answer = slow.core.cycle_answer(5.0)
-    assert (answer.is_obeyed, answer.text) == (False, 'a newer command came before it began')
+    assert (answer.is_obeyed, answer.text) == (
+        False,
+        'replaced by a newer command before it began',
+    )
 
 
 def test_an_unknown_jog_mode_is_refused_and_the_last_one_stays(stage):

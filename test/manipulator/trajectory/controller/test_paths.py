@@ -137,7 +137,7 @@ def test_a_path_with_the_stamp_of_another_clock_or_none_is_driven(slow, stamp, t
     [
         ('stop', 'stopped before it began'),
         ('fault', 'the machine is fault: clear the fault first'),
-        ('jog', 'cmd_vel/joy took the machine over'),
+        ('jog', 'cmd_vel/joy took over the machine'),
     ],
 )
 @pytest.mark.parametrize('is_moving', [False, True])
@@ -153,7 +153,7 @@ def test_what_ends_the_motion_ends_the_path_before_it_began(slow, end, reason, i
     elif end == 'fault':
         slow.state = 'fault'
     else:
-        slow.core.teleop.hear('cmd_vel/joy', np.zeros(6) + 1e-4, '', slow.now)
+        slow.core.teleop.receive('cmd_vel/joy', np.zeros(6) + 1e-4, '', slow.now)
     slow.run(10)
     slow.state = 'enabled'
     slow.run(300)
@@ -172,9 +172,9 @@ def test_a_stop_at_rest_is_the_last_that_is_said_of_the_path(slow):
 
 
 def test_a_path_while_somebody_jogs_is_refused(slow):
-    slow.core.teleop.hear('cmd_vel/joy', np.full(6, 1e-3), '', slow.now)
+    slow.core.teleop.receive('cmd_vel/joy', np.full(6, 1e-3), '', slow.now)
     slow.run(2)
-    with pytest.raises(Refused, match='cmd_vel/joy has the machine'):
+    with pytest.raises(Refused, match='cmd_vel/joy controls the machine'):
         slow.follow(path(circle()))
 
 

@@ -11,7 +11,7 @@ from manipulator.frames import Frames
 from manipulator.pose import Pose
 from manipulator.teleop.jog_modes import Free
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.jogging import Wish
+from manipulator.trajectory.jogging import JogCommand
 
 DT = 0.01
 FREE = Free()
@@ -34,11 +34,11 @@ class Jogged(Executor):
     def run(self, ticks, twist=None, mode=FREE, frame=''):
         """Poses of these ticks, the present one first; without a twist nobody jogs."""
         begin = len(self.poses) - 1
-        wish = None
+        command = None
         if twist is not None:
-            wish = Wish('cmd_vel/joy', np.array(twist, dtype=float), frame, mode)
+            command = JogCommand('cmd_vel/joy', np.array(twist, dtype=float), frame, mode)
         for _ in range(ticks):
-            self.jog(wish)
+            self.jog(command)
             self.poses.append(self.step())
             self.configurations.append(self.joints)
         return self.poses[begin:]

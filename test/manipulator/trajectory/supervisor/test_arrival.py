@@ -5,7 +5,7 @@ import pytest
 
 from hexarm.machines import load
 from manipulator.pose import Pose
-from manipulator.trajectory.following import ARRIVAL_PATIENCE, Tolerances
+from manipulator.trajectory.following_error import ARRIVAL_PATIENCE, Tolerances
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.supervisor import MotionSupervisor
 

@@ -43,7 +43,10 @@ def test_after_a_long_silence_goals_are_dropped_and_motion_begins_at_a_pose_that
 ):
     moving.note_silence(0.6)
     assert moving.step() is None
-    assert (moving.status.result, moving.status.reason) == ('stopped', 'no pose for 0.5 s')
+    assert (moving.status.result, moving.status.reason) == (
+        'stopped',
+        'no pose received for 0.5 s',
+    )
     moving.note_pose(HOME)
     with pytest.raises(Refused, match='its pose is not known'):
         _ = moving.executor
@@ -120,9 +123,9 @@ def test_what_a_bridge_said_that_has_died_counts_for_nothing(driving):
     assert driving.is_driving
     driving.note_bridge_silence(1.6)
     assert not driving.is_driving
-    assert driving.status.reason == 'no word of the bridge for 1.5 s'
+    assert driving.status.reason == 'machine_state timed out (1.5 s)'
     driving.see(HOME)
-    with pytest.raises(Refused, match='no bridge says how it is'):
+    with pytest.raises(Refused, match='no machine_state received from serial_bridge'):
         _ = driving.executor
     driving.note_machine_state('enabled', is_followed=False)
     driving.see(HOME)

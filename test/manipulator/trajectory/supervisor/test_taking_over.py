@@ -107,16 +107,16 @@ def test_a_machine_that_is_enabled_anew_is_idle(moving):
 
 
 @pytest.mark.parametrize(
-    ('state', 'way_out'),
+    ('state', 'remedy'),
     [
         ('stopped', 'clear the stop first'),
-        ('disconnected', 'no board answers'),
+        ('disconnected', 'the board does not answer'),
         ('disarmed', 'enable it first'),
     ],
 )
-def test_a_machine_that_nobody_may_drive_says_what_is_missing(driving, state, way_out):
+def test_a_machine_that_nobody_may_drive_says_what_is_missing(driving, state, remedy):
     driving.note_machine_state(state, is_followed=False)
-    with pytest.raises(Refused, match=f'the machine is {state}: {way_out}'):
+    with pytest.raises(Refused, match=f'the machine is {state}: {remedy}'):
         _ = driving.executor
 
 
@@ -153,7 +153,7 @@ def test_a_leg_bent_the_wrong_way_and_almost_straight_is_named(supervisor):
     assert supervisor.executor.status.reason == ''
 
 
-def test_a_pose_that_is_late_for_a_moment_is_no_trouble(supervisor):
+def test_a_pose_that_is_late_for_a_moment_is_no_violation(supervisor):
     supervisor.note_machine_state('enabled', is_followed=True)
     supervisor.note_joints(MACHINE.kinematics.inverse(HOME))
     for _ in range(10):

@@ -9,7 +9,7 @@ from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.jogging import Jogging, Wish
+from manipulator.trajectory.jogging import JogCommand, Jogging
 
 DT = 0.01
 TICKS = 200
@@ -57,7 +57,7 @@ def test_jog_brakes_the_plan_along_its_way_and_drops_it(robocake):
     for _ in range(60):
         robocake.run(1, [0, 0, 0.02, 0, 0, 0])
         seen.append(robocake.status)
-    assert ('stopped', 7.0, 'cmd_vel/joy took the machine over') in [
+    assert ('stopped', 7.0, 'cmd_vel/joy took over the machine') in [
         (s.result, s.goal_stamp, s.reason) for s in seen
     ]
     robocake.check_limits()
@@ -95,7 +95,7 @@ def test_no_path_is_expected_during_a_jog_and_one_that_was_is_dropped(robocake):
     robocake.expect(3.0)
     robocake.run(5, [0, 0, 0.01, 0, 0, 0])
     assert robocake.expected is None
-    with pytest.raises(Refused, match='cmd_vel/joy has the machine'):
+    with pytest.raises(Refused, match='cmd_vel/joy controls the machine'):
         robocake.expect(4.0)
     assert robocake.expected is None
     assert robocake.status.mode == 'jog'
@@ -104,9 +104,9 @@ def test_no_path_is_expected_during_a_jog_and_one_that_was_is_dropped(robocake):
 def test_goals_and_cycles_are_refused_during_a_jog_and_taken_after_it(robocake):
     robocake.run(5, [0, 0, 0.01, 0, 0, 0])
     goal = Goal(HOME, 3.0)
-    with pytest.raises(Refused, match='cmd_vel/joy has the machine'):
+    with pytest.raises(Refused, match='cmd_vel/joy controls the machine'):
         robocake.pursue(goal)
-    with pytest.raises(Refused, match='cmd_vel/joy has the machine'):
+    with pytest.raises(Refused, match='cmd_vel/joy controls the machine'):
         robocake.start_cycle(Cycle(HOME, [0.001] * 6, [0.5] * 6, [0] * 6))
     robocake.jog(None)
     robocake.pursue(goal)
@@ -152,7 +152,7 @@ def test_a_mode_holds_on_to_what_it_has_latched_until_it_refuses_or_another_one_
 
     def jog(mode, ticks=5):
         for _ in range(ticks):
-            jogging.step(Wish('joy', np.full(6, 1e-3), '', mode), 1.0, None)
+            jogging.step(JogCommand('joy', np.full(6, 1e-3), '', mode), 1.0, None)
 
     jog(one)
     jog(other)

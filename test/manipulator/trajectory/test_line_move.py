@@ -4,7 +4,7 @@ import pytest
 from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.pose import Pose
-from manipulator.trajectory.point_to_point import plan_straight
+from manipulator.trajectory.point_to_point import plan_line_move
 
 LIMITS = load('robocake').motion
 
@@ -16,7 +16,7 @@ def random_pose(rng):
 def test_move_is_straight_turns_about_one_axis_and_ends_at_the_goal():
     rng = np.random.default_rng(3)
     start, goal = random_pose(rng), random_pose(rng)
-    move = plan_straight(start, goal, LIMITS)
+    move = plan_line_move(start, goal, LIMITS)
     states = move.at(np.linspace(0.0, move.duration, 50))
     whole = start.twist_to(goal)
     for pose in (states.pose[i] for i in range(50)):
@@ -29,7 +29,7 @@ def test_move_is_straight_turns_about_one_axis_and_ends_at_the_goal():
 def test_speed_acceleration_and_jerk_reach_a_limit_and_pass_none():
     rng = np.random.default_rng(4)
     for _ in range(20):
-        move = plan_straight(random_pose(rng), random_pose(rng), LIMITS)
+        move = plan_line_move(random_pose(rng), random_pose(rng), LIMITS)
         states = move.at(np.linspace(0.0, move.duration, 2000))
         ratios = [
             np.linalg.norm(part[:, axes], axis=1).max() / bound
@@ -44,17 +44,17 @@ def test_speed_acceleration_and_jerk_reach_a_limit_and_pass_none():
 
 def test_twist_is_the_derivative_of_the_pose():
     rng = np.random.default_rng(5)
-    move = plan_straight(random_pose(rng), random_pose(rng), LIMITS)
+    move = plan_line_move(random_pose(rng), random_pose(rng), LIMITS)
     t, h = 0.4 * move.duration, 1e-5
     before, now, after = (move.at(t + k * h) for k in (-1, 0, 1))
     np.testing.assert_allclose(now.twist, before.pose.twist_to(after.pose) / (2 * h), atol=1e-6)
     np.testing.assert_allclose(now.acceleration, (after.twist - before.twist) / (2 * h), atol=1e-2)
 
 
-def test_slowness_stretches_time_and_keeps_the_way():
+def test_slowdown_stretches_time_and_keeps_the_path():
     rng = np.random.default_rng(6)
     start, goal = random_pose(rng), random_pose(rng)
-    move, slow = plan_straight(start, goal, LIMITS), plan_straight(start, goal, LIMITS, 2.0)
+    move, slow = plan_line_move(start, goal, LIMITS), plan_line_move(start, goal, LIMITS, 2.0)
     assert slow.duration == pytest.approx(2.0 * move.duration, rel=1e-6)
     same = move.at(0.3 * move.duration).pose.twist_to(slow.at(0.3 * slow.duration).pose)
     assert np.abs(same).max() < 1e-7
@@ -62,4 +62,4 @@ def test_slowness_stretches_time_and_keeps_the_way():
 
 def test_goal_where_it_stands_is_a_move_within_a_tick():
     pose = random_pose(np.random.default_rng(7))
-    assert plan_straight(pose, pose, LIMITS).duration < 0.01
+    assert plan_line_move(pose, pose, LIMITS).duration < 0.01

@@ -1,4 +1,4 @@
-"""Whether the joints follow what is commanded, and whether they have arrived."""
+"""The following error of the joints, and their arrival at a goal."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ WINDOW = 0.5
 """Seconds by which the joints may lag behind."""
 
 PATIENCE = 0.3
-"""Seconds for which they may be elsewhere."""
+"""Seconds for which the error may exceed its tolerance."""
 
 ARRIVAL_PATIENCE = 1.0
 """Seconds that the joints may take to arrive once a plan's time is over."""
@@ -28,14 +28,14 @@ GOAL_SHARE, MOST_AT_GOAL = 0.01, radians(0.5)
 
 @dataclass(frozen=True, eq=False)
 class Tolerances:
-    """How far each joint may be from its commands of late, and from a goal: (n,), rad or m."""
+    """How far each joint may be from its recent commands, and from a goal: (n,), rad or m."""
 
     following: Array
     goal: Array
 
     @classmethod
     def of(cls, machine: Machine, following: float = 0.0, goal: float = 0.0) -> 'Tolerances':
-        """The same for all joints, or with 0 by each joint's unit and range."""
+        """One value for all joints (rad or m), or with 0 one by each joint's unit and range."""
         low, high = machine.joint_ranges
         is_rotary = machine.kinematics.joint_unit == 'rad'
 
@@ -49,8 +49,8 @@ class Tolerances:
         )
 
 
-class Following:
-    """Compares measured joints with all that was commanded within the last half second."""
+class FollowingError:
+    """Distance of the measured joints from all commands of the last half second."""
 
     def __init__(
         self, names: tuple[str, ...], unit: str, tolerances: Tolerances, dt: float
@@ -59,33 +59,33 @@ class Following:
         self._names, self._unit = names, unit
         self._tolerances = tolerances
         self._commanded: deque[Array] = deque(maxlen=max(round(WINDOW / dt), 1))
-        self._strays = 0
+        self._is_outside = 0
         self._allowed_ticks = round(PATIENCE / dt)
-        self._astray_for = 0
+        self._ticks_outside = 0
         self._worst = ''
         self._measured: Array | None = None
 
     def command(self, joints: Array) -> None:
-        """Notes what is commanded at this tick."""
+        """Adds the command (n,) of this tick."""
         self._commanded.append(joints)
-        self._astray_for += self._strays
+        self._ticks_outside += self._is_outside
 
     def measure(self, joints: Array) -> None:
-        """Notes where the joints are."""
+        """Takes measured joints (n,)."""
         self._measured = joints
         if not self._commanded:
             return
         away = np.abs(np.array(self._commanded) - joints)
         nearest = away[int(np.argmin(away.max(axis=1)))]
-        self._strays = int((nearest > self._tolerances.following).any())
-        self._astray_for *= self._strays
-        # All joints are between two commands then; the last one tells which of them stands still.
+        self._is_outside = int((nearest > self._tolerances.following).any())
+        self._ticks_outside *= self._is_outside
+        # Compared with the last command: between two earlier ones no single joint is at fault.
         self._worst, _ = self._furthest(away[-1], self._tolerances.following, 'its command')
 
-    def missing(self, is_measured: bool) -> str:
-        """Which joint is not where the last command sent it, and by how much; '' where all are.
+    def deviation(self, is_measured: bool) -> str:
+        """The joint that is farthest from the last command, in words; '' within tolerance.
 
-        Measured joints are held to the goal's tolerance; of others only the commands are known.
+        Measured joints have the goal's tolerance; of others only the commands are known.
         """
         if self._measured is None or not self._commanded:
             return ''
@@ -95,12 +95,12 @@ class Following:
         return worst if excess > 0.0 else ''
 
     @property
-    def trouble(self) -> str:
-        """Which joint does not follow, and by how much; '' while all do."""
-        return self._worst if self._astray_for > self._allowed_ticks else ''
+    def violation(self) -> str:
+        """The joint that does not follow, in words; '' while all do."""
+        return self._worst if self._ticks_outside > self._allowed_ticks else ''
 
     def _furthest(self, away: Array, tolerance: Array, what: str) -> tuple[str, float]:
-        """The joint that is worst off, in words, and by how much it is beyond its tolerance."""
+        """The joint farthest beyond its tolerance, in words, and by how much."""
         k = int(np.argmax(away - tolerance))
         factor, unit = (1e3, ' mm') if self._unit == 'm' else (float(np.degrees(1.0)), '°')
         allowed = f'tolerance {tolerance[k] * factor:.3g}{unit}'
@@ -109,7 +109,7 @@ class Following:
 
 
 class Arrival:
-    """Holds *reached* back until the joints are there, for as long as they may take."""
+    """Delays the result *reached* until the joints are there, up to ARRIVAL_PATIENCE."""
 
     def __init__(self, dt: float) -> None:
         self._dt = dt
@@ -117,22 +117,22 @@ class Arrival:
         self._waited = 0
 
     def has_judged(self, status: MotionStatus) -> bool:
-        """Whether what is to be reported of a status has been."""
+        """Whether a status has been judged."""
         return status is self._judged
 
-    def judged(self, status: MotionStatus, missing: str) -> MotionStatus | None:
-        """What is to be reported of a status that may be new, once a tick; None for nothing new.
+    def judged(self, status: MotionStatus, deviation: str) -> MotionStatus | None:
+        """The status to report, once a tick; None for nothing new.
 
-        A plan whose time is over says *reached*. missing: what is not there yet, in words; what
-        does not come in time ends the motion as *stopped*, with these.
+        A plan whose time has ended reports *reached*. deviation: which joint is not there yet, in
+        words; after ARRIVAL_PATIENCE the result is *stopped*, with this reason.
         """
         if status is self._judged:
             return None
-        is_late = status.result == 'reached' and bool(missing)
+        is_late = status.result == 'reached' and bool(deviation)
         self._waited = self._waited + 1 if is_late else 0
         if is_late and self._waited * self._dt < ARRIVAL_PATIENCE:
             return None
         self._judged, self._waited = status, 0
         if is_late:
-            return MotionStatus(status.mode, 'stopped', status.goal_stamp, missing)
+            return MotionStatus(status.mode, 'stopped', status.goal_stamp, deviation)
         return status

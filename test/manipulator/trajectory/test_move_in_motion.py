@@ -4,7 +4,7 @@ from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.pose import Pose
 from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.point_to_point import coordinates, plan_move, state_of
+from manipulator.trajectory.point_to_point import coordinates, plan_move_in_motion, state_of
 
 LIMITS = load('robocake').motion
 
@@ -21,7 +21,7 @@ def test_move_begins_with_the_state_and_ends_at_rest_at_the_goal():
     rng = np.random.default_rng(1)
     for _ in range(50):
         start, goal = random_state(rng), random_pose(rng)
-        move = plan_move(start, goal, LIMITS)
+        move = plan_move_in_motion(start, goal, LIMITS)
         first, last = move.at(0.0), move.at(move.duration)
         assert np.abs(start.pose.twist_to(first.pose)).max() < 1e-8
         np.testing.assert_allclose(first.twist, start.twist, atol=1e-9)
@@ -33,7 +33,7 @@ def test_move_begins_with_the_state_and_ends_at_rest_at_the_goal():
 def test_twist_and_acceleration_are_the_derivatives_of_the_pose():
     rng = np.random.default_rng(2)
     for _ in range(20):
-        move = plan_move(random_state(rng), random_pose(rng), LIMITS)
+        move = plan_move_in_motion(random_state(rng), random_pose(rng), LIMITS)
         t, h = rng.uniform(0.1, 0.9) * move.duration, 1e-5
         before, now, after = (move.at(t + k * h) for k in (-1, 0, 1))
         numeric = before.pose.twist_to(after.pose) / (2 * h)
@@ -42,11 +42,14 @@ def test_twist_and_acceleration_are_the_derivatives_of_the_pose():
         np.testing.assert_allclose(now.acceleration, numeric, atol=0.05)
 
 
-def test_slowness_stretches_time_and_keeps_the_way():
+def test_slowdown_stretches_time_and_keeps_the_path():
     rng = np.random.default_rng(3)
     for _ in range(10):
         start, goal = MotionState.at_rest(random_pose(rng)), random_pose(rng)
-        move, slow = plan_move(start, goal, LIMITS), plan_move(start, goal, LIMITS, 2.0)
+        move, slow = (
+            plan_move_in_motion(start, goal, LIMITS),
+            plan_move_in_motion(start, goal, LIMITS, 2.0),
+        )
         np.testing.assert_allclose(slow.duration, 2.0 * move.duration, rtol=1e-6)
         same = move.at(0.3 * move.duration).pose.twist_to(slow.at(0.3 * slow.duration).pose)
         assert np.abs(same).max() < 1e-7
