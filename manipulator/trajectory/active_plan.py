@@ -73,7 +73,7 @@ class TimeScaling:
     """
 
     def __init__(self, braking_rate: float, dt: float) -> None:
-        """braking_rate: the largest change of the factor (1/s), see `MotionLimits.braking_rate`."""
+        """braking_rate: most change of the factor (1/s), see `MotionLimits.braking_rate`."""
         self.factor = 1.0
         self.is_paused = self.is_blind = self.is_stopping = False
         self._override = 1.0

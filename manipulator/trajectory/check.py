@@ -62,9 +62,9 @@ def check_plan(
     """Simulates the plan, tick by tick, on the branch of the inverse that joints `near` are on.
 
     Returns the utilisation of speed and acceleration limits. A plan that begins beyond a limit may
-    not go further out. Raises Refused, with the place, joint or leg, value and limit, where the path
-    leaves the reach of the machine or would need another branch, and where planning would cost
-    more `effort` than a plan may.
+    not go further out. Raises Refused, with the place, joint or leg, value and limit, where the
+    path leaves the reach of the machine or would need another branch, and where planning would
+    cost more `effort` than a plan may.
     """
     constraints, worst = machine.constraints, LimitUtilisation(0.0, '')
     for part in _batches(plan, machine, near, dt, effort or Effort()):

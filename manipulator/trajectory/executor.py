@@ -94,7 +94,7 @@ class Executor:
         self._drop_path(OVERTAKEN)
 
     def expect(self, stamp: float) -> None:
-        """A path is being planned: `expected` is its stamp; once dropped, `dropped` is the reason."""
+        """Notes that a path of that stamp is being planned; `dropped` is the reason if it ends."""
         self._refuse_while_jogged()
         self.expected = stamp
         self._report('planning', stamp)

@@ -1,9 +1,9 @@
 """Planning of goals, while the active plan continues.
 
 Short moves of machines with an explicit inverse are planned within the tick: a stream of goals is
-followed closest this way. Other plans are made in a worker, and begin where the active plan will be
-LEADS ticks later. A plan that is finished too late is made again with more time, and at last from
-rest.
+followed closest this way. Other plans are made in a worker, and begin where the active plan will
+be LEADS ticks later. A plan that is finished too late is made again with more time, and at last
+from rest.
 """
 
 from dataclasses import dataclass

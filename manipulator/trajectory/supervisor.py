@@ -166,7 +166,7 @@ class MotionSupervisor:
             self.release(f'machine_state timed out ({STATE_DEADLINE:g} s)')
 
     def note_stall(self, seconds: float) -> None:
-        """Seconds for which the caller itself stalled: by then the board holds, goals are stale."""
+        """Seconds for which the caller stalled: by then the board holds, and goals are stale."""
         if seconds > POSE_DEADLINE:
             self.release(f'the control loop stalled for {seconds:.1f} s')
 
@@ -258,7 +258,7 @@ class MotionSupervisor:
     def _note_mismatch(self, gaps: Array) -> None:
         """Reports the joint that prevents the takeover, once that lasts.
 
-        This happens where a leg is on the other branch and nearly straight: no motion begins there.
+        So it is where a leg is on the other branch and nearly straight: no motion begins there.
         """
         self._mismatches += 1
         if self._mismatches == MISMATCHES:
