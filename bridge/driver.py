@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from bridge.calibration import Calibration
-from bridge.command_gate import CommandGate
+from bridge.command_validator import CommandValidator
 from bridge.events import (
     Acknowledged,
     CommandFailed,
@@ -78,7 +78,9 @@ class BoardDriver:
     ) -> None:
         """`epoch` is what the system's clock says where `now` is zero, s."""
         self.calibration = Calibration.from_config(config.servos)
-        self.gate = CommandGate(self.calibration, 1e-3 * config.link.setpoint_deadline_ms)
+        self.validator = CommandValidator(
+            self.calibration, 1e-3 * config.link.setpoint_deadline_ms
+        )
         self._gripper = Gripper(config.servos, self.calibration)
         self.session = Session(len(self.calibration.names))
         self.monitor = LinkMonitor(self.session, self.calibration)
@@ -101,7 +103,7 @@ class BoardDriver:
         self._refuse_unless_enabled()
         present = None if self.monitor.joints is None else self.monitor.joints.positions
         names, positions = self._gripper.joined((names, positions), now, present)
-        setpoint = self.gate.admit(names, positions, stamp, now + self._epoch, present)
+        setpoint = self.validator.admit(names, positions, stamp, now + self._epoch, present)
         self.link.put_setpoint(Ticket(setpoint, now, stamp))
 
     def aim_gripper(self, opening: float) -> None:
@@ -149,7 +151,7 @@ class BoardDriver:
         is_enabled = self.monitor.is_enabled_here and self.session.accepts_setpoints
         if self._must_restart or not is_enabled:
             self._must_restart = False
-            self.gate.restart()
+            self.validator.restart()
             self._gripper.restart()
         if not is_enabled:
             raise Refused(self._why_not_enabled())
@@ -190,7 +192,7 @@ class BoardDriver:
 
     def _note_written(self, ticket: Ticket, now: float) -> None:
         self._is_followed = True
-        stamped = None if self.gate.has_notable_offset else ticket.stamped
+        stamped = None if self.validator.has_notable_offset else ticket.stamped
         self._listener.on_written(replace(ticket, stamped=stamped), now)
 
 

@@ -81,7 +81,7 @@ class Session:
         self._output = bytearray()
         self._sequence = 0
         self._pending: _Pending | None = None
-        self._heard_at = self._opened_at = self._hello_at = 0.0
+        self._received_at = self._opened_at = self._hello_at = 0.0
 
     @property
     def accepts_setpoints(self) -> bool:
@@ -111,7 +111,7 @@ class Session:
         sent_after = now if sent_after is None else sent_after
         events: list[Event] = []
         for frame in self.reader.feed(received):
-            self._heard_at = now
+            self._received_at = now
             match frame.message:
                 case Hello():
                     events += self._shake_hands(frame.message, now, sent_after)
@@ -125,7 +125,10 @@ class Session:
 
     def tick(self, now: float) -> list[Event]:
         """Retries what was not acknowledged; notices a board that fell silent."""
-        if self.phase in (Phase.CONNECTING, Phase.READY) and now - self._heard_at > BOARD_SILENCE:
+        if (
+            self.phase in (Phase.CONNECTING, Phase.READY)
+            and now - self._received_at > BOARD_SILENCE
+        ):
             events = self.closed(f'the board has been silent for {BOARD_SILENCE:g} s', now)
             self.phase = Phase.WAITING
             return events
@@ -191,7 +194,7 @@ class Session:
     def _forget(self, phase: Phase, now: float) -> None:
         self.phase = phase
         self.hello = self.state = self._pending = None
-        self._opened_at = self._heard_at = now
+        self._opened_at = self._received_at = now
         self.round_trips.forget_sent()
         self._output.clear()
 

@@ -68,13 +68,13 @@ class Mover:
 
     def go_to(self, xyz, quaternion=LEVEL):
         """Publishes a goal and waits for its end; exits with the reason when it is not reached."""
-        self.wait(self.is_heard, f'no machine hears {self.goals.topic_name}', JOINS_WITHIN)
+        self.wait(self.has_subscribers, f'no machine hears {self.goals.topic_name}', JOINS_WITHIN)
         stamp = self.publish(xyz, quaternion)
         self.wait(lambda: self.result(stamp), 'not there, and nothing has moved', self.patience)
         if self.result(stamp) != 'reached':
             sys.exit(self.status.message)
 
-    def is_heard(self):
+    def has_subscribers(self):
         """Whether all who can hear goals are connected, the machine among them; others watch."""
         listeners = [
             listener

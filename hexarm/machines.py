@@ -16,7 +16,7 @@ from manipulator.formatting import reason, shortened, shown
 from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
-from manipulator.sag import Sag
+from manipulator.static_deflection import StaticDeflection
 
 
 def _hexapod(machine_file: MachineFile) -> Machine:
@@ -122,7 +122,7 @@ def load(name_or_path: str) -> Machine:
     machine_file = read(name_or_path)
     try:
         machine = loader(machine_file.kind)(machine_file)
-        machine = replace(machine, sag=_sag(machine_file, machine.kinematics))
+        machine = replace(machine, deflection=_deflection(machine_file, machine.kinematics))
     except ConfigError as error:
         raise ConfigError(error.problems, str(find(name_or_path))) from error
     park = _park(machine_file, machine.kinematics)
@@ -139,10 +139,10 @@ def _park(machine_file: MachineFile, kinematics: Kinematics) -> Array | None:
     return frozen(calibration.park[order])
 
 
-def _sag(machine_file: MachineFile, kinematics: Kinematics) -> Sag | None:
+def _deflection(machine_file: MachineFile, kinematics: Kinematics) -> StaticDeflection | None:
     """What the machine's nodes compensate, where its file asks for it."""
     if (machine_file.dynamics or {}).get('compensation') is not True:
         return None
-    from hexarm.simulation.compensation import sag_of  # noqa: PLC0415 (most machines need no masses)
+    from hexarm.simulation.compensation import deflection_of  # noqa: PLC0415 (most machines need no masses)
 
-    return sag_of(machine_file, kinematics)
+    return deflection_of(machine_file, kinematics)

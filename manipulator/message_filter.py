@@ -23,7 +23,7 @@ CONFIRMED_AFTER, AGREEMENT = 0.05, 0.1
 
 
 @dataclass
-class StampGate:
+class StampFilter:
     """One source's clock, learnt from its messages; all times in seconds.
 
     The smallest (receipt − stamp) seen is the offset of a message without delay. Two refused
@@ -82,7 +82,7 @@ class MessageFilter:
         self.last_refusal = ''
         self.last_good = float('-inf')
         self._clock_start = clock_start
-        self._gate = StampGate()
+        self._stamps = StampFilter()
 
     def take(
         self, stamp: float, accept: Callable[[], object], now: float
@@ -93,7 +93,7 @@ class MessageFilter:
         """
         try:
             if stamp:
-                self._gate.admit(stamp, now + self._clock_start)
+                self._stamps.admit(stamp, now + self._clock_start)
             accept()
         except ManipulatorError as error:
             self.refuse(error)
@@ -113,5 +113,5 @@ class MessageFilter:
     @property
     def clock_offset(self) -> float:
         """By how much the clock of the source is ahead of ours, where that is notable; else 0."""
-        offset = -(self._gate.offset or 0.0)
+        offset = -(self._stamps.offset or 0.0)
         return offset if abs(offset) > NOTABLE_OFFSET else 0.0

@@ -167,7 +167,7 @@ class SerialBridge(Node):
         self._reported = self._report_of_link()
 
     def _report_of_link(self) -> Report:
-        monitor, gate = self._driver.monitor, self._driver.gate
+        monitor, validator = self._driver.monitor, self._driver.validator
         current = monitor.status
         age = time.monotonic() - self._command_at if self._command_at is not None else None
         values: dict[str, object] = {
@@ -176,6 +176,6 @@ class SerialBridge(Node):
             'last_command_age_s': 'none yet' if age is None else age,
             **monitor.report(),
         }
-        if gate.has_notable_offset:
-            values['joint_command_clock_offset_s'] = gate.clock_offset
+        if validator.has_notable_offset:
+            values['joint_command_clock_offset_s'] = validator.clock_offset
         return LEVELS[current.level], current.reason or current.word, values

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from bridge.protocol import Mode
 from bridge.servo_config import ServoConfig
-from bridge.servo_walk import ServoWalk, Stage
+from bridge.servo_wizard import ServoWizard, Stage
 from hexarm.calibration.servo_line import ServoLine
 from manipulator.errors import LinkError, ManipulatorError, Refused
 from manipulator.nodes.terminal import Terminal
@@ -37,9 +37,9 @@ POSITIVE = {
 """Which way is positive, by the kind of machine."""
 
 
-def question(walk: ServoWalk, positive: str) -> str:
+def question(wizard: ServoWizard, positive: str) -> str:
     """What is asked in the present stage."""
-    servo, unit = walk.servo, 'mm' if walk.servo.is_linear else '°'
+    servo, unit = wizard.servo, 'mm' if wizard.servo.is_linear else '°'
     centre = servo.centre_mm if servo.centre_mm is not None else servo.centre_deg
     low, high = servo.pulse_range_us
     told = {
@@ -53,17 +53,17 @@ def question(walk: ServoWalk, positive: str) -> str:
         'end and press [ or ]; ENTER goes on',
         Stage.RETURN: 'goes back to its centre',
         Stage.REVIEW: 'w: servos off and write, q: servos off and leave',
-    }.get(walk.stage, '')
-    name = 'end' if walk.stage is Stage.REVIEW else f'{servo.name}, {walk.stage.value}'
+    }.get(wizard.stage, '')
+    name = 'end' if wizard.stage is Stage.REVIEW else f'{servo.name}, {wizard.stage.value}'
     return f'{name}: {told}\n'
 
 
-def status(walk: ServoWalk, stopped: bool, seen: str) -> str:
+def status(wizard: ServoWizard, stopped: bool, seen: str) -> str:
     """The line that is rewritten all the time."""
-    typed = '' if walk.typed is None else f'  ={walk.typed}_'
-    notice = 'STOPPED, c clears it' if stopped else walk.notice
+    typed = '' if wizard.typed is None else f'  ={wizard.typed}_'
+    notice = 'STOPPED, c clears it' if stopped else wizard.notice
     told = f'  {notice}' if notice else ''
-    return f' {walk.servo.name}  {walk.pulse:7.1f} µs  step {walk.step:g}{seen}{typed}{told}'
+    return f' {wizard.servo.name}  {wizard.pulse:7.1f} µs  step {wizard.step:g}{seen}{typed}{told}'
 
 
 TICK, LONGEST_TICK = 0.02, 0.1
@@ -75,18 +75,18 @@ class TerminalGone(ManipulatorError):
 
 
 @dataclass(frozen=True)
-class Sitting:
-    """Terminal and board of one machine; `look` tells where a fake servo stands."""
+class CalibrationSession:
+    """Terminal and board of one machine; `display` tells where a fake servo stands."""
 
     terminal: Terminal
     line: ServoLine
     servos: tuple[ServoConfig, ...]
     chosen: tuple[int, ...]
     positive: str
-    look: Callable[[int], str]
+    display: Callable[[int], str]
 
-    def run(self) -> ServoWalk | None:
-        """The walk at its end, None where the person did not want to begin.
+    def run(self) -> ServoWizard | None:
+        """The wizard at its end, None where the person did not want to begin.
 
         TerminalGone, LinkError: it cannot go on; Refused: the board does not energise.
         """
@@ -95,17 +95,17 @@ class Sitting:
         centres = tuple(servo.centre_us for servo in self.servos)
         if self.line.mode in LATCHED:
             self.line.clear()
-        self.line.energise(ServoWalk.begin(self.servos, centres, self.chosen).counts)
-        walk = ServoWalk.begin(self.servos, self._pulses(), self.chosen)
-        self.terminal.show(f'\n{HELP}{question(walk, self.positive)}')
+        self.line.energise(ServoWizard.begin(self.servos, centres, self.chosen).counts)
+        wizard = ServoWizard.begin(self.servos, self._pulses(), self.chosen)
+        self.terminal.show(f'\n{HELP}{question(wizard, self.positive)}')
         last = time.monotonic()
-        while not walk.is_over:
+        while not wizard.is_over:
             time.sleep(TICK)
             now = time.monotonic()
-            before, walk = walk, self._turn(walk, min(now - last, LONGEST_TICK))
+            before, wizard = wizard, self._turn(wizard, min(now - last, LONGEST_TICK))
             last = now
-            self._show(before, walk)
-        return walk
+            self._show(before, wizard)
+        return wizard
 
     def _has_consent(self) -> bool:
         found = '' if self.line.mode is None else FOUND.get(self.line.mode, '')
@@ -116,20 +116,20 @@ class Sitting:
             if 'enter' in keys or 'q' in keys:
                 return 'q' not in keys
 
-    def _turn(self, walk: ServoWalk, dt: float) -> ServoWalk:
+    def _turn(self, wizard: ServoWizard, dt: float) -> ServoWizard:
         keys = self._keys()
         if 'space' in keys:
             self.line.stop()
-            return walk
+            return wizard
         if self.line.mode is Mode.STOPPED:
             if 'c' in keys:
                 self._clear()
-            return walk.stood(self._pulses())
+            return wizard.stood(self._pulses())
         for key in keys:
-            walk = walk.press(key)
-        walk = walk.advance(dt)
-        self.line.move(walk.counts)
-        return walk
+            wizard = wizard.press(key)
+        wizard = wizard.advance(dt)
+        self.line.move(wizard.counts)
+        return wizard
 
     def _clear(self) -> None:
         try:
@@ -152,10 +152,10 @@ class Sitting:
         by_channel = self.line.pulses
         return tuple(by_channel[servo.channel] for servo in self.servos)
 
-    def _show(self, before: ServoWalk, walk: ServoWalk) -> None:
+    def _show(self, before: ServoWizard, wizard: ServoWizard) -> None:
         """The question where there is a new one, and the line that is always new."""
-        if (before.stage, before.at) != (walk.stage, walk.at) and not walk.is_over:
-            self.terminal.show(f'\r\x1b[K{question(walk, self.positive)}')
+        if (before.stage, before.at) != (wizard.stage, wizard.at) and not wizard.is_over:
+            self.terminal.show(f'\r\x1b[K{question(wizard, self.positive)}')
         is_stopped = self.line.mode is Mode.STOPPED
-        seen = '' if walk.stage is Stage.REVIEW else self.look(walk.index)
-        self.terminal.show(f'\r\x1b[K{status(walk, is_stopped, seen)}')
+        seen = '' if wizard.stage is Stage.REVIEW else self.display(wizard.index)
+        self.terminal.show(f'\r\x1b[K{status(wizard, is_stopped, seen)}')

@@ -23,12 +23,12 @@ STEP = 0.1
 
 
 class GoalSliders:
-    """What a person asks for; `wish` is called with the pose at every move of a slider by hand."""
+    """The user's goal; `request` is called with the pose at every move of a slider by hand."""
 
-    def __init__(self, gui: Any, machine: Machine, wish: Callable[[Pose], None]) -> None:
+    def __init__(self, gui: Any, machine: Machine, request: Callable[[Pose], None]) -> None:
         home = coordinates(machine.kinematics.home)
         limits = np.round(bounds(machine) * UNITS[:, None], 1)
-        self._wish = wish
+        self._request = request
         self._low, self._high = limits[:, 0], limits[:, 1]
         self._centre = home
         self._sliders = [
@@ -72,7 +72,7 @@ class GoalSliders:
             values = self._values.copy()
             values[axis] = event.target.value / UNITS[axis]
             self._values = values
-            self._wish(pose_at(values))
+            self._request(pose_at(values))
 
         return on_update
 
@@ -109,7 +109,7 @@ What hides its overflow would be what a button sticks to; what clips it is not."
 
 
 @dataclass(frozen=True)
-class Wishes:
+class Requests:
     """What the buttons call; each returns at once, from any thread."""
 
     emergency_stop: Callable[[], None]
@@ -127,31 +127,31 @@ class Wishes:
 class Buttons:
     """State line, STOP, servos, motion and speed."""
 
-    def __init__(self, gui: Any, wishes: Wishes) -> None:
-        self._wishes = wishes
+    def __init__(self, gui: Any, requests: Requests) -> None:
+        self._requests = requests
         self._line = gui.add_html(state_line(View(), ''))
         stop = gui.add_button('STOP', color=RED, icon='hand-stop')
 
         async def on_stop(event: Any) -> None:
-            wishes.emergency_stop()
+            requests.emergency_stop()
 
         # Coroutines run in the server's own loop: they wait for no thread.
         stop.on_hold(on_stop, callback_hz=STOP_AGAIN)  # said as the finger comes down …
         stop.on_click(on_stop)  # … and by the keyboard
         gui.add_html(IN_SIGHT.format(stop._impl.uuid))
         self._group(gui, 'Servos', {
-            'Enable': lambda: wishes.enable(True),
-            'Disable': lambda: wishes.enable(False),
-            'Clear fault': wishes.clear_fault,
+            'Enable': lambda: requests.enable(True),
+            'Disable': lambda: requests.enable(False),
+            'Clear fault': requests.clear_fault,
         })  # fmt: skip
         self._group(gui, 'Motion', {
-            'Home': wishes.home,
-            'Cycle': wishes.start_cycle,
-            'Brake': wishes.brake,
+            'Home': requests.home,
+            'Cycle': requests.start_cycle,
+            'Brake': requests.brake,
         })  # fmt: skip
         self._group(gui, 'Pause', {
-            'Pause': lambda: wishes.pause(True),
-            'Go on': lambda: wishes.pause(False),
+            'Pause': lambda: requests.pause(True),
+            'Go on': lambda: requests.pause(False),
         })  # fmt: skip
         self._speed = gui.add_slider('speed [%]', 0, 100, 1, 100)
         self._speed.on_update(self._on_speed)
@@ -170,7 +170,7 @@ class Buttons:
 
     def _on_speed(self, event: Any) -> None:
         if event.client_id is not None:
-            self._wishes.set_speed(event.target.value / 100)
+            self._requests.set_speed(event.target.value / 100)
 
     @staticmethod
     def _group(gui: Any, label: str, actions: dict[str, Callable[[], None]]) -> None:

@@ -59,10 +59,10 @@ STEP = 1
 
 
 class GripperSlider:
-    """Shows where the gripper is; a hand's move calls `wish` with 0 (closed) to 1 (open)."""
+    """Shows where the gripper is; a hand's move calls `request` with 0 (closed) to 1 (open)."""
 
-    def __init__(self, gui: Any, wish: Callable[[float], None]) -> None:
-        self._wish = wish
+    def __init__(self, gui: Any, request: Callable[[float], None]) -> None:
+        self._request = request
         marks = ((0, 'closed'), (100, 'open'))
         self._slider = gui.add_slider('gripper [%]', 0, 100, STEP, 50, marks=marks)
         self._slider.on_update(self._on_update)
@@ -75,4 +75,4 @@ class GripperSlider:
 
     def _on_update(self, event: Any) -> None:
         if event.client_id is not None:  # a hand's, not `follow`'s
-            self._wish(event.target.value / 100)
+            self._request(event.target.value / 100)

@@ -49,7 +49,7 @@ class _Hold:
 
     page: int
     press: int
-    heard_at: float
+    received_at: float
     stick: Array | None = None
 
 
@@ -71,7 +71,7 @@ class Joystick:
         elif beat.tick is not None and not 0.0 <= now - beat.tick <= LATE:
             self._end(page, beat.press, STALE)
         elif self._hold is not None and self._hold.press == beat.press:
-            self._hold.heard_at = now
+            self._hold.received_at = now
             self._hold.stick = None if beat.tick is None else beat.stick
         elif beat.tick is None:
             self._reasons.pop(page, None)
@@ -110,7 +110,7 @@ class Joystick:
         return self._reasons.get(page, '')
 
     def _expire(self, now: float) -> None:
-        if self._hold is not None and now - self._hold.heard_at > SILENCE:
+        if self._hold is not None and now - self._hold.received_at > SILENCE:
             self._end(self._hold.page, self._hold.press, LAPSED)
 
     def _end(self, page: int, press: int, reason: str) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hexarm.panel.controls import Buttons, GoalSliders, Wishes
+from hexarm.panel.controls import Buttons, GoalSliders, Requests
 from hexarm.panel.gripper import GripperSlider
 from hexarm.panel.plots import Plots
 from hexarm.panel.readout import diagnostics_text
@@ -31,8 +31,8 @@ class Page:
         has_gripper: bool,
         title: str,
         joystick: str,
-        wishes: Wishes,
-        wish_goal: Callable[[Pose], None],
+        requests: Requests,
+        request_goal: Callable[[Pose], None],
     ) -> None:
         gui = server.gui
         gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False,
@@ -40,15 +40,15 @@ class Page:
         gui.set_panel_label(title)
         gui.main_panel.dock_right()
         self.scene = Scene(server, machine, has_gripper)
-        self._buttons = Buttons(gui, wishes)
+        self._buttons = Buttons(gui, requests)
         tabs = gui.add_tab_group()
         with tabs.add_tab('Drive'):
-            self.sliders = GoalSliders(gui, machine, wish_goal)
-            self._gripper = GripperSlider(gui, wishes.grip) if has_gripper else None
+            self.sliders = GoalSliders(gui, machine, request_goal)
+            self._gripper = GripperSlider(gui, requests.grip) if has_gripper else None
             gui.add_html(joystick_frame(joystick))
             self._joystick_speed = gui.add_slider('joystick [%]', 1, FASTEST, 1, 40)
             modes = gui.add_dropdown('jog mode', tuple(MODES))
-            modes.on_update(lambda event: wishes.choose_mode(event.target.value))
+            modes.on_update(lambda event: requests.choose_mode(event.target.value))
         kinematics = machine.kinematics
         with tabs.add_tab('Plots'):
             self._plots = Plots(gui, kinematics.joint_names, kinematics.joint_unit)

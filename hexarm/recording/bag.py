@@ -9,7 +9,7 @@ from pathlib import Path
 from mcap.well_known import MessageEncoding, Profile, SchemaEncoding
 from mcap.writer import CompressionType, Writer
 
-from hexarm.recording.telling import schema_text
+from hexarm.recording.log_parser import schema_text
 from manipulator.errors import ManipulatorError
 
 CHUNK_BYTES = 1 << 20

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hexarm.recording.story import Event, Series, Story
+from hexarm.recording.run_summary import Event, RunSummary, Series
 from manipulator.arrays import Array
 
 ASKED, DONE, GOAL, BAD, NOTE = '#9aa5b1', '#0b6e99', '#d4a017', '#c1121f', '#4a5a6a'
@@ -29,9 +29,9 @@ NUMBER_WIDTH = 0.021
 QUIET = ('idle', 'planning', 'moving', 'reached')
 
 
-def draw(story: Story, begin: float, end: float, picture: Path) -> None:
+def draw(summary: RunSummary, begin: float, end: float, picture: Path) -> None:
     """Saves the picture of the time from begin to end (s)."""
-    part = story.between(begin, end)
+    part = summary.between(begin, end)
     told = numbered(part.events)
     lines = min(len(told), LISTED) + (len(told) > LISTED)
     height = 12.2 + 0.24 * lines
@@ -45,7 +45,7 @@ def draw(story: Story, begin: float, end: float, picture: Path) -> None:
     strips = [figure.add_subplot(grid[0, column]) for column in (0, 1)]
     panels = [figure.add_subplot(grid[row, column]) for row in range(1, 6) for column in (0, 1)]
     for strip in strips:
-        _states(strip, story.events, begin, end)
+        _states(strip, summary.events, begin, end)
     _poses(panels[:6], part)
     _errors(panels[6:8], part)
     _joints(panels[8:], part)
@@ -57,7 +57,7 @@ def draw(story: Story, begin: float, end: float, picture: Path) -> None:
         for _, event in told:
             axes.axvline(event.time, color=BAD if event.is_bad else NOTE, lw=0.7, alpha=0.55)
     _numbers(strips, told)
-    _words(figure, story, told, height)
+    _words(figure, summary, told, height)
     figure.savefig(picture)
     plt.close(figure)
 
@@ -94,7 +94,7 @@ def _states(axes: Axes, events: tuple[Event, ...], begin: float, end: float) -> 
                 axes.text(left, y + 0.2, f' {event.what}', va='center', size=7.5)
 
 
-def _poses(panels: list[Axes], part: Story) -> None:
+def _poses(panels: list[Axes], part: RunSummary) -> None:
     for k, axes in enumerate(panels):
         column = k // 2 if k % 2 == 0 else 3 + k // 2
         scale = 1e3 if column < 3 else np.degrees(1.0)
@@ -118,7 +118,7 @@ def _goals(axes: Axes, goals: Series) -> None:
     axes.plot(goals.times, inside, 'D', color=GOAL, ms=5, mew=0, clip_on=False, label='goal')
 
 
-def _errors(panels: list[Axes], part: Story) -> None:
+def _errors(panels: list[Axes], part: RunSummary) -> None:
     error = part.pose_error
     for k, (axes, scale, label) in enumerate(
         zip(panels, (1e3, np.degrees(1.0)), ('error (mm)', 'error (°)'), strict=True)
@@ -128,7 +128,7 @@ def _errors(panels: list[Axes], part: Story) -> None:
         axes.set_ylim(0, max(axes.get_ylim()[1], SMALLEST_SPAN / 4))
 
 
-def _joints(panels: list[Axes], part: Story) -> None:
+def _joints(panels: list[Axes], part: RunSummary) -> None:
     is_length = all(name.startswith('leg_') for name in part.joint_names)
     scale, unit = (1e3, 'mm') if is_length else (float(np.degrees(1.0)), '°')
     for k, name in enumerate(part.joint_names):
@@ -176,8 +176,10 @@ def _numbers(strips: list[Axes], told: list[tuple[int, Event]]) -> None:
             )  # fmt: skip
 
 
-def _words(figure: Figure, story: Story, told: list[tuple[int, Event]], height: float) -> None:
-    name = f'/{story.namespace}: commanded, measured, refused'
+def _words(
+    figure: Figure, summary: RunSummary, told: list[tuple[int, Event]], height: float
+) -> None:
+    name = f'/{summary.namespace}: commanded, measured, refused'
     figure.text(0.02, 1 - 0.36 / height, name, size=14, weight='bold')
     handles, labels = figure.axes[2].get_legend_handles_labels()
     figure.legend(handles, labels, ncols=3, frameon=False, loc='upper right')

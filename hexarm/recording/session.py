@@ -17,8 +17,8 @@ from rclpy.utilities import try_shutdown
 
 from hexarm.cli.up import Interrupted
 from hexarm.recording.bag import Bag, Topic
-from hexarm.recording.qualities import hearing, offered
-from hexarm.recording.telling import UnknownType
+from hexarm.recording.log_parser import UnknownType
+from hexarm.recording.qos import offered, subscription_qos
 from hexarm.recording.topics import Wanted, unheard
 
 
@@ -66,7 +66,7 @@ class Listener:
         offers = [p.qos_profile for p in publishers]
         if name in self._subscriptions and not offers:
             return
-        qualities = hearing(offers, self._others(name))
+        qualities = subscription_qos(offers, self._others(name))
         if qualities == self._qualities.get(name):
             return
         kind = message_class(type_name)

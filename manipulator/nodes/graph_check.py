@@ -28,22 +28,22 @@ def place(node: Node) -> str:
 
 
 @dataclass
-class Audience:
+class SubscriberCheck:
     """What is to be said of the listeners in `place`; times are monotonic, in seconds."""
 
     place: str
     since: float
     said: bool | None = field(default=None, init=False)
 
-    def news(self, is_heard: bool, now: float) -> str:
+    def news(self, has_subscribers: bool, now: float) -> str:
         """A line when somebody begins to listen, or has not for a while; '' at other times."""
-        if is_heard:
+        if has_subscribers:
             self.since = now
-        is_new = is_heard is not self.said
-        if not is_new or (not is_heard and now - self.since < PATIENCE):
+        is_new = has_subscribers is not self.said
+        if not is_new or (not has_subscribers and now - self.since < PATIENCE):
             return ''
-        self.said = is_heard
-        if is_heard:
+        self.said = has_subscribers
+        if has_subscribers:
             return f'a machine listens in {self.place}'
         return f'nobody listens in {self.place}: is a graph up there? {self._hint}'.rstrip()
 

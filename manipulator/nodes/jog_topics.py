@@ -158,7 +158,7 @@ class JogTopics:
         self._stop_button.press()
 
     @property
-    def is_heard(self) -> bool:
+    def has_subscribers(self) -> bool:
         """Whether a trajectory node is there, and takes the twists."""
         is_there = bool(self._services['stop'].service_is_ready())
         return is_there and bool(self._twists.get_subscription_count() > 0)

@@ -12,7 +12,7 @@ from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report
 from manipulator.nodes.jog_topics import JogTopics
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.steady_timer import SteadyTimer
-from manipulator.nodes.subscriptions import Intake, SoleSubscription
+from manipulator.nodes.subscriptions import FilteredCallback, SoleSubscription
 from manipulator.teleop.gamepad import Gamepad
 from manipulator.teleop.joy_reader import JoyReader
 
@@ -33,7 +33,7 @@ class JoyTeleop(Node):
         self._gripper_step = declare(self, 'gripper_speed', 0.5, GRIPPER, (0.05, 5.0)) / rate
         self._reader = JoyReader(gamepad)
         self._stops = 0
-        self._joy = Intake(self, 'joy', self._on_joy)
+        self._joy = FilteredCallback(self, 'joy', self._on_joy)
         self._topics = JogTopics(self, 'joy')
         self._pad = SoleSubscription(
             self, Joy, topic, self._joy, qos_profile_sensor_data, is_continuous=True

@@ -6,7 +6,7 @@ import time
 from rclpy.node import Node
 
 from manipulator.nodes.diagnostics import OK, Diagnostics, Report
-from manipulator.nodes.graph_check import Audience, place
+from manipulator.nodes.graph_check import SubscriberCheck, place
 from manipulator.nodes.jog_topics import JogTopics
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.steady_timer import SteadyTimer
@@ -31,7 +31,7 @@ class KeyboardTeleop(Node):
         self._terminal = terminal
         self._keyboard = Keyboard(linear, angular)
         self._topics = JogTopics(self, 'keyboard')
-        self._audience = Audience(place(self), time.monotonic())
+        self._subscriber_check = SubscriberCheck(place(self), time.monotonic())
         self._timer = SteadyTimer(self, 1.0 / rate, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/keyboard',))
         terminal.show(f'{HELP}\n')
@@ -64,7 +64,7 @@ class KeyboardTeleop(Node):
             signal.raise_signal(signal.SIGINT)
 
     def _look_around(self) -> None:
-        news = self._audience.news(self._topics.is_heard, time.monotonic())
+        news = self._subscriber_check.news(self._topics.has_subscribers, time.monotonic())
         if news:
             self._terminal.show(f'\r\x1b[K {news}\n')
             self._show()

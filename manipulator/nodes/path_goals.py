@@ -23,7 +23,7 @@ from manipulator.formatting import counted, shown
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, check_frame, pose_message, seconds
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
-from manipulator.nodes.subscriptions import Intake, decoded
+from manipulator.nodes.subscriptions import FilteredCallback, decoded
 from manipulator.pose import Pose
 from manipulator.trajectory.controller import MotionController
 from manipulator.trajectory.path import Tolerance
@@ -58,9 +58,9 @@ class PathGoals:
             ('path_turn_tolerance', radians(0.1), 'the same for turns (rad)', (1e-5, 0.2)),
         ):
             declare(node, name, default, description, bounds, is_read_only=False)
-        self._intake = Intake(node, 'goal_path', self._on_path, self._on_bad_path)
+        self._receive = FilteredCallback(node, 'goal_path', self._on_path, self._on_bad_path)
         node.create_subscription(
-            Path, 'goal_path', lambda raw: self._intake(raw_path(raw)), COMMAND, raw=True
+            Path, 'goal_path', lambda raw: self._receive(raw_path(raw)), COMMAND, raw=True
         )
 
     def _on_path(self, message: RawPath) -> None:
@@ -72,7 +72,7 @@ class PathGoals:
         check_frame(message.header.frame_id, (BASE_FRAME, WORK_FRAME))
         self._controller.follow(
             self._goal_of(message),
-            lambda error: self._intake.refuse(message, error),
+            lambda error: self._receive.refuse(message, error),
             time.monotonic(),
         )
 

@@ -38,7 +38,7 @@ from manipulator.nodes.messages import (
 )
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
-from manipulator.nodes.subscriptions import Intake
+from manipulator.nodes.subscriptions import FilteredCallback
 from manipulator.pose import Pose
 from manipulator.pose_estimate import PoseEstimate
 from manipulator.skeleton import Stroke
@@ -156,7 +156,7 @@ class PoseNode(Node):
         machine = load(name)
         self._kinematics, self._frames = machine.kinematics, machine.frames
         self._estimate = PoseEstimate(machine, self.get_logger().info)
-        self._states = Intake(self, 'joint_states', self._on_joint_states)
+        self._states = FilteredCallback(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
         prefix = declare_prefix(self)
         self._markers = Markers(self, prefix)

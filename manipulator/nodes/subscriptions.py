@@ -37,7 +37,7 @@ CLOCK_START = time.time() - time.monotonic()
 """Receipt times are monotonic, but read like the system's clock at the start: it may be set."""
 
 
-class Intake:
+class FilteredCallback:
     """The messages of one topic, as its MessageFilter lets them through.
 
     accept is called with each message that is fresh; a ManipulatorError that it raises is logged

@@ -30,7 +30,7 @@ from manipulator.nodes.path_goals import PathGoals
 from manipulator.nodes.planning_thread import PlanningThread
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.steady_timer import SteadyTimer
-from manipulator.nodes.subscriptions import Intake
+from manipulator.nodes.subscriptions import FilteredCallback
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
 from manipulator.teleop.arbiter import PEOPLE
@@ -102,9 +102,9 @@ class TrajectoryNode(Node):
         self._worker.close()
 
     def _connect(self) -> None:
-        self._goals = Intake(self, 'goal_pose', self._on_goal, self._on_bad_goal)
-        self._poses = Intake(self, 'pose', self._on_pose)
-        self._joints = Intake(self, 'joint_states', self._on_joint_states)
+        self._goals = FilteredCallback(self, 'goal_pose', self._on_goal, self._on_bad_goal)
+        self._poses = FilteredCallback(self, 'pose', self._on_pose)
+        self._joints = FilteredCallback(self, 'joint_states', self._on_joint_states)
         self._setpoints = self.create_publisher(PoseStamped, 'setpoint', COMMAND)
         self._statuses = self.create_publisher(DiagnosticStatus, 'motion_status', LATCHED)
         subscribe = self.create_subscription

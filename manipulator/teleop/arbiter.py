@@ -78,7 +78,7 @@ SOURCES = (COMPUTER, *PEOPLE)
 class Arbiter:
     """Hears every source's messages and says whose count."""
 
-    _heard_at: dict[str, float] = field(default_factory=dict)
+    _received_at: dict[str, float] = field(default_factory=dict)
     _blocked: dict[str, str] = field(default_factory=dict)
     _owner: str = ''
 
@@ -87,10 +87,10 @@ class Arbiter:
 
         is_computer_busy: a goal, path or cycle is being driven.
         """
-        if now - self._heard_at.get(source, float('-inf')) > SILENCE:
+        if now - self._received_at.get(source, float('-inf')) > SILENCE:
             self._blocked.pop(source, None)
         owner = self.owner(now)
-        self._heard_at[source] = now
+        self._received_at[source] = now
         if source in self._blocked:
             raise Refused(f'{self._blocked[source]}: let go first')
         if owner and owner != source and not self._overrides(source, owner):
@@ -103,7 +103,7 @@ class Arbiter:
 
     def owner(self, now: float) -> str:
         """The source that has the machine, '' where nobody has."""
-        if self._owner and now - self._heard_at[self._owner] > SILENCE:
+        if self._owner and now - self._received_at[self._owner] > SILENCE:
             self._owner = ''
         return self._owner
 
@@ -115,7 +115,7 @@ class Arbiter:
 
     def reject(self, source: str, now: float, reason: str) -> NoReturn:
         """Raises Refused with the reason; the source has nothing, and must let go first."""
-        self._heard_at[source] = now
+        self._received_at[source] = now
         self._blocked[source] = reason
         if self._owner == source:
             self._owner = ''

@@ -51,8 +51,8 @@ class User(PatientUser):
 
     def _is_heard(self):
         publishers = (self.stops, self.tables)
-        is_heard = all(publisher.get_subscription_count() == 1 for publisher in publishers)
-        return is_heard and self.plays.service_is_ready()
+        has_subscribers = all(publisher.get_subscription_count() == 1 for publisher in publishers)
+        return has_subscribers and self.plays.service_is_ready()
 
     def _hear(self, message):
         self.said.append(message.data)

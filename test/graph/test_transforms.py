@@ -81,14 +81,14 @@ def heard(client, topic, kind=String):
     states = client.node.create_publisher(JointState, 'joint_states', 5)
     names = [f'crank_{i}' for i in range(1, 7)]
 
-    def is_heard():
+    def has_subscribers():
         message = JointState(name=names, position=HOME)
         message.header.stamp = client.node.get_clock().now().to_msg()
         states.publish(message)
         client.spin(0.05)
         return bool(messages)
 
-    client.wait(topic, is_heard, 60.0)
+    client.wait(topic, has_subscribers, 60.0)
     return messages[-1]
 
 

@@ -73,9 +73,9 @@ def is_allowed(pose):
 
 
 def test_what_the_drives_stay_behind_by_is_taken_out():
-    sag = 0.01 * np.ones(6)
-    machine = replace(MACHINE, sag=lambda pose, joints: sag)
-    solution = PoseEstimate(machine).update(JOINTS + sag)
+    deflection = 0.01 * np.ones(6)
+    machine = replace(MACHINE, deflection=lambda pose, joints: deflection)
+    solution = PoseEstimate(machine).update(JOINTS + deflection)
     assert_same(solution.pose, HOME)
 
 

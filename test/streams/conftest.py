@@ -10,10 +10,10 @@ from bridge.fake.board_thread import FakeMachine
 from bridge.protocol import Arm
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from manipulator.command_check import CommandCheck
 from manipulator.errors import ManipulatorError
 from manipulator.frames import Frames
 from manipulator.pose import Pose
+from manipulator.setpoint_validator import SetpointValidator
 from manipulator.trajectory.supervisor import MotionSupervisor
 from manipulator.trajectory.teleop import Teleop
 
@@ -51,7 +51,7 @@ class Loop:
         self.board = self.fake.board
         self.driver = BoardDriver(config, self)
         self.monitor, self._link = self.driver.monitor, self.driver.link
-        self.check = CommandCheck(self.machine)
+        self.check = SetpointValidator(self.machine)
         self.supervisor = MotionSupervisor(self.machine, DT)
         self.teleop = Teleop(self.supervisor, delay=0.06)
         calibration = self.driver.calibration

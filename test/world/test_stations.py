@@ -1,4 +1,4 @@
-"""What each station lets through: ik commands, the gate setpoints, the session frames."""
+"""What each station lets through: ik commands, the validator setpoints, the session frames."""
 
 import numpy as np
 import pytest
@@ -51,7 +51,7 @@ def test_ik_publishes_no_command_for_a_setpoint_that_would_have_a_joint_jump(wor
     assert world.go_to(FAR).result == 'reached'
 
 
-def test_the_gate_admits_no_command_that_would_have_a_servo_jump(world):
+def test_the_validator_admits_no_command_that_would_have_a_servo_jump(world):
     world.run(0.2)
     still, began = world.inverse.published[-1][1], world.now
     world.links['commands'].send(world.inverse.stamp, still + 0.6 * np.eye(6)[2])

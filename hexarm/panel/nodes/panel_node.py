@@ -10,9 +10,9 @@ from rclpy.node import Node
 from std_msgs.msg import Float64
 
 from hexarm.panel.gripper import gripper_of
-from hexarm.panel.nodes.asking import Asking
-from hexarm.panel.nodes.hearing import Hearing
+from hexarm.panel.nodes.machine_subscriptions import MachineSubscriptions
 from hexarm.panel.nodes.newest_worker import NewestWorker
+from hexarm.panel.nodes.request_client import RequestClient
 from hexarm.panel.nodes.web_server import JoystickSocket, address, start_server, stop_server
 from hexarm.panel.page import Page
 from hexarm.panel.pieces import sphere
@@ -57,9 +57,9 @@ class PanelNode(Node):
         self._machine = load(name)
         gripper = gripper_of(name)
         self._joystick = JoystickSocket(self._why_still)
-        self._hearing = Hearing(self, self._machine, gripper)
+        self._subscriptions = MachineSubscriptions(self, self._machine, gripper)
         self._topics = JogTopics(self, 'panel')
-        self._asking = Asking(self, self._joystick.stop, self._topics.choose, self._grip)
+        self._requests = RequestClient(self, self._joystick.stop, self._topics.choose, self._grip)
         limits = self._machine.motion
         self._full = np.repeat([limits.linear.speed, limits.angular.speed], 3)
         label = f'{Path(name).stem} · {self.get_namespace()}'
@@ -67,7 +67,7 @@ class PanelNode(Node):
         joystick = Path(__file__).parents[1].joinpath('joystick.html').read_text(encoding='utf-8')
         self._page = Page(
             self._server, self._machine, gripper is not None, label, joystick,
-            self._asking.wishes, self._wish_goal,
+            self._requests.requests, self._request_goal,
         )  # fmt: skip
         self._reach = NewestWorker[tuple[Pose, Array | None]](self._show_reach)
         self._moved_at = self._gripped_at = float('-inf')
@@ -87,22 +87,22 @@ class PanelNode(Node):
         stop_server(self._server)
 
     def _tick(self) -> None:
-        self._asking.put()
+        self._requests.put()
         stick = self._joystick.stick()
         twist = NO_TWIST if stick is None else stick * self._full * self._page.joystick_share
         self._topics.drive(twist, '', stick is not None)
         self._ticks += 1
         if self._is_time_for(GOAL_EVERY):
-            self._asking.send_goal()
+            self._requests.send_goal()
         is_watched = bool(self._server.get_clients())
-        self._hearing.listen(is_watched)
+        self._subscriptions.listen(is_watched)
         if is_watched:
             self._draw()
 
     def _draw(self) -> None:
         if self._is_time_for(DRAW_EVERY):
-            self._view = self._hearing.view()
-            self._page.show(self._view, self._asking.said)
+            self._view = self._subscriptions.view()
+            self._page.show(self._view, self._requests.notice)
         if self._is_time_for(SAMPLE_EVERY):
             self._page.note(self._view, time.monotonic())
         if self._is_time_for(REDRAW_EVERY):
@@ -129,9 +129,9 @@ class PanelNode(Node):
     def _is_elsewhere(self, pose: Pose) -> bool:
         return bool(np.abs(self._page.sliders.pose.twist_to(pose)).max() > ELSEWHERE)
 
-    def _wish_goal(self, pose: Pose) -> None:
+    def _request_goal(self, pose: Pose) -> None:
         self._moved_at = time.monotonic()
-        self._asking.wish_goal(pose)
+        self._requests.request_goal(pose)
         self._ask_reach(pose)
 
     def _grip(self, opening: float) -> None:
@@ -156,7 +156,7 @@ class PanelNode(Node):
 
     def _why_still(self) -> str:
         """What a hand on the joystick should know."""
-        state = self._hearing.machine_state.message
+        state = self._subscriptions.machine_state.message
         return '' if state == 'enabled' else f'the machine is {state}'
 
     def _on_speed(self, message: Float64) -> None:

@@ -1,6 +1,6 @@
 """Which joint commands move the servos, and what is said of the others.
 
-When a command is refused, test/bridge/test_command_gate.py tries.
+When a command is refused, test/bridge/test_command_validator.py tries.
 """
 
 import math

@@ -20,7 +20,7 @@ WRONG = {
 }
 
 
-def test_after_a_sitting_the_file_holds_the_true_values_and_nothing_else_has_changed(sit_down):
+def test_after_a_session_the_file_holds_the_true_values_and_nothing_else_has_changed(sit_down):
     person, file = sit_down(WRONG, '--only', 'crank_1', 'crank_2')
     before = file.read_text()
     person.begin()
@@ -74,7 +74,7 @@ def test_space_stops_and_nothing_moves_until_it_is_cleared(sit_down):
 
 
 @pytest.mark.parametrize('end', ['ctrl-c', 'terminate', 'terminal', 'after a stop'])
-def test_servos_go_off_however_the_sitting_ends(sit_down, end):
+def test_servos_go_off_however_the_session_ends(sit_down, end):
     person, file = sit_down({})
     before = file.read_text()
     person.begin()
@@ -93,7 +93,7 @@ def test_servos_go_off_however_the_sitting_ends(sit_down, end):
     assert file.read_text() == before
 
 
-def test_a_board_that_vanishes_ends_the_sitting_in_words(sit_down):
+def test_a_board_that_vanishes_ends_the_session_in_words(sit_down):
     person, _ = sit_down({})
     person.begin()
     person.board.do(lambda: person.board.plug(None))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
-from manipulator.command_check import CommandCheck
+from manipulator.setpoint_validator import SetpointValidator
 from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.executor import Executor
@@ -27,7 +27,10 @@ class Driven:
     def __init__(self, machine):
         home = machine.kinematics.home
         joints = machine.kinematics.inverse(home)
-        self.executor, self.check = Executor(machine, home, joints, TICK), CommandCheck(machine)
+        self.executor, self.check = (
+            Executor(machine, home, joints, TICK),
+            SetpointValidator(machine),
+        )
         self.check.note_joints(joints)
         self.now = 100.0
 

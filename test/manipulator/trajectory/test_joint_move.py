@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
-from manipulator.command_check import CommandCheck
 from manipulator.errors import Refused, Unreachable
 from manipulator.pose import Pose
+from manipulator.setpoint_validator import SetpointValidator
 from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.joint_move import plan_joint_move
@@ -129,7 +129,10 @@ def test_a_joint_move_to_a_stop_passes_the_check_of_ik():
     begin = np.radians([0.0, 20.0, 80.0, 90.0, 60.0, 0.0])
     end = begin.copy()
     end[3] = machine.joint_ranges[1][3]
-    executor, check = Executor(machine, k.forward(begin).pose, begin, DT), CommandCheck(machine)
+    executor, check = (
+        Executor(machine, k.forward(begin).pose, begin, DT),
+        SetpointValidator(machine),
+    )
     check.note_joints(begin)
     executor.pursue(Goal(k.forward(end).pose, 1.0, motion=Motion.JOINT, joints=end))
     now = 100.0

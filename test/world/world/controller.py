@@ -7,7 +7,7 @@ from manipulator.errors import ManipulatorError
 from manipulator.trajectory.controller import MotionController
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.worker import Effort, Job
-from world.intake import Intake
+from world.filtered_callback import FilteredCallback
 from world.timeline import Process
 
 DT = 0.01
@@ -52,11 +52,15 @@ class ControllerProcess(Process):
         self.statuses, self.ages = [], []
         self.pause_in_next_tick = 0.0
         self._setpoints = setpoints
-        self.on_goal = Intake(self, self._take_goal, self._refuse)
-        self.on_path = Intake(self, self._take_path, self._refuse)
-        self.on_pose = Intake(self, lambda stamp, pose: self.core.note_pose(pose, self.now))
-        self.on_joints = Intake(self, lambda stamp, joints: self.core.note_joints(joints))
-        self.on_twist = Intake(self, self._take_twist)
+        self.on_goal = FilteredCallback(self, self._take_goal, self._refuse)
+        self.on_path = FilteredCallback(self, self._take_path, self._refuse)
+        self.on_pose = FilteredCallback(
+            self, lambda stamp, pose: self.core.note_pose(pose, self.now)
+        )
+        self.on_joints = FilteredCallback(
+            self, lambda stamp, joints: self.core.note_joints(joints)
+        )
+        self.on_twist = FilteredCallback(self, self._take_twist)
         self.every(DT, self._tick)
 
     @property
@@ -78,8 +82,8 @@ class ControllerProcess(Process):
     def _take_path(self, stamp, path):
         self.core.follow(path, self._later(self.on_path, stamp), self.now)
 
-    def _later(self, intake, stamp):
-        return lambda error: intake.refuse(stamp, error)
+    def _later(self, callback, stamp):
+        return lambda error: callback.refuse(stamp, error)
 
     def _refuse(self, stamp, error):
         self.core.refuse(stamp, error)

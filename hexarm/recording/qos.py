@@ -10,7 +10,9 @@ DEPTH = 500
 """Messages that may wait: half a second of the fastest topic on a busy computer."""
 
 
-def hearing(publishers: Sequence[QoSProfile], listeners: Sequence[QoSProfile]) -> QoSProfile:
+def subscription_qos(
+    publishers: Sequence[QoSProfile], listeners: Sequence[QoSProfile]
+) -> QoSProfile:
     """What every publisher can serve; before there is one, what it must offer its listeners."""
     offers = publishers or listeners
     every = all if publishers else any
@@ -25,11 +27,11 @@ def hearing(publishers: Sequence[QoSProfile], listeners: Sequence[QoSProfile]) -
 
 def offered(publishers: Sequence[QoSProfile]) -> str:
     """The publishers' profiles as YAML with the names of rosbag2's metadata, version 9."""
-    different = {str(told): told for told in map(_told, publishers)}
+    different = {str(offer): offer for offer in map(_as_metadata, publishers)}
     return yaml.safe_dump(list(different.values()), sort_keys=False) if different else ''
 
 
-def _told(profile: QoSProfile) -> dict[str, object]:
+def _as_metadata(profile: QoSProfile) -> dict[str, object]:
     # Discovery tells neither history nor depth: one that has to keep a message says so.
     return {
         'history': 'keep_last',

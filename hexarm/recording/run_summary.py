@@ -48,7 +48,7 @@ class Event:
 
 
 @dataclass(frozen=True, eq=False)
-class Story:
+class RunSummary:
     """Poses as x, y, z, roll, pitch, yaw (m, rad; angles without jumps); joints in rad or m."""
 
     namespace: str
@@ -61,12 +61,12 @@ class Story:
     joint_states: Series
     events: tuple[Event, ...]
 
-    def between(self, begin: float, end: float) -> 'Story':
+    def between(self, begin: float, end: float) -> 'RunSummary':
         """The part from begin to end (s from the beginning of the recording)."""
         series = ('setpoint', 'pose', 'goals', 'joint_command', 'joint_states')
         cut = {name: getattr(self, name).between(begin, end) for name in series}
         events = tuple(e for e in self.events if begin <= e.time <= end)
-        return Story(self.namespace, self.duration, self.joint_names, events=events, **cut)
+        return RunSummary(self.namespace, self.duration, self.joint_names, events=events, **cut)
 
     @property
     def pose_error(self) -> Series:

@@ -37,20 +37,20 @@ class _Newest:
 
     kind: type
     serialized: bytes = b''
-    heard_at: float = float('-inf')
+    received_at: float = float('-inf')
 
-    def hear(self, serialized: bytes) -> None:
+    def receive(self, serialized: bytes) -> None:
         """Keeps a message."""
-        self.serialized, self.heard_at = serialized, time.monotonic()
+        self.serialized, self.received_at = serialized, time.monotonic()
 
     def message(self) -> Any | None:
         """Decoded, or None where it is old."""
-        if time.monotonic() - self.heard_at > FRESH:
+        if time.monotonic() - self.received_at > FRESH:
             return None
         return deserialize_message(self.serialized, self.kind)
 
 
-class Hearing:
+class MachineSubscriptions:
     """Subscriptions of the panel; messages are only kept, and decoded when the page is drawn."""
 
     def __init__(self, node: Node, machine: Machine, gripper: GripperJoint | None) -> None:
@@ -78,7 +78,9 @@ class Hearing:
         for subscription in self._subscriptions:
             self._node.destroy_subscription(subscription)
         self._subscriptions = [
-            self._node.create_subscription(newest.kind, name, newest.hear, STREAMS[name], raw=True)
+            self._node.create_subscription(
+                newest.kind, name, newest.receive, STREAMS[name], raw=True
+            )
             for name, newest in self._streams.items()
             if is_watched
         ]

@@ -48,7 +48,7 @@ NUMBER = '0123456789.-'
 
 
 @dataclass(frozen=True)
-class ServoWalk:
+class ServoWizard:
     """What the keys so far have found; pulses in microseconds, in the order of `servos`.
 
     limits are the pulse ranges as they were before; chosen the servos to walk through, `at` which
@@ -74,7 +74,7 @@ class ServoWalk:
         servos: tuple[ServoConfig, ...],
         pulses: tuple[float, ...],
         chosen: tuple[int, ...],
-    ) -> 'ServoWalk':
+    ) -> 'ServoWizard':
         """At the first of the chosen servos, with all of them at `pulses`."""
         start = pulses[chosen[0]]
         limits = tuple(servo.pulse_range_us for servo in servos)
@@ -108,11 +108,11 @@ class ServoWalk:
         """Nothing more is asked."""
         return self.stage in (Stage.WRITE, Stage.LEAVE)
 
-    def stood(self, pulses: tuple[float, ...]) -> 'ServoWalk':
+    def stood(self, pulses: tuple[float, ...]) -> 'ServoWizard':
         """After the board has stood still at `pulses`: nothing is left to go to."""
         return replace(self, pulses=pulses, target=pulses[self.index])
 
-    def advance(self, dt: float) -> 'ServoWalk':
+    def advance(self, dt: float) -> 'ServoWizard':
         """`dt` seconds later; a servo that has returned to its centre hands over to the next."""
         way = self.target - self.pulse
         reach = SPEED_US_S * dt
@@ -123,7 +123,7 @@ class ServoWalk:
         is_back = there.stage is Stage.RETURN and there.pulse == there.target
         return there._next_servo() if is_back else there
 
-    def press(self, key: str) -> 'ServoWalk':
+    def press(self, key: str) -> 'ServoWizard':
         """After one key."""
         if self.typed is not None:
             return self._type(key)
@@ -145,7 +145,7 @@ class ServoWalk:
             return replace(fresh, stage=Stage.DIRECTION, target=self.pulse, begun_at=self.pulse)
         return fresh._answer(key)
 
-    def _answer(self, key: str) -> 'ServoWalk':
+    def _answer(self, key: str) -> 'ServoWizard':
         """A key that means something in one stage alone."""
         if self.pulse != self.target:
             return self._say('it is still moving')
@@ -161,18 +161,18 @@ class ServoWalk:
             return self._go_on()
         return self._say(f'{key!r} means nothing here')
 
-    def _jog(self, direction: float) -> 'ServoWalk':
+    def _jog(self, direction: float) -> 'ServoWizard':
         low, high = self.limits[self.index]
         wanted = self.pulse + direction * self.step
         target = min(max(wanted, low), high)
         at_end = self._say('the end of its pulse range') if target != wanted else self
         return replace(at_end, target=target)
 
-    def _resize(self, by: int) -> 'ServoWalk':
+    def _resize(self, by: int) -> 'ServoWizard':
         index = min(max(STEPS_US.index(self.step) + by, 0), len(STEPS_US) - 1)
         return replace(self, step=STEPS_US[index])
 
-    def _type(self, key: str) -> 'ServoWalk':
+    def _type(self, key: str) -> 'ServoWizard':
         typed = self.typed or ''
         if key == 'enter':
             return replace(self, typed=None)._take_number(typed)
@@ -182,7 +182,7 @@ class ServoWalk:
             return replace(self, typed=typed[:-1])
         return replace(self, typed=typed + key) if key in NUMBER and len(typed) < 12 else self
 
-    def _take_number(self, typed: str) -> 'ServoWalk':
+    def _take_number(self, typed: str) -> 'ServoWizard':
         try:
             number = float(typed)
         except ValueError:
@@ -191,16 +191,16 @@ class ServoWalk:
             return self._settle_centre(number)
         return self._settle_scale(number)
 
-    def _settle_sign(self, sign: int) -> 'ServoWalk':
+    def _settle_sign(self, sign: int) -> 'ServoWizard':
         if abs(self.pulse - self.begun_at) < LEAST_JOG_US:
             return self._say(f'jog it by {LEAST_JOG_US:g} µs first, and watch it')
         return self._with(sign=sign)._go_on()
 
-    def _settle_centre(self, position: float) -> 'ServoWalk':
+    def _settle_centre(self, position: float) -> 'ServoWizard':
         name = 'centre_mm' if self.servo.is_linear else 'centre_deg'
         return self._with(centre_us=_on_wire(self.pulse), **{name: position})._go_on()
 
-    def _settle_scale(self, position: float) -> 'ServoWalk':
+    def _settle_scale(self, position: float) -> 'ServoWizard':
         servo, unit = self.servo, 'mm' if self.servo.is_linear else 'deg'
         pulses = self.pulse - servo.centre_us
         way = servo.sign * (position - _position(servo))
@@ -213,7 +213,7 @@ class ServoWalk:
             return self._say(f'{scale:.3g} µs per {unit} instead of {told:g}: read it again')
         return self._with(**{f'us_per_{unit}': round(scale, 4)})._go_on()
 
-    def _settle_end(self, key: str) -> 'ServoWalk':
+    def _settle_end(self, key: str) -> 'ServoWizard':
         low, high = self.servo.pulse_range_us
         pulse = _on_wire(self.pulse)
         ends = (pulse, high) if key == '[' else (low, pulse)
@@ -221,7 +221,7 @@ class ServoWalk:
         which = 'shortest' if key == '[' else 'longest'
         return changed if changed.notice else changed._say(f'{which} pulse {pulse:g} µs')
 
-    def _with(self, **values: object) -> 'ServoWalk':
+    def _with(self, **values: object) -> 'ServoWizard':
         """With new values of the servo at hand, unless they contradict each other."""
         try:
             changed = replace(self.servo, **values)  # type: ignore[arg-type]
@@ -231,7 +231,7 @@ class ServoWalk:
         servos[self.index] = changed
         return replace(self, servos=tuple(servos), notice='')
 
-    def _go_on(self) -> 'ServoWalk':
+    def _go_on(self) -> 'ServoWizard':
         """To the next stage, unless something was wrong with the last answer."""
         if self.notice:
             return self
@@ -239,14 +239,14 @@ class ServoWalk:
         target = self.servo.centre_us if stage is Stage.RETURN else self.pulse
         return replace(self, stage=stage, target=target)
 
-    def _next_servo(self) -> 'ServoWalk':
+    def _next_servo(self) -> 'ServoWizard':
         if self.at + 1 == len(self.chosen):
             return replace(self, stage=Stage.REVIEW)
         start = self.pulses[self.chosen[self.at + 1]]
         ahead = replace(self, at=self.at + 1, stage=Stage.DIRECTION)
         return replace(ahead, target=start, begun_at=start)
 
-    def _say(self, notice: str) -> 'ServoWalk':
+    def _say(self, notice: str) -> 'ServoWizard':
         return replace(self, notice=notice)
 
 

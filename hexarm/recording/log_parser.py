@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from hexarm.recording.story import Event, Series, Story
+from hexarm.recording.run_summary import Event, RunSummary, Series
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.pose import Pose
@@ -73,17 +73,19 @@ COUNTERS = ('setpoints_refused', 'twists_refused', 'joint_states_refused', 'refu
 """Diagnostics that count refusals; those of goals stand in motion_status, each with its reason."""
 
 
-def is_wanted(topic: str) -> bool:
-    """Whether a story needs the topic."""
+def is_needed(topic: str) -> bool:
+    """Whether a summary needs the topic."""
     return topic == DIAGNOSTICS or topic.endswith(tuple(f'/{name}' for name in TOPICS))
 
 
-def tell(messages: Iterable[tuple[str, float, Any]], namespace: str | None = None) -> Story:
-    """The story of the machine in `namespace`, by default the only one that is in the recording.
+def summarise(
+    messages: Iterable[tuple[str, float, Any]], namespace: str | None = None
+) -> RunSummary:
+    """The summary of the machine in `namespace`, by default the only one that is in the recording.
 
     Raises InvalidInput where there is no machine, or another, or several to choose from.
     """
-    heard: dict[str, Teller] = {}
+    parsers: dict[str, LogParser] = {}
     diagnostics: list[tuple[float, Any]] = []
     first, last = np.inf, -np.inf
     for topic, at, message in messages:
@@ -93,35 +95,35 @@ def tell(messages: Iterable[tuple[str, float, Any]], namespace: str | None = Non
         else:
             name = next(name for name in TOPICS if topic.endswith(f'/{name}'))
             space = topic.removesuffix(f'/{name}').strip('/')
-            heard.setdefault(space, Teller(space)).hear(name, at, message)
-    space = _chosen(heard, namespace)
+            parsers.setdefault(space, LogParser(space)).add(name, at, message)
+    space = _chosen(parsers, namespace)
     for at, entry in diagnostics:
-        heard[space].hear_diagnostics(at, entry)
-    return heard[space].story(first, last - first)
+        parsers[space].add_diagnostics(at, entry)
+    return parsers[space].summary(first, last - first)
 
 
-def _chosen(heard: dict[str, 'Teller'], namespace: str | None) -> str:
-    there = ', '.join(f'/{name}' for name in sorted(heard))
-    if not heard:
+def _chosen(parsers: dict[str, 'LogParser'], namespace: str | None) -> str:
+    there = ', '.join(f'/{name}' for name in sorted(parsers))
+    if not parsers:
         raise InvalidInput('there is no machine in this recording')
-    if namespace is None and len(heard) > 1:
+    if namespace is None and len(parsers) > 1:
         raise InvalidInput(f'several machines are in it, choose with --namespace: {there}')
-    space = next(iter(heard)) if namespace is None else namespace
-    if space not in heard:
+    space = next(iter(parsers)) if namespace is None else namespace
+    if space not in parsers:
         raise InvalidInput(f'/{space} is not in this recording, only {there}')
     return space
 
 
 @dataclass
-class Teller:
-    """Collects what one machine's topics said."""
+class LogParser:
+    """Collects what one machine's topics report."""
 
     namespace: str
     rows: dict[str, list[tuple[float, Any]]] = field(default_factory=dict)
     events: list[Event] = field(default_factory=list)
-    _said: dict[str, object] = field(default_factory=dict)
+    _reported: dict[str, object] = field(default_factory=dict)
 
-    def hear(self, name: str, at: float, message: Any) -> None:
+    def add(self, name: str, at: float, message: Any) -> None:
         """One message of the topic `name`, relative to the namespace."""
         if name in STATES:
             self._on_state(name, at, message)
@@ -135,7 +137,7 @@ class Teller:
             p, q = message.pose.position, message.pose.orientation
             self.rows.setdefault(name, []).append((at, (p.x, p.y, p.z, q.x, q.y, q.z, q.w)))
 
-    def hear_diagnostics(self, at: float, entry: Any) -> None:
+    def add_diagnostics(self, at: float, entry: Any) -> None:
         """A node's report: counts of refusals that have grown become events."""
         space, _, node = entry.name.rpartition('/')
         if space != self.namespace:
@@ -143,8 +145,8 @@ class Teller:
         values = {pair.key: pair.value for pair in entry.values}
         for key in COUNTERS:
             count = int(values[key]) if values.get(key, '').isdigit() else 0
-            before = self._said.get(f'{node} {key}', 0)
-            self._said[f'{node} {key}'] = count
+            before = self._reported.get(f'{node} {key}', 0)
+            self._reported[f'{node} {key}'] = count
             if isinstance(before, int) and count > before:
                 reason = values.get('last_twist_refusal' if 'twist' in key else 'last_refusal', '')
                 self.events.append(Event(at, node, 'refused', reason, True, count - before))
@@ -152,18 +154,18 @@ class Teller:
     def _on_state(self, name: str, at: float, message: Any) -> None:
         values = {pair.key: pair.value for pair in message.values}
         what = values.get('result', message.message)
-        said = (what, values.get('reason', ''), values.get('goal_stamp', ''))
-        if said != self._said.get(name) and what:
-            self._said[name] = said
+        report = (what, values.get('reason', ''), values.get('goal_stamp', ''))
+        if report != self._reported.get(name) and what:
+            self._reported[name] = report
             source = {'machine_state': 'machine', 'motion_status': 'motion'}[name]
-            self.events.append(Event(at, source, what, said[1], what in BAD_STATES))
+            self.events.append(Event(at, source, what, report[1], what in BAD_STATES))
 
-    def story(self, first: float, duration: float) -> Story:
+    def summary(self, first: float, duration: float) -> RunSummary:
         """All of it, with times from `first` on."""
         names = self._joint_names()
         events = sorted(self.events, key=lambda e: e.time)
         setpoint = self._poses('setpoint', first)
-        return Story(
+        return RunSummary(
             self.namespace,
             duration,
             names,

@@ -11,7 +11,7 @@ from rclpy.task import Future
 from std_msgs.msg import Bool, Float64
 from std_srvs.srv import SetBool, Trigger
 
-from hexarm.panel.controls import Wishes
+from hexarm.panel.controls import Requests
 from manipulator.nodes.messages import pose_message
 from manipulator.nodes.qos import COMMAND, EVERY_WORD
 from manipulator.pose import Pose
@@ -27,8 +27,8 @@ ANSWERED_WITHIN = 4.0
 SWITCHES = ('serial_bridge/enable', 'trajectory/pause')
 
 
-class Asking:
-    """Wishes come from the web server's threads and are put to the graph in the node's own.
+class RequestClient:
+    """Requests come from the web server's threads and are put to the graph in the node's own.
 
     Only the emergency stop does not wait for it: its message goes out at once.
     """
@@ -44,10 +44,10 @@ class Asking:
         self._on_stop = on_stop
         self._choose_mode = choose_mode
         self._grip = grip
-        self._wishes: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._pending: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
         self._goal: Pose | None = None
         self._waiting: dict[Future, tuple[str, float]] = {}
-        self.said = ''
+        self.notice = ''
         self._goals = node.create_publisher(PoseStamped, 'goal_pose', COMMAND)
         self._stops = node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         self._speeds = node.create_publisher(Float64, 'speed_override', COMMAND)
@@ -55,24 +55,24 @@ class Asking:
         self._clients |= {name: node.create_client(SetBool, name) for name in SWITCHES}
 
     @property
-    def wishes(self) -> Wishes:
+    def requests(self) -> Requests:
         """For the page's buttons; safe from any thread."""
-        return Wishes(
+        return Requests(
             emergency_stop=self._emergency_stop,
             clear_fault=self._later('serial_bridge/clear_fault'),
-            enable=lambda on: self._wishes.put(lambda: self._switch('serial_bridge/enable', on)),
+            enable=lambda on: self._pending.put(lambda: self._switch('serial_bridge/enable', on)),
             home=self._later('trajectory/home'),
             start_cycle=self._later('trajectory/start_cycle'),
-            pause=lambda on: self._wishes.put(lambda: self._switch('trajectory/pause', on)),
+            pause=lambda on: self._pending.put(lambda: self._switch('trajectory/pause', on)),
             brake=self._later('trajectory/stop'),
-            set_speed=lambda share: self._wishes.put(
+            set_speed=lambda share: self._pending.put(
                 lambda: self._speeds.publish(Float64(data=share))
             ),
-            choose_mode=lambda mode: self._wishes.put(lambda: self._choose_mode(mode)),
-            grip=lambda opening: self._wishes.put(lambda: self._grip(opening)),
+            choose_mode=lambda mode: self._pending.put(lambda: self._choose_mode(mode)),
+            grip=lambda opening: self._pending.put(lambda: self._grip(opening)),
         )
 
-    def wish_goal(self, pose: Pose) -> None:
+    def request_goal(self, pose: Pose) -> None:
         """The newest goal replaces one that is not yet sent."""
         self._goal = pose
 
@@ -80,7 +80,7 @@ class Asking:
         """Everything wished since the last time, to the graph."""
         while True:
             try:
-                self._wishes.get_nowait()()
+                self._pending.get_nowait()()
             except queue.Empty:
                 break
         self._give_up()
@@ -96,10 +96,10 @@ class Asking:
         self._stops.publish(Bool(data=True))
         self._goal = None
         self._on_stop()
-        self._wishes.put(lambda: self._call('serial_bridge/stop', Trigger.Request()))
+        self._pending.put(lambda: self._call('serial_bridge/stop', Trigger.Request()))
 
     def _later(self, name: str) -> Callable[[], None]:
-        return lambda: self._wishes.put(lambda: self._call(name, Trigger.Request()))
+        return lambda: self._pending.put(lambda: self._call(name, Trigger.Request()))
 
     def _switch(self, name: str, is_on: bool) -> None:
         self._call(name, SetBool.Request(data=is_on))
@@ -107,16 +107,16 @@ class Asking:
     def _call(self, name: str, request: Any) -> None:
         client = self._clients[name]
         if not client.service_is_ready():
-            self.said = f'{name}: nobody answers'
+            self.notice = f'{name}: nobody answers'
             return
         future = client.call_async(request)
         self._waiting[future] = name, time.monotonic() + ANSWERED_WITHIN
-        future.add_done_callback(self._say)
+        future.add_done_callback(self._on_answer)
 
-    def _say(self, future: Future) -> None:
+    def _on_answer(self, future: Future) -> None:
         name, _ = self._waiting.pop(future)
         answer = future.result()
-        self.said = '' if answer.success else f'{name}: {answer.message}'
+        self.notice = '' if answer.success else f'{name}: {answer.message}'
 
     def _give_up(self) -> None:
         """Says which services do not answer: a node that was killed looks ready for 20 s."""
@@ -125,4 +125,4 @@ class Asking:
             if now > until:
                 del self._waiting[future]
                 self._clients[name].remove_pending_request(future)
-                self.said = f'{name}: no answer within {ANSWERED_WITHIN:g} s, does its node run?'
+                self.notice = f'{name}: no answer within {ANSWERED_WITHIN:g} s, does its node run?'

@@ -4,7 +4,7 @@ from manipulator.message_filter import MessageFilter
 from world.timeline import EPOCH
 
 
-class Intake:
+class FilteredCallback:
     """Keeps every refusal, as (time, reason)."""
 
     def __init__(self, process, accept, refuse=lambda stamp, error: None):

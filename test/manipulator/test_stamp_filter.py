@@ -1,87 +1,87 @@
 import pytest
 
-from manipulator.message_filter import StaleMessage, StampGate
+from manipulator.message_filter import StaleMessage, StampFilter
 
 
 def test_messages_in_order_are_admitted():
-    gate = StampGate()
+    stamps = StampFilter()
     for k in range(10):
-        gate.admit(100.0 + k, 100.001 + k)
+        stamps.admit(100.0 + k, 100.001 + k)
 
 
 def test_reordered_message_is_stale():
-    gate = StampGate()
-    gate.admit(100.2, 100.2)
+    stamps = StampFilter()
+    stamps.admit(100.2, 100.2)
     with pytest.raises(StaleMessage, match='reordered'):
-        gate.admit(100.1, 100.21)
+        stamps.admit(100.1, 100.21)
 
 
 def test_message_that_queued_up_is_stale_and_the_next_fresh_one_is_not():
-    gate = StampGate()
-    gate.admit(100.0, 100.0)
+    stamps = StampFilter()
+    stamps.admit(100.0, 100.0)
     with pytest.raises(StaleMessage, match='old, at most'):
-        gate.admit(100.1, 102.0)
-    gate.admit(102.0, 102.0)
+        stamps.admit(100.1, 102.0)
+    stamps.admit(102.0, 102.0)
 
 
 @pytest.mark.parametrize('offset', [3600.0, -3600.0])
 def test_source_whose_clock_is_off_by_an_hour_is_understood(offset):
-    gate = StampGate()
+    stamps = StampFilter()
     for k in range(5):
-        gate.admit(offset + 100.0 + k, 100.0 + k)
-    assert gate.offset == pytest.approx(-offset)
+        stamps.admit(offset + 100.0 + k, 100.0 + k)
+    assert stamps.offset == pytest.approx(-offset)
     with pytest.raises(StaleMessage, match='old'):
-        gate.admit(offset + 105.0, 107.0)
+        stamps.admit(offset + 105.0, 107.0)
 
 
 def test_clock_set_back_is_believed_with_the_second_message():
-    gate = StampGate()
-    gate.admit(5000.0, 100.0)
+    stamps = StampFilter()
+    stamps.admit(5000.0, 100.0)
     with pytest.raises(StaleMessage, match='the clock of the source was set'):
-        gate.admit(101.0, 101.0)
-    gate.admit(102.0, 102.0)
-    gate.admit(103.0, 103.0)
+        stamps.admit(101.0, 101.0)
+    stamps.admit(102.0, 102.0)
+    stamps.admit(103.0, 103.0)
 
 
 def test_what_piled_up_while_the_receiver_was_frozen_is_no_clock_that_was_set():
-    gate = StampGate()
-    gate.admit(100.0, 100.0)
+    stamps = StampFilter()
+    stamps.admit(100.0, 100.0)
     for k in range(50):
         with pytest.raises(StaleMessage):
-            gate.admit(100.01 + 0.01 * k, 101.01 + 0.0005 * k)
-    gate.admit(101.03, 101.035)
+            stamps.admit(100.01 + 0.01 * k, 101.01 + 0.0005 * k)
+    stamps.admit(101.03, 101.035)
 
 
 def test_one_message_from_long_ago_is_refused_and_forgotten():
-    gate = StampGate()
-    gate.admit(5000.0, 5000.0)
+    stamps = StampFilter()
+    stamps.admit(5000.0, 5000.0)
     with pytest.raises(StaleMessage):
-        gate.admit(100.0, 5001.0)
-    gate.admit(5002.0, 5002.0)
+        stamps.admit(100.0, 5001.0)
+    stamps.admit(5002.0, 5002.0)
     with pytest.raises(StaleMessage):
-        gate.admit(200.0, 5003.0)
+        stamps.admit(200.0, 5003.0)
 
 
 def test_clock_that_went_back_between_rare_messages_is_learnt_with_the_second():
-    gate = StampGate()
-    gate.admit(100.0, 100.0)
+    stamps = StampFilter()
+    stamps.admit(100.0, 100.0)
     with pytest.raises(StaleMessage):
-        gate.admit(130.0, 160.0)
-    gate.admit(190.0, 220.0)
+        stamps.admit(130.0, 160.0)
+    stamps.admit(190.0, 220.0)
 
 
 def test_late_messages_whose_offsets_do_not_agree_tell_of_no_clock():
-    gate = StampGate()
-    gate.admit(100.0, 100.0)
+    stamps = StampFilter()
+    stamps.admit(100.0, 100.0)
     for stamp, receipt in ((101.0, 110.0), (101.2, 111.0), (101.4, 112.0)):
         with pytest.raises(StaleMessage, match='old'):
-            gate.admit(stamp, receipt)
-    gate.admit(113.0, 113.0)
+            stamps.admit(stamp, receipt)
+    stamps.admit(113.0, 113.0)
 
 
 def test_first_message_that_came_late_does_not_hide_later_lateness():
-    gate = StampGate()
-    gate.admit(100.0, 100.4)
-    gate.admit(100.5, 100.5)
+    stamps = StampFilter()
+    stamps.admit(100.0, 100.4)
+    stamps.admit(100.5, 100.5)
     with pytest.raises(StaleMessage, match='old'):
-        gate.admit(100.6, 101.2)
+        stamps.admit(100.6, 101.2)

@@ -6,7 +6,7 @@ from geometry_msgs.msg import PoseStamped
 
 from manipulator.errors import InvalidInput
 from manipulator.message_filter import LONGEST_REASON
-from manipulator.nodes.subscriptions import Intake
+from manipulator.nodes.subscriptions import FilteredCallback
 
 
 def stamped(clock):
@@ -22,15 +22,15 @@ def test_clock_of_this_computer_that_is_set_costs_a_tenth_of_a_second(monkeypatc
     monkeypatch.setattr(time, 'monotonic', lambda: monotonic[0])
     monkeypatch.setattr(time, 'time', lambda: clock[0])
     taken = []
-    intake = Intake(MagicMock(), 'goal_pose', taken.append)
+    callback = FilteredCallback(MagicMock(), 'goal_pose', taken.append)
     for k in range(60):
         if k == 30:
             clock[0] += step
-        intake(stamped(clock[0]))
+        callback(stamped(clock[0]))
         monotonic[0] += 0.01
         clock[0] += 0.01
     assert len(taken) >= 50
-    assert intake.refused == 60 - len(taken)
+    assert callback.refused == 60 - len(taken)
 
 
 def test_endless_reason_is_cut_in_log_and_diagnostics():
@@ -38,8 +38,8 @@ def test_endless_reason_is_cut_in_log_and_diagnostics():
         raise InvalidInput('x' * 1_000_000)
 
     node = MagicMock()
-    intake = Intake(node, 'goal_pose', refuse)
-    intake(stamped(time.time()))
-    assert len(intake.last_refusal) == LONGEST_REASON
+    callback = FilteredCallback(node, 'goal_pose', refuse)
+    callback(stamped(time.time()))
+    assert len(callback.last_refusal) == LONGEST_REASON
     (said,) = node.get_logger().warning.call_args.args
     assert len(said) < 2 * LONGEST_REASON

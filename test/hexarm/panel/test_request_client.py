@@ -1,6 +1,6 @@
 """How the panel speaks to the graph."""
 
-from hexarm.panel.nodes.asking import Asking
+from hexarm.panel.nodes.request_client import RequestClient
 
 
 class Publishers:
@@ -18,5 +18,5 @@ class Publishers:
 
 def test_many_stops_in_a_row_all_arrive():
     node = Publishers()
-    Asking(node, bool, bool, bool)
+    RequestClient(node, bool, bool, bool)
     assert node.depths['emergency_stop'] == 100

@@ -6,7 +6,7 @@ from manipulator.arrays import Array
 from manipulator.errors import LimitViolated
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.sag import commanded
+from manipulator.static_deflection import commanded
 
 FORGET_AFTER = 0.25
 """Seconds after which the last command no longer says where the joints are."""
@@ -24,7 +24,7 @@ IN_STEP = 2.0
 """Between two commands, at most this many times as long as between the two before, or as short."""
 
 
-class CommandCheck:
+class SetpointValidator:
     """One machine's last word on what may be commanded; times are monotonic, in seconds.
 
     A setpoint must keep the machine's constraints (from beyond a limit, only the way back is
@@ -50,7 +50,7 @@ class CommandCheck:
     def command(self, T_base_platform: Pose, now: float) -> Array:
         """As `admit`, and raised by what the drives stay behind: what goes down to the board."""
         joints = self.admit(T_base_platform, now)
-        return commanded(self._machine.sag, T_base_platform, joints)
+        return commanded(self._machine.deflection, T_base_platform, joints)
 
     def admit(self, T_base_platform: Pose, now: float) -> Array:
         """The joints (n,) to be at; Unreachable or LimitViolated says why there are none."""

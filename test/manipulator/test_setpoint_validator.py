@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
-from manipulator.command_check import CommandCheck
 from manipulator.errors import LimitViolated, Unreachable
+from manipulator.setpoint_validator import SetpointValidator
 
 MACHINE = load('robocake')
 HOME = MACHINE.kinematics.home
@@ -26,7 +26,7 @@ def raised(z):
 @pytest.fixture
 def check():
     """One that has just commanded home, where the joints are."""
-    made = CommandCheck(MACHINE)
+    made = SetpointValidator(MACHINE)
     made.note_joints(AT_HOME)
     made.admit(HOME, 100.0)
     return made
@@ -112,7 +112,7 @@ def test_pose_out_of_reach_or_beyond_a_limit_is_refused_and_the_next_works(check
 def test_machine_beyond_a_limit_may_come_back_but_not_go_on():
     low = raised(-0.0190)
     assert not MACHINE.constraints.admits(low, MACHINE.kinematics.inverse(low))
-    check = CommandCheck(MACHINE)
+    check = SetpointValidator(MACHINE)
     check.note_joints(MACHINE.kinematics.inverse(low))
     check.admit(low, 100.0)
     with pytest.raises(LimitViolated):
@@ -123,7 +123,7 @@ def test_machine_beyond_a_limit_may_come_back_but_not_go_on():
 @pytest.mark.parametrize('tick', [0.01, 0.02])
 @pytest.mark.parametrize('step', [0.006, 0.02])
 def test_arm_that_is_jogged_through_a_stretched_elbow_goes_on_to_the_other_branch(tick, step):
-    check = CommandCheck(ARM)
+    check = SetpointValidator(ARM)
     check.note_joints(bent_by(10.3 * step))
     for k in range(20):
         joints = bent_by((10.3 - k) * step)
@@ -133,7 +133,7 @@ def test_arm_that_is_jogged_through_a_stretched_elbow_goes_on_to_the_other_branc
 
 @pytest.mark.parametrize('gap', [0.008, 0.05])
 def test_arm_whose_next_command_comes_out_of_step_stays_on_its_branch(gap):
-    check, pose = CommandCheck(ARM), ARM.kinematics.forward(bent_by(0.005)).pose
+    check, pose = SetpointValidator(ARM), ARM.kinematics.forward(bent_by(0.005)).pose
     check.note_joints(bent_by(0.045))
     check.admit(ARM.kinematics.forward(bent_by(0.025)).pose, 100.0)
     check.admit(pose, 100.02)
@@ -141,7 +141,7 @@ def test_arm_whose_next_command_comes_out_of_step_stays_on_its_branch(gap):
 
 
 def test_the_way_from_the_measured_joints_to_the_first_command_is_no_motion_to_go_on_with():
-    check, pose = CommandCheck(ARM), ARM.kinematics.forward(bent_by(0.005)).pose
+    check, pose = SetpointValidator(ARM), ARM.kinematics.forward(bent_by(0.005)).pose
     check.note_joints(bent_by(0.04))
     check.admit(ARM.kinematics.forward(bent_by(0.04)).pose, 100.0)
     for time in (100.3, 100.5):
@@ -150,7 +150,7 @@ def test_the_way_from_the_measured_joints_to_the_first_command_is_no_motion_to_g
 
 def test_cranks_turn_back_where_their_legs_are_almost_straight():
     """Up to the edge of the reach and down again, at nine tenths of the joint speed."""
-    check, pose = CommandCheck(MACHINE), HOME
+    check, pose = SetpointValidator(MACHINE), HOME
     step = 0.9 * 0.02 * MACHINE.motion.joint.speed
     for k, angle in enumerate([1.035 + step * abs(n) for n in range(-6, 7)]):
         joints = np.full(6, angle)
@@ -161,7 +161,7 @@ def test_cranks_turn_back_where_their_legs_are_almost_straight():
 
 
 def test_arm_that_has_come_to_rest_is_commanded_the_very_same_again():
-    home, check = ARM.kinematics.home, CommandCheck(ARM)
+    home, check = ARM.kinematics.home, SetpointValidator(ARM)
     check.note_joints(ARM.kinematics.inverse(home))
     for k in range(20):
         first = check.admit(home.moved([1e-4 * min(k, 10), 0, 0, 0, 0, 0]), 100.0 + 0.01 * k)
@@ -171,6 +171,8 @@ def test_arm_that_has_come_to_rest_is_commanded_the_very_same_again():
 
 
 def test_what_the_drives_stay_behind_by_is_commanded_on_top():
-    sag = np.linspace(0.01, 0.02, 6)
-    check = CommandCheck(replace(MACHINE, sag=lambda pose, joints: sag))
-    np.testing.assert_allclose(check.command(HOME, 0.0), MACHINE.kinematics.inverse(HOME) + sag)
+    deflection = np.linspace(0.01, 0.02, 6)
+    check = SetpointValidator(replace(MACHINE, deflection=lambda pose, joints: deflection))
+    np.testing.assert_allclose(
+        check.command(HOME, 0.0), MACHINE.kinematics.inverse(HOME) + deflection
+    )

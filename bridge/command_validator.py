@@ -9,14 +9,14 @@ from bridge.protocol import Setpoint
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
 from manipulator.formatting import counted
-from manipulator.message_filter import NOTABLE_OFFSET, StampGate
+from manipulator.message_filter import NOTABLE_OFFSET, StampFilter
 
 PULSE_PERIOD = 0.02
 LONGEST_GAP = 0.05
 START = 0.005
 
 
-class CommandGate:
+class CommandValidator:
     """Turns joint commands into setpoints; what must not move the machine is refused whole.
 
     No jump: a command must lie within what the servos slew, at their rated speed, in the time
@@ -30,7 +30,7 @@ class CommandGate:
         """The deadline that every setpoint carries, in seconds."""
         self._calibration = calibration
         self._deadline = deadline
-        self._stamps = StampGate(maximum_age=deadline)
+        self._stamps = StampFilter(maximum_age=deadline)
         self._names: tuple[str, ...] | None = None
         self._order: list[int] = []
         self._last: Array | None = None

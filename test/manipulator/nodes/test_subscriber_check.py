@@ -1,0 +1,26 @@
+from manipulator.nodes.graph_check import PATIENCE, SubscriberCheck
+
+HEXAPOD = '/hexapod on ROS domain 7'
+
+
+def test_nobody_is_said_once_and_only_after_the_time_that_discovery_takes():
+    check = SubscriberCheck(HEXAPOD, 10.0)
+    assert check.news(False, 10.0 + 0.9 * PATIENCE) == ''
+    said = check.news(False, 10.0 + PATIENCE)
+    assert said == f'nobody listens in {HEXAPOD}: is a graph up there?'
+    assert check.news(False, 20.0) == ''
+
+
+def test_somebody_is_said_at_once_and_a_loss_after_a_while():
+    check = SubscriberCheck(HEXAPOD, 10.0)
+    assert check.news(True, 10.1) == f'a machine listens in {HEXAPOD}'
+    assert check.news(True, 30.0) == ''
+    assert check.news(False, 30.5) == ''
+    assert check.news(True, 31.0) == ''
+    assert check.news(False, 31.0 + PATIENCE).startswith('nobody listens')
+    assert check.news(True, 60.0).startswith('a machine listens')
+
+
+def test_outside_of_every_namespace_the_option_is_told():
+    said = SubscriberCheck('/ on ROS domain 0', 0.0).news(False, PATIENCE)
+    assert said.endswith('-r __ns:=/hexapod')
