@@ -90,7 +90,7 @@ class CommandValidator:
             raise InvalidInput(f'unknown joint {unknown[:80]!r} (there are {", ".join(known)})')
         if len(set(names)) < len(names):
             repeated = next(name for name in known if list(names).count(name) > 1)
-            raise InvalidInput(f'joint {repeated} stands twice')
+            raise InvalidInput(f'joint {repeated} is named twice')
         missing = [name for name in known if name not in names]
         if missing:
             raise InvalidInput(f'no position for {", ".join(missing)}')

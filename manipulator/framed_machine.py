@@ -107,7 +107,7 @@ class FramedKinematics:
 
 @dataclass(frozen=True, eq=False)
 class FramedLimit(LimitOf):
-    """A limit of the machine, asked with poses of the pivot in the work frame."""
+    """A limit of the machine, for poses of the pivot in the work frame."""
 
     frames: Frames
 
@@ -126,5 +126,5 @@ class FramedLimit(LimitOf):
         return self.inner.values(self.frames.platform(pose), joints)
 
     def admits(self, pose: Pose, joints: Array) -> Mask:
-        """Which configurations (...) keep the limit, as quickly as it tells."""
+        """Which configurations (...) keep the limit, as quickly as it can."""
         return admitted(self.inner, self.frames.platform(pose), joints)

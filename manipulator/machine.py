@@ -1,4 +1,4 @@
-"""A machine as the nodes use it: its kinematics, its limits, its way of moving."""
+"""A machine as the nodes use it: its kinematics, its limits, its jogger."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -42,13 +42,13 @@ class MachineFile:
 
 @dataclass(frozen=True)
 class Machine:
-    """What trajectory, ik and pose need to know of a machine.
+    """What the nodes trajectory, ik and pose need to know of a machine.
 
     frames are those that its user works in; kinematics and constraints are in the base frame,
     unless the machine was made by `in_frames`. make_jogger makes the jogger of this machine, or of
-    the same in other frames. deflection: of the drives under load, where it is to be compensated. park (n,) are the joints at which the servos are switched on and off, None
-    where the file has no usable servos. jog_singularity: what a jog does where a singular posture
-    does not let it keep its direction.
+    the same in other frames. deflection: of the drives under load, where it is to be compensated.
+    park (n,) are the joints at which the servos are switched on and off, None where the file has
+    no usable servos. jog_singularity: one of JOG_SINGULARITIES.
     """
 
     kinematics: Kinematics

@@ -18,7 +18,7 @@ class PoseEstimate:
     """
 
     def __init__(self, machine: Machine, note: Callable[[str], object] = str) -> None:
-        """note: is told when the last pose did not lead to the present one."""
+        """note: is called when the last pose did not lead to the present one."""
         self.solution: ForwardSolution | None = None
         self._machine = machine
         self._note = note

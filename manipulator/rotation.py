@@ -56,7 +56,7 @@ def exp(rotation_vector: ArrayLike) -> Array:
 
 
 def _exp_of_one(w: Array) -> Array:
-    """The exp of one vector: every tick asks for it, and the general way costs four times more."""
+    """The exp of one vector: needed at every tick; the general one costs four times more."""
     x, y, z = w.tolist()
     angle = math.hypot(x, y, z)
     first, second = 1.0, 0.5
@@ -90,7 +90,7 @@ def log(rotation: ArrayLike) -> Array:
 def _log_of_acute(matrix: Array) -> Array:
     """The log of one rotation by less than 90°: w·sin|w|/|w| is its antisymmetric part.
 
-    Jog modes ask for it at every tick; the general way by quaternions costs ten times as much.
+    Jog modes need it at every tick; by quaternions it costs ten times as much.
     """
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = matrix.tolist()
     vector = np.array([zy - yz, xz - zx, yx - xy])

@@ -1,4 +1,4 @@
-"""From the poses to be at to joint commands: checks and refuses, never bends, never retimes."""
+"""From setpoints to joint commands: checks and refuses, never changes or retimes them."""
 
 import numpy as np
 
@@ -9,23 +9,23 @@ from manipulator.pose import Pose
 from manipulator.static_deflection import commanded
 
 FORGET_AFTER = 0.25
-"""Seconds after which the last command no longer says where the joints are."""
+"""Seconds after which the last command is no longer taken as the joints' position."""
 
 SHORTEST_STEP, LONGEST_STEP = 0.02, 0.1
 """A joint may step as far as its speed allows within this time (messages may bunch up).
 
-A process that was held up hears one message late and the next right after it: what the first
-left unused of the time, the second may use.
+A process that stalls receives one message late and the next right after it: the second may use
+the time that the first left unused.
 """
 
 STANDING = 1e-9
-"""rad or m a command below which joints stand: the step is rounding and must not be repeated."""
+"""rad or m a command below which joints are at rest: a step of rounding is not repeated."""
 IN_STEP = 2.0
 """Between two commands, at most this many times as long as between the two before, or as short."""
 
 
 class SetpointValidator:
-    """One machine's last word on what may be commanded; times are monotonic, in seconds.
+    """The last check of one machine's setpoints; times are monotonic, in seconds.
 
     A setpoint must keep the machine's constraints (from beyond a limit, only the way back is
     allowed), and no joint may jump away from the last command, or from where the joints are.
@@ -42,18 +42,18 @@ class SetpointValidator:
         self._measured: Array | None = None
 
     def note_joints(self, joints: Array | None) -> None:
-        """Where the joints are (n,), in rad or m; None when that is not known of all of them."""
+        """The reported joints (n,), in rad or m; None when not all are known."""
         self._measured = joints
         if joints is None:
             self._commanded, self._last_step = None, 0.0
 
     def command(self, T_base_platform: Pose, now: float) -> Array:
-        """As `admit`, and raised by what the drives stay behind: what goes down to the board."""
+        """As `admit`, with the static deflection added: the command for the board."""
         joints = self.admit(T_base_platform, now)
         return commanded(self._machine.deflection, T_base_platform, joints)
 
     def admit(self, T_base_platform: Pose, now: float) -> Array:
-        """The joints (n,) to be at; Unreachable or LimitViolated says why there are none."""
+        """The joints (n,) at the setpoint; raises Unreachable or LimitViolated."""
         age = now - self._commanded_at
         is_fresh = self._commanded is not None and age < FORGET_AFTER
         near = self._commanded if is_fresh else self._measured
@@ -73,7 +73,7 @@ class SetpointValidator:
         """Where the joints go on to if they keep their speed.
 
         A jogged arm drives through postures where two branches meet, as a stretched elbow. Beside
-        them the nearest branch is the one that turns back; only the motion tells which is meant.
+        them the nearest branch is the one that turns back; only the motion shows which is meant.
         The cranks of a platform do turn back there.
         """
         if not self._joins_branches:

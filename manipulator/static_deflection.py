@@ -1,7 +1,7 @@
-"""Servos that report commands, not positions, deflection under gravity by an amount that is known.
+"""Static deflection: how far drives yield under gravity, where only their commands are known.
 
-What goes down to the board is raised by it, what comes up is lowered: above, everybody means
-where the joints are.
+Commands to the board are raised by it, reported joints are lowered: all other code uses the joints
+where they are.
 """
 
 from collections.abc import Callable

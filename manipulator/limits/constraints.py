@@ -1,6 +1,6 @@
 """The one constraint check that ik, trajectories, teleop and workspace maps share.
 
-A limit that a machine stands beyond is stretched for the way back.
+A limit that a machine is beyond is stretched for the way back.
 """
 
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class Constraints:
         return inside
 
     def stretched_to(self, pose: Pose, joints: Array) -> 'Constraints':
-        """These limits for a machine that stands beyond some of them: it may not go further out.
+        """These limits for a machine that is beyond some of them: it may not go further out.
 
         The same ones where one configuration keeps them all.
         """
@@ -65,12 +65,12 @@ class Constraints:
 
 
 ROUNDING = 1e-9
-"""rad, m or a ratio by which values may differ when the same place is worked out again."""
+"""rad, m or a ratio by which values may differ when the same pose is computed again."""
 
 
 @dataclass(frozen=True, eq=False)
 class StretchedLimit(LimitOf):
-    """`inner` with bounds [low, high] (k,) that take in where the machine stands."""
+    """`inner` with bounds [low, high] (k,) that include the present values."""
 
     low: Array
     high: Array

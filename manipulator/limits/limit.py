@@ -16,7 +16,7 @@ class Limit(Protocol):
     """k values computed from a pose and its joints, each with its own range.
 
     quantity and unit go into messages; owners are who each value belongs to ('leg 3', or '' when
-    it is the whole platform's). A limit that can tell faster than by its values what it admits
+    it is the whole platform's). A limit that can decide faster than by its values what it admits
     may offer `admits(pose, joints) -> Mask` as well.
     """
 
@@ -85,7 +85,7 @@ class Violation:
 
     @property
     def _digits(self) -> int:
-        """Four, or as many as tell the value from the bounds that it is beyond."""
+        """Four, or as many as distinguish the value from the bound that it is beyond."""
         for digits in range(FEWEST_DIGITS, MOST_DIGITS):
             value, low, high = (f'{x:.{digits}g}' for x in (self.value, self.low, self.high))
             if value not in (low, high):

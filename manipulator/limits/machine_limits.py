@@ -85,7 +85,7 @@ class SingularityMargin:
         return self.kinematics.sigma_min(pose, joints)[..., None]
 
     def admits(self, pose: Pose, joints: Array) -> Mask:
-        """Which configurations (...) keep the margin; the quick way where there are many."""
+        """Which configurations (...) keep the margin; by a quick test where there are many."""
         if joints.ndim == 2 and len(joints) >= MANY and isinstance(self.kinematics, KeepsMargin):
             return self.kinematics.keeps_margin(pose, joints, self.minimum)
         return np.asarray(self.kinematics.sigma_min(pose, joints) >= self.minimum, dtype=np.bool_)

@@ -1,4 +1,4 @@
-"""From setpoints to joint commands; what is checked on the way stands in command_check.py."""
+"""From setpoints to joint commands, checked by setpoint_validator.py."""
 
 import time
 from collections.abc import Callable

@@ -18,7 +18,7 @@ from manipulator.teleop.joy_reader import JoyReader
 
 GAMEPAD = 'mapping of the gamepad: a shipped name (xbox, playstation) or a path'
 SCALE = 'full stick in parts of the speeds (m/s, rad/s) that the mapping states'
-GRIPPER = 'part of its way that the gripper moves in 1 s'
+GRIPPER = 'part of its range that the gripper moves in 1 s'
 
 
 class JoyTeleop(Node):
@@ -42,7 +42,7 @@ class JoyTeleop(Node):
         self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/joy', topic))
 
     def close(self) -> None:
-        """Lets go of the machine."""
+        """Releases the machine."""
         self._topics.close()
 
     def _on_joy(self, message: Joy) -> None:
@@ -52,28 +52,28 @@ class JoyTeleop(Node):
             raise InvalidInput(self._reader.fault)
 
     def _tick(self) -> None:
-        wanted = self._reader.wanted(time.monotonic())
-        self._topics.choose(wanted.mode)
-        self._topics.drive(wanted.twist * self._scale, wanted.frame, wanted.is_held)
-        self._topics.home(wanted.is_homing)
-        if wanted.stops != self._stops:
-            self._stops = wanted.stops
+        command = self._reader.command(time.monotonic())
+        self._topics.choose(command.mode)
+        self._topics.drive(command.twist * self._scale, command.frame, command.is_held)
+        self._topics.home(command.is_homing)
+        if command.stops != self._stops:
+            self._stops = command.stops
             self._topics.stop()
-        if wanted.grip:
-            self._topics.grip(wanted.grip * self._gripper_step)
+        if command.grip:
+            self._topics.grip(command.grip * self._gripper_step)
 
     def _report(self) -> Report:
-        wanted = self._reader.wanted(time.monotonic())
+        command = self._reader.command(time.monotonic())
         values = {
-            'mode': wanted.mode,
-            'frame': wanted.frame,
+            'mode': command.mode,
+            'frame': command.frame,
             'last_joy_age_s': self._joy.age,
             'joy_refused': self._joy.refused,
             'last_refusal': self._joy.last_refusal,
             'not_seen_at_rest_yet': ', '.join(self._reader.untrusted),
         }
         if self._pad.trouble:
-            return ERROR, f'{self._pad.trouble}: end all but one, then let go', values
-        if wanted.reason:
-            return WARN, f'{self._pad.topic}: {wanted.reason}', values
-        return OK, 'deadman held' if wanted.is_held else 'deadman released', values
+            return ERROR, f'{self._pad.trouble}: end all but one, then release the deadman', values
+        if command.reason:
+            return WARN, f'{self._pad.topic}: {command.reason}', values
+        return OK, 'deadman held' if command.is_held else 'deadman released', values

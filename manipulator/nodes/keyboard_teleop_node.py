@@ -14,9 +14,9 @@ from manipulator.nodes.terminal import Terminal
 from manipulator.teleop.keyboard import HELP, Keyboard, keys_of
 
 LOOK_AROUND = 0.5
-"""Seconds between two looks at who listens."""
+"""Seconds between two subscriber checks."""
 
-GRIPPER = 'part of its way that the gripper moves in 1 s'
+GRIPPER = 'part of its range that the gripper moves in 1 s'
 
 
 class KeyboardTeleop(Node):
@@ -39,7 +39,7 @@ class KeyboardTeleop(Node):
         self._looking = SteadyTimer(self, LOOK_AROUND, self._look_around)
 
     def close(self) -> None:
-        """Lets go of the machine, and of the terminal."""
+        """Releases the machine and the terminal."""
         self._topics.close()
         self._terminal.show('\n')
         self._terminal.restore()
@@ -64,7 +64,7 @@ class KeyboardTeleop(Node):
             signal.raise_signal(signal.SIGINT)
 
     def _look_around(self) -> None:
-        news = self._subscriber_check.news(self._topics.has_subscribers, time.monotonic())
+        news = self._subscriber_check.update(self._topics.has_subscribers, time.monotonic())
         if news:
             self._terminal.show(f'\r\x1b[K {news}\n')
             self._show()

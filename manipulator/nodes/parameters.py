@@ -71,7 +71,7 @@ class CycleParameters:
             declare(node, f'cycle.{name}', default, description, is_read_only=False)
 
     def read(self, centre: Pose) -> Cycle:
-        """The cycle about `centre`; InvalidInput says what does not fit."""
+        """The cycle about `centre`; InvalidInput names the wrong parameter."""
         amplitude, frequency, phase = map(self._terms, ('amplitude', 'frequency', 'phase'))
         return Cycle(centre, amplitude, frequency, phase)
 

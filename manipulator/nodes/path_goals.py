@@ -159,7 +159,7 @@ def _seconds(stamps: 'np.ndarray[tuple[int, ...], np.dtype[np.int64]]') -> Array
 def path_message(
     poses: Pose, stamp: Time, frame: str = BASE_FRAME, stamps: list[Time] | None = None
 ) -> Path:
-    """Poses (n,) as a message; their stamps, if any, say when each is to be passed."""
+    """Poses (n,) as a message; their stamps, if any, are the times to pass them."""
     count = len(poses.position)
     times = [Time()] * count if stamps is None else stamps
     message = Path(poses=[pose_message(poses[i], times[i], frame) for i in range(count)])

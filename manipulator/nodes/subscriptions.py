@@ -70,7 +70,7 @@ class FilteredCallback:
             self._report(message, error)
 
     def refuse(self, message: Any, error: ManipulatorError) -> None:
-        """What becomes of a message that was accepted, but not in the end."""
+        """Refuses a message that was accepted at first."""
         self._filter.refuse(error)
         self._report(message, error)
 
@@ -104,12 +104,12 @@ class FilteredCallback:
 
 
 class SoleSubscription:
-    """Hands every message to `accept`, which asks for `trouble` first.
+    """Hands every message to `accept`, which reads `trouble` first.
 
     is_continuous: see SoleSource.
 
     rclpy gives a callback of two arguments the message and what is known of it. The EventsExecutor
-    of rclpy 7.1 hands them over as one pair: so this object looks like a callback of two
+    of rclpy 7.1 hands them over as one pair: so this object has the signature of a callback of two
     arguments, and takes both forms.
     """
 

@@ -32,7 +32,7 @@ class TeleopTopics:
         return '; '.join(source.trouble for source in self._sources if source.trouble)
 
     def report(self) -> dict[str, object]:
-        """What /diagnostics tells of jogging."""
+        """The values of /diagnostics about jogging."""
         worst = max(self._callbacks, key=lambda callback: callback.refused)
         return {
             'jogged_by': self._teleop.owner(time.monotonic()),

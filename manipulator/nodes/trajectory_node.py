@@ -52,13 +52,13 @@ GOAL_TOLERANCE = (
 GOAL_MOTION = 'how a machine at rest goes to goal_pose: line, joint, or any (a line where it can)'
 
 
-def motion_of(word: object) -> Motion:
-    """The way to a goal that the parameter names; Refused for another word."""
+def motion_of(name: object) -> Motion:
+    """The kind of motion that the parameter names; Refused for another name."""
     try:
-        return Motion(word)
+        return Motion(name)
     except ValueError:
         known = ', '.join(motion.value for motion in Motion)
-        raise Refused(f'parameter goal_motion: {word!r} is not one of {known}') from None
+        raise Refused(f'parameter goal_motion: {name!r} is not one of {known}') from None
 
 
 def checked_parameters(parameters: Sequence[Parameter]) -> SetParametersResult:
@@ -209,5 +209,5 @@ class TrajectoryNode(Node):
         }
         trouble = self._teleop_topics.trouble
         if trouble:
-            return ERROR, f'{trouble}: end all but one, then let go', values
+            return ERROR, f'{trouble}: end all but one, then release the deadman', values
         return OK, now.reason or now.result, values

@@ -25,7 +25,7 @@ from manipulator.trajectory.worker import Job, Worker
 
 @dataclass(frozen=True, eq=False)
 class _PlanCall:
-    """A request for a plan that is being worked out."""
+    """A request for a plan that is being made."""
 
     call: Call
     machine: Machine
@@ -68,7 +68,7 @@ class TrajectoryServices:
 
     def _stop(self) -> str:
         self._controller.stop()
-        return 'braking along the way, then holding'
+        return 'braking along the path, then holding'
 
     def _home(self) -> str:
         self._controller.home(self._now(), time.monotonic())

@@ -25,7 +25,7 @@ COMPONENTS: tuple[Component, ...] = get_args(Component)
 class Stick:
     """`axis` moves one component; `full_speed` (m/s or rad/s) is meant for full deflection.
 
-    The way from `rest` to the farther end is one unit; `sign` says which way is positive. Within
+    The distance from `rest` to the farther end is one unit; `sign` is that of increase. Within
     `deadzone` units of the rest nothing moves, beyond it the speed rises from 0. `expo` 0 is
     linear, 1 is cubic. A stick of layer 'shift' counts only while shift is held, one of layer
     'plain' only while it is not.
@@ -52,8 +52,8 @@ class Stick:
 
     def deflection(self, value: float) -> float:
         """In [−1, 1], before the deadzone."""
-        way = self.sign * (value - self.rest) / (1.0 + abs(self.rest))
-        return min(max(way, -1.0), 1.0)
+        offset = self.sign * (value - self.rest) / (1.0 + abs(self.rest))
+        return min(max(offset, -1.0), 1.0)
 
     def is_at_rest(self, value: float) -> bool:
         """Whether the axis is within its deadzone."""
@@ -61,25 +61,25 @@ class Stick:
 
     def speed(self, value: float) -> float:
         """In m/s or rad/s; 0 at the deadzone's edge, full_speed at the end."""
-        way = self.deflection(value)
-        if abs(way) <= self.deadzone:
+        offset = self.deflection(value)
+        if abs(offset) <= self.deadzone:
             return 0.0
-        rescaled = (abs(way) - self.deadzone) / (1.0 - self.deadzone)
+        rescaled = (abs(offset) - self.deadzone) / (1.0 - self.deadzone)
         bent = (1.0 - self.expo) * rescaled + self.expo * rescaled**3
-        return math.copysign(self.full_speed * bent, way)
+        return math.copysign(self.full_speed * bent, offset)
 
 
 CommandFrame = Literal['base', 'work', 'pivot', 'tool']
-"""The frames that a twist may be told in."""
+"""The frames in which a twist may be given."""
 
 
 @dataclass(frozen=True)
 class Gamepad:
-    """A mapping; docs/joystick.md says what each control does. Times in seconds.
+    """A mapping; docs/joystick.md describes each control. Times in seconds.
 
-    lost_after: without a message for so long the deadman is off until it is pressed anew.
+    lost_after: without a message for so long the deadman is off until it is pressed again.
     still_after: while driving, without a change of any number for so long the deadman is off
-    until a number changes. repress_after: after so long without a change, until pressed anew.
+    until a number changes. repress_after: after so long without a change, until pressed again.
     """
 
     description: str

@@ -33,7 +33,7 @@ class Press:
             )
 
     def is_pressed(self, axes: Sequence[float], buttons: Sequence[int]) -> bool:
-        """Whether a message that has the index says so."""
+        """Whether it is pressed in a message that has the index."""
         if self.axis is None:
             return buttons[self.button or 0] == 1
         value = axes[self.axis]

@@ -43,8 +43,8 @@ def test_joints_may_come_in_any_order(validator):
     ('names', 'problem'),
     [
         ([*NAMES[:5], 'crank_7'], "unknown joint 'crank_7'"),
-        ([*NAMES[:5], 'crank_1'], 'joint crank_1 stands twice'),
-        ([*NAMES[:4], 'crank_4', 'crank_6'], 'joint crank_4 stands twice'),
+        ([*NAMES[:5], 'crank_1'], 'joint crank_1 is named twice'),
+        ([*NAMES[:4], 'crank_4', 'crank_6'], 'joint crank_4 is named twice'),
         (NAMES[:4], 'no position for crank_5, crank_6'),
         ([], 'no position for crank_1'),
         ([f'j{i}' for i in range(10_000)], "unknown joint 'j0'"),

@@ -38,7 +38,7 @@ class Rig:
         self.log.append(event)
 
     def pass_time(self, seconds):
-        """The board goes on, and nobody listens."""
+        """The board goes on, and no machine subscribes."""
         for _ in range(round(seconds / STEP)):
             self.now += STEP
             self.board.step(STEP)

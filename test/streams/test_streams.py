@@ -207,7 +207,7 @@ def norms(vectors):
 )
 @example(stream=[(('goal', (0.1,) * 6, 1.0), 9), (('enable',), 9)])
 @given(stream=STREAMS)
-def test_no_stream_of_jog_commands_breaks_a_limit(loop_of, name, stream):
+def test_no_stream_of_wishes_breaks_a_limit(loop_of, name, stream):
     loop = loop_of(name)
     user = User(loop)
     for command, ticks in stream:

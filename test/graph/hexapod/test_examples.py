@@ -196,7 +196,7 @@ def test_stop_ends_a_move_and_the_tour_says_so(start, client, slowly, end):
     def stop_on_tour():
         tour = start('axis_tour', '--pause', 0)
         assert tour.stdout.readline().startswith('x ±')
-        assert end(start('stop')) == (0, 'braking along the way, then holding\n')
+        assert end(start('stop')) == (0, 'braking along the path, then holding\n')
         status, said = end(tour)
         assert status == 1
         assert 'stopped' in said

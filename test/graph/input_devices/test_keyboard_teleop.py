@@ -138,8 +138,8 @@ def test_mode_frame_gripper_and_home_reach_their_topics(typist):
 
 
 def test_the_terminal_says_who_listens(typist):
-    typist.listener.wait('a line', lambda: b'a machine listens in /keyboards' in typist.seen)
-    assert b'nobody listens' not in typist.seen.split(b'a machine listens')[-1]
+    typist.listener.wait('a line', lambda: b'a machine subscribes in /keyboards' in typist.seen)
+    assert b'no machine subscribes' not in typist.seen.split(b'a machine subscribes')[-1]
 
 
 def test_paste_moves_nothing(typist):
@@ -169,7 +169,7 @@ def test_a_keyboard_that_nobody_hears_says_so_and_ends_with_its_window(words, re
     os.close(screen)
     seen = b''
     try:
-        while b'nobody listens in /lonely on ROS domain' not in seen:
+        while b'no machine subscribes in /lonely on ROS domain' not in seen:
             assert select.select([keys], [], [], PATIENCE)[0], seen
             seen += os.read(keys, 4096)
         os.close(keys)

@@ -6,7 +6,7 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
-from manipulator.nodes.graph_check import Received, crowds, received_by, unheard
+from manipulator.nodes.graph_check import Received, crowds, received_by, unreceived
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 
 CASES = {
@@ -37,9 +37,9 @@ def test_publisher_that_is_not_received_is_told_with_its_remedy(graph, case):
     machine.create_subscription(wanted[0], topic, print, wanted[1])
     user.create_publisher(offered[0], topic, offered[1])
     graph.wait('the publisher', lambda: machine.count_publishers(f'/here/{topic}') == 1)
-    graph.wait('its name', lambda: 'unknown' not in str(unheard(machine, received_by(machine))))
-    assert unheard(machine, received_by(machine)) == [told]
-    assert unheard(user, [Received(topic, *wanted)]) == [told]
+    graph.wait('its name', lambda: 'unknown' not in str(unreceived(machine, received_by(machine))))
+    assert unreceived(machine, received_by(machine)) == [told]
+    assert unreceived(user, [Received(topic, *wanted)]) == [told]
 
 
 def test_publishers_that_are_received_are_not_told(graph):
@@ -50,7 +50,7 @@ def test_publishers_that_are_received_are_not_told(graph):
         user.create_publisher(PoseStamped, 'goal_pose', offered)
         user.create_publisher(JointState, 'joint_states', offered)
     graph.wait('the publishers', lambda: machine.count_publishers('/here/joint_states') == 3)
-    assert unheard(machine, received_by(machine)) == []
+    assert unreceived(machine, received_by(machine)) == []
 
 
 def test_two_publishers_are_told_with_their_nodes(graph):

@@ -5,22 +5,22 @@ HEXAPOD = '/hexapod on ROS domain 7'
 
 def test_nobody_is_said_once_and_only_after_the_time_that_discovery_takes():
     check = SubscriberCheck(HEXAPOD, 10.0)
-    assert check.news(False, 10.0 + 0.9 * PATIENCE) == ''
-    said = check.news(False, 10.0 + PATIENCE)
-    assert said == f'nobody listens in {HEXAPOD}: is a graph up there?'
-    assert check.news(False, 20.0) == ''
+    assert check.update(False, 10.0 + 0.9 * PATIENCE) == ''
+    said = check.update(False, 10.0 + PATIENCE)
+    assert said == f'no machine subscribes in {HEXAPOD}: is it started there?'
+    assert check.update(False, 20.0) == ''
 
 
 def test_somebody_is_said_at_once_and_a_loss_after_a_while():
     check = SubscriberCheck(HEXAPOD, 10.0)
-    assert check.news(True, 10.1) == f'a machine listens in {HEXAPOD}'
-    assert check.news(True, 30.0) == ''
-    assert check.news(False, 30.5) == ''
-    assert check.news(True, 31.0) == ''
-    assert check.news(False, 31.0 + PATIENCE).startswith('nobody listens')
-    assert check.news(True, 60.0).startswith('a machine listens')
+    assert check.update(True, 10.1) == f'a machine subscribes in {HEXAPOD}'
+    assert check.update(True, 30.0) == ''
+    assert check.update(False, 30.5) == ''
+    assert check.update(True, 31.0) == ''
+    assert check.update(False, 31.0 + PATIENCE).startswith('no machine subscribes')
+    assert check.update(True, 60.0).startswith('a machine subscribes')
 
 
 def test_outside_of_every_namespace_the_option_is_told():
-    said = SubscriberCheck('/ on ROS domain 0', 0.0).news(False, PATIENCE)
+    said = SubscriberCheck('/ on ROS domain 0', 0.0).update(False, PATIENCE)
     assert said.endswith('-r __ns:=/hexapod')

@@ -26,7 +26,7 @@ def test_one_who_was_turned_away_must_let_go_before_he_is_heard():
     arbiter = Arbiter()
     arbiter.receive(JOY, 0.0)
     for k in range(1, 20):
-        with pytest.raises(Refused, match='let go first'):
+        with pytest.raises(Refused, match='release first'):
             arbiter.receive(PANEL, 0.1 * k)
     assert arbiter.owner(1.9) == ''
     arbiter.receive(PANEL, 1.9 + LATER)
@@ -48,9 +48,9 @@ def test_a_person_overrides_the_computer_whose_stream_does_not_resume_by_itself(
 
 def test_the_computers_twists_wait_for_a_goal_and_a_persons_do_not():
     arbiter = Arbiter()
-    with pytest.raises(Refused, match='a goal is being driven'):
+    with pytest.raises(Refused, match='a goal is active'):
         arbiter.receive(COMPUTER, 0.0, is_computer_busy=True)
-    with pytest.raises(Refused, match='let go first'):
+    with pytest.raises(Refused, match='release first'):
         arbiter.receive(COMPUTER, 0.1)
     arbiter.receive(JOY, 0.2, is_computer_busy=True)
     assert arbiter.owner(0.2) == JOY
@@ -70,7 +70,7 @@ def test_after_a_stop_the_owner_must_let_go():
 def test_owner_who_is_turned_away_has_nothing_until_he_has_let_go():
     arbiter = Arbiter()
     arbiter.receive(JOY, 0.0)
-    with pytest.raises(Refused, match='two of them: let go first'):
+    with pytest.raises(Refused, match='two of them: release first'):
         arbiter.reject(JOY, 0.02, 'two of them')
     assert arbiter.owner(0.02) == ''
     with pytest.raises(Refused, match='two of them'):

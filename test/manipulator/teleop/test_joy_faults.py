@@ -18,7 +18,7 @@ def test_trigger_that_reports_zero_before_its_first_touch_does_nothing(gamepad):
     assert {'turbo', 'slow'} <= set(reader.untrusted)
     buttons = [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
     axes[1], axes[5] = 1.0, -1.0
-    untouched = reader.receive(axes, buttons, 1.02).wanted(1.02)
+    untouched = reader.receive(axes, buttons, 1.02).command(1.02)
     assert untouched.twist[0] == pytest.approx(0.05)
 
 
@@ -28,15 +28,15 @@ def test_trigger_as_deadman_counts_after_it_was_seen_at_rest(changed):
     before = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     pulled = [0.0, 1.0, 1.0, 0.0, 0.0, -1.0, 0.0, 0.0]
     reader = reader.receive(before, BUTTONS, 1.0).receive(pulled, BUTTONS, 1.02)
-    assert not reader.wanted(1.02).is_held
+    assert not reader.command(1.02).is_held
     reader = reader.receive(AXES, BUTTONS, 1.04).receive(pulled, BUTTONS, 1.06)
-    assert reader.wanted(1.06).twist[0] == pytest.approx(0.05)
+    assert reader.command(1.06).twist[0] == pytest.approx(0.05)
 
 
 def test_deadman_that_is_pressed_from_the_start_does_not_count(gamepad):
     stuck = [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
     reader = JoyReader(gamepad).receive(AXES, stuck, 1.0)
-    assert not reader.wanted(1.0).is_held
+    assert not reader.command(1.0).is_held
     assert 'deadman' in reader.untrusted
 
 
@@ -44,8 +44,8 @@ def test_stick_that_never_rests_moves_nothing(gamepad):
     drifting = [0.0, 0.4, *AXES[2:]]
     held = [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
     reader = JoyReader(gamepad).receive(drifting, BUTTONS, 1.0).receive(drifting, held, 1.02)
-    assert reader.wanted(1.02).is_held
-    assert not reader.wanted(1.02).twist.any()
+    assert reader.command(1.02).is_held
+    assert not reader.command(1.02).twist.any()
     assert reader.untrusted == ('axis 1 (x)',)
 
 
@@ -65,9 +65,9 @@ def test_stick_that_never_rests_moves_nothing(gamepad):
 def test_bad_message_releases_the_deadman_and_names_the_index(driver, axes, buttons, said):
     driver.now += 0.02
     driver.reader = driver.reader.receive(axes, buttons, driver.now)
-    assert not driver.wanted.is_held
-    assert not driver.wanted.twist.any()
-    assert said in driver.wanted.reason
+    assert not driver.command.is_held
+    assert not driver.command.twist.any()
+    assert said in driver.command.reason
 
 
 def test_good_message_after_a_bad_one_counts(driver):
@@ -82,8 +82,8 @@ def test_button_held_through_a_bad_message_is_not_pressed_again(user):
 
 
 def test_silence_releases_everything_until_the_deadman_is_pressed_anew(driver):
-    assert driver.reader.wanted(driver.now + 0.19).is_held
-    lost = driver.reader.wanted(driver.now + 0.21)
+    assert driver.reader.command(driver.now + 0.19).is_held
+    lost = driver.reader.command(driver.now + 0.21)
     assert not lost.is_held
     assert not lost.twist.any()
     assert 'no message for 0.21 s' in lost.reason
@@ -100,7 +100,7 @@ def test_pad_that_comes_back_must_show_its_axes_at_rest_again(driver):
     driver.now += 0.3
     driver.release(LB)
     assert driver.press(LB).is_held
-    assert not driver.wanted.twist.any()
+    assert not driver.command.twist.any()
 
 
 def test_frozen_pad_with_fresh_messages_stops_the_machine(driver):
@@ -139,20 +139,20 @@ PUSHED = [0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0]
 
 
 def interleaved(reader, begin, buttons=HELD):
-    """A frozen pad's messages between those of one that rests; all that was wanted."""
-    wanted = []
+    """A frozen pad's messages between those of one that rests; all that was command."""
+    command = []
     for k in range(100):
         now = begin + 0.01 * k
         crowd = (AXES, BUTTONS) if k % 2 else (PUSHED, buttons)
         reader = reader.receive(*crowd, now, CROWD)
-        wanted.append(reader.wanted(now))
-    return reader, wanted
+        command.append(reader.command(now))
+    return reader, command
 
 
 def test_frozen_pad_beside_one_that_rests_moves_nothing_and_says_why(gamepad):
-    _, wanted = interleaved(JoyReader(gamepad).receive(AXES, BUTTONS, 1.0), 1.01)
-    assert not any(w.is_held or w.twist.any() or w.is_homing or w.grip for w in wanted)
-    assert {w.reason for w in wanted} == {CROWD}
+    _, command = interleaved(JoyReader(gamepad).receive(AXES, BUTTONS, 1.0), 1.01)
+    assert not any(w.is_held or w.twist.any() or w.is_homing or w.grip for w in command)
+    assert {w.reason for w in command} == {CROWD}
 
 
 def test_buttons_of_a_frozen_pad_change_neither_mode_nor_frame(gamepad):
@@ -172,6 +172,6 @@ def test_pad_that_is_left_alone_must_be_let_go_before_it_drives(gamepad):
     reader, _ = interleaved(JoyReader(gamepad).receive(AXES, BUTTONS, 1.0), 1.01)
     for k in range(50):
         reader = reader.receive(PUSHED, HELD, 2.01 + 0.02 * k)
-        assert not reader.wanted(2.01 + 0.02 * k).is_held
+        assert not reader.command(2.01 + 0.02 * k).is_held
     reader = reader.receive(AXES, BUTTONS, 3.01).receive(PUSHED, HELD, 3.03)
-    assert reader.wanted(3.03).twist[0] == pytest.approx(0.05)
+    assert reader.command(3.03).twist[0] == pytest.approx(0.05)

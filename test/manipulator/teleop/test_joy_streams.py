@@ -44,12 +44,12 @@ def test_no_stream_of_messages_moves_anything_without_a_deadman_pressed_after_re
         is_whole = is_whole and all(b in (0, 1) for b in buttons)
         is_pressed = is_whole and buttons[LB] == 1
         was_released |= is_whole and buttons[LB] == 0
-        wanted = reader.wanted(now)
-        assert np.isfinite(wanted.twist).all()
-        assert not wanted.twist.any() or (is_pressed and was_released)
-        assert not wanted.twist.any() or wanted.is_held
+        command = reader.command(now)
+        assert np.isfinite(command.twist).all()
+        assert not command.twist.any() or (is_pressed and was_released)
+        assert not command.twist.any() or command.is_held
     if later > XBOX.lost_after:
-        assert not reader.wanted(now + later).twist.any()
+        assert not reader.command(now + later).twist.any()
 
 
 @settings(max_examples=enough(80, 200))
@@ -59,5 +59,5 @@ def test_twist_never_exceeds_turbo_speed(stream):
     for axes, buttons, pause in stream:
         now += pause
         reader = reader.receive(axes, buttons, now)
-        twist = np.abs(reader.wanted(now).twist)
+        twist = np.abs(reader.command(now).twist)
         assert (twist <= np.array([0.1] * 3 + [1.0] * 3) + 1e-12).all()

@@ -134,7 +134,9 @@ def test_park_of_a_machine_whose_pose_there_is_unknown_is_refused():
         def forward(self, joints, near=None):
             raise NoSolution('two assembly modes fit')
 
-    with pytest.raises(Refused, match='no pose that can be trusted: two assembly modes fit'):
+    with pytest.raises(
+        Refused, match='the forward solution of the park position failed: two assembly modes fit'
+    ):
         MotionController(replace(MACHINE, kinematics=Lost()), 0.01).park(1.0, 0.0)
 
 

@@ -39,14 +39,14 @@ def test_a_goal_is_reached_and_each_status_is_news_once(stage):
 def test_a_controller_that_stood_still_between_ticks_lets_go(moving):
     assert moving.tick(period=POSE_DEADLINE + 0.1) is None
     assert (moving.status.result, moving.status.goal_stamp) == ('stopped', 7.0)
-    assert 'stood still' in moving.status.reason
+    assert 'control loop stalled' in moving.status.reason
     moving.run(100)
     assert moving.status.result != 'reached'
 
 
 def test_a_controller_that_stood_still_within_a_tick_says_no_setpoint(moving):
     assert moving.tick(within=POSE_DEADLINE + 0.1) is None
-    assert 'stood still' in moving.status.reason
+    assert 'control loop stalled' in moving.status.reason
     moving.run(100)
     assert moving.status.result != 'reached'
 

@@ -141,7 +141,7 @@ def test_a_leg_bent_the_wrong_way_and_almost_straight_is_named(supervisor):
     for _ in range(60):
         supervisor.note_pose(pose)
     with pytest.raises(
-        Refused, match=r'crank_\d, which is off by 0\.0\d+ rad: disable and enable'
+        Refused, match=r'crank_\d, which differs by 0\.0\d+ rad: disable and enable'
     ):
         _ = supervisor.executor
     assert 'disable and enable it' in supervisor.status.reason
