@@ -26,19 +26,20 @@ from bridge.protocol import Arm, Clear, Command, Disarm, Stop
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
 from manipulator.errors import Refused
+from manipulator.states import MachineState
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What a service has asked of the board, and what to say where it is obeyed."""
+class Request:
+    """A request to the board, and the answer for success."""
 
     done: str
     future: 'Future[None]'
 
 
 @dataclass(frozen=True)
-class MachineState:
-    """What the bridge tells of its machine; is_followed: the board has taken a joint command."""
+class MachineReport:
+    """For `machine_state`; is_followed: the board has accepted a joint command."""
 
     status: MachineStatus
     is_followed: bool
@@ -48,12 +49,12 @@ class MachineState:
 
 
 class Listener(Protocol):
-    """Who publishes what the driver announces, in the driver's thread."""
+    """Publishes the driver's reports, in the driver's thread."""
 
     def on_joints(self, joints: JointTable) -> None:
-        """After each STATE that tells where any joint is."""
+        """After each STATE with the position of any joint."""
 
-    def on_machine_state(self, state: MachineState) -> None:
+    def on_machine_state(self, state: MachineReport) -> None:
         """After every event, whether it has changed or not."""
 
     def on_trouble(self, text: str) -> None:
@@ -98,7 +99,7 @@ class BoardDriver:
         """Sends a joint command (rad or m) to the board, or raises why not.
 
         stamp: by the sender's clock, s; None means "now". A gripper that it does not name goes on
-        as it was asked.
+        as it was request.
         """
         self._refuse_unless_enabled()
         present = None if self.monitor.joints is None else self.monitor.joints.positions
@@ -111,40 +112,40 @@ class BoardDriver:
         self._refuse_unless_enabled()
         self._gripper.aim(opening)
 
-    def enable(self, is_on: bool) -> Asked:
+    def enable(self, is_on: bool) -> Request:
         """Servos on, one by one, at park; or off."""
         if not is_on:
-            return self._ask(Disarm(), 'disarmed: no more pulses')
-        if self.monitor.status.word == 'enabled':
+            return self._request(Disarm(), 'disarmed: no more pulses')
+        if self.monitor.status.state is MachineState.ENABLED:
             # An ARM would hold up the setpoints of a machine that is moving.
             return _answered('enabled already')
         park = self.calibration.counts(self.calibration.park)
-        return self._ask(Arm(park), 'arming: the servos go to park one by one')
+        return self._request(Arm(park), 'arming: the servos go to park one by one')
 
-    def clear_fault(self) -> Asked:
+    def clear_fault(self) -> Request:
         """Ends a stop or a fault."""
         if self.monitor.is_clear:
             # A CLEAR would hold up the setpoints of a machine that is moving.
-            return _answered(f'nothing to clear: the machine is {self.monitor.status.word}')
-        return self._ask(Clear(), 'cleared: nothing moves until a new command')
+            return _answered(f'nothing to clear: the machine is {self.monitor.status.state}')
+        return self._request(Clear(), 'cleared: nothing moves until a new command')
 
-    def stop(self) -> Asked:
+    def stop(self) -> Request:
         """Now, or as soon as there is a board."""
-        return self._ask(Stop(), 'stopped: ~/clear_fault ends it')
+        return self._request(Stop(), 'stopped: ~/clear_fault ends it')
 
-    def answer(self, asked: Asked) -> tuple[bool, str]:
+    def answer(self, request: Request) -> tuple[bool, str]:
         """Whether the board obeyed, and what to say, once the future is done.
 
         It is done only when machine_state shows it: who is answered may look at once.
         """
-        error = asked.future.exception()
+        error = request.future.exception()
         if error is None:
-            return True, asked.done
+            return True, request.done
         trouble = self.monitor.trouble
         return False, f'{error}{f": {trouble}" if trouble else ""}'
 
-    def _ask(self, command: Command, done: str) -> Asked:
-        return Asked(done, self.link.request(command))
+    def _request(self, command: Command, done: str) -> Request:
+        return Request(done, self.link.request(command))
 
     def _refuse_unless_enabled(self) -> None:
         """What comes after a refusal, or after an answer, must start where the joints are."""
@@ -158,11 +159,11 @@ class BoardDriver:
 
     def _why_not_enabled(self) -> str:
         current = self.monitor.status
-        if current.word == 'enabled':
+        if current.state is MachineState.ENABLED:
             is_stopping = self.session.is_stop_wanted
             return 'a STOP is under way' if is_stopping else 'the board takes no setpoints now'
         reason = f' ({current.reason})' if current.reason else ''
-        return f'{current.word}{reason}'
+        return f'{current.state}{reason}'
 
     # From the board
 
@@ -183,10 +184,10 @@ class BoardDriver:
                 self._listener.on_trouble(reason)
         self._listener.on_machine_state(self._state())
 
-    def _state(self) -> MachineState:
+    def _state(self) -> MachineReport:
         monitor, status = self.monitor, self.monitor.status
-        self._is_followed = self._is_followed and status.word == 'enabled'
-        return MachineState(
+        self._is_followed = self._is_followed and status.state is MachineState.ENABLED
+        return MachineReport(
             status, self._is_followed, monitor.is_measured, monitor.board, monitor.unknown_joints
         )
 
@@ -196,7 +197,7 @@ class BoardDriver:
         self._listener.on_written(replace(ticket, stamped=stamped), now)
 
 
-def _answered(done: str) -> Asked:
+def _answered(done: str) -> Request:
     future: Future[None] = Future()
     future.set_result(None)
-    return Asked(done, future)
+    return Request(done, future)

@@ -22,6 +22,7 @@ from bridge.protocol import NO_JOINT, Arm, Fault, FaultCode, Known, Mode, State
 from bridge.session import Session
 from manipulator.arrays import Array
 from manipulator.formatting import counted
+from manipulator.states import MachineState
 
 
 class Latencies:
@@ -53,24 +54,24 @@ OK, WARN, ERROR = 0, 1, 2
 
 @dataclass(frozen=True)
 class MachineStatus:
-    """level is OK, WARN or ERROR; `word` one of disconnected, booting, disarmed, arming, enabled,
-    holding, unclaimed, playing, stopped, fault; `reason` is empty where all is well.
-    """
+    """level is OK, WARN or ERROR; `reason` is empty where nothing is wrong."""
 
     level: int
-    word: str
+    state: MachineState
     reason: str = ''
 
 
 _MODES = {
-    Mode.DISARMED: MachineStatus(OK, 'disarmed'),
-    Mode.ARMING: MachineStatus(OK, 'arming'),
-    Mode.ARMED: MachineStatus(OK, 'enabled'),
-    Mode.HOLDING: MachineStatus(WARN, 'holding', 'no joint command within the deadline'),
-    Mode.STOPPED: MachineStatus(WARN, 'stopped', 'until ~/clear_fault is called'),
-    Mode.FAULT: MachineStatus(ERROR, 'fault'),
-    Mode.CHECKING: MachineStatus(OK, 'playing', 'the board checks its program'),
-    Mode.PLAYING: MachineStatus(OK, 'playing', 'the board plays its program'),
+    Mode.DISARMED: MachineStatus(OK, MachineState.DISARMED),
+    Mode.ARMING: MachineStatus(OK, MachineState.ARMING),
+    Mode.ARMED: MachineStatus(OK, MachineState.ENABLED),
+    Mode.HOLDING: MachineStatus(
+        WARN, MachineState.HOLDING, 'no joint command within the deadline'
+    ),
+    Mode.STOPPED: MachineStatus(WARN, MachineState.STOPPED, 'until ~/clear_fault is called'),
+    Mode.FAULT: MachineStatus(ERROR, MachineState.FAULT),
+    Mode.CHECKING: MachineStatus(OK, MachineState.PLAYING, 'the board checks its program'),
+    Mode.PLAYING: MachineStatus(OK, MachineState.PLAYING, 'the board plays its program'),
 }
 _FAULTS = {FaultCode.UNDERVOLTAGE: 'the battery is too low'}
 
@@ -78,17 +79,19 @@ _FAULTS = {FaultCode.UNDERVOLTAGE: 'the battery is too low'}
 def machine_status(session: Session, is_enabled_here: bool, trouble: str) -> MachineStatus:
     """The state of the machine; `trouble` is why there is no board, where there is none."""
     if session.phase is Phase.INCOMPATIBLE:
-        return MachineStatus(ERROR, 'fault', trouble)
+        return MachineStatus(ERROR, MachineState.FAULT, trouble)
     state = session.state
     if session.phase is not Phase.READY or state is None:
         if trouble or session.phase is Phase.CLOSED:
-            return MachineStatus(ERROR, 'disconnected', trouble)
-        return MachineStatus(WARN, 'booting', 'waiting for the board to say HELLO')
+            return MachineStatus(ERROR, MachineState.DISCONNECTED, trouble)
+        return MachineStatus(WARN, MachineState.BOOTING, 'waiting for the board to say HELLO')
     if state.mode is Mode.FAULT:
-        return MachineStatus(ERROR, 'fault', _FAULTS.get(state.fault, state.fault.name.lower()))
+        return MachineStatus(
+            ERROR, MachineState.FAULT, _FAULTS.get(state.fault, state.fault.name.lower())
+        )
     if state.mode in (Mode.ARMED, Mode.HOLDING) and not is_enabled_here:
         reason = 'the servos are on, but this bridge was not asked: call ~/enable'
-        return MachineStatus(WARN, 'unclaimed', reason)
+        return MachineStatus(WARN, MachineState.UNCLAIMED, reason)
     return _MODES[state.mode]
 
 
@@ -130,8 +133,13 @@ class LinkMonitor:
     @property
     def is_clear(self) -> bool:
         """There is a board, and no stop or fault to end, nor one that is still to be said."""
-        latched_or_unknown = ('disconnected', 'booting', 'stopped', 'fault')
-        return not self.session.is_stop_wanted and self.status.word not in latched_or_unknown
+        latched_or_unknown = (
+            MachineState.DISCONNECTED,
+            MachineState.BOOTING,
+            MachineState.STOPPED,
+            MachineState.FAULT,
+        )
+        return not self.session.is_stop_wanted and self.status.state not in latched_or_unknown
 
     @property
     def board(self) -> str:

@@ -39,11 +39,11 @@ from bridge.protocol import (
     Stop,
     is_newer,
 )
+from manipulator.deadlines import BOARD_DEADLINE
 from manipulator.errors import Refused
 
 RETRY_AFTER = 0.1
 MAX_TRIES = 4
-BOARD_SILENCE = 0.5
 MAX_BOOT = 5.0
 MODE_AFTER: dict[type, Mode] = {Disarm: Mode.DISARMED, Stop: Mode.STOPPED}
 SHOWN_BY_STATE = (Arm, Clear, Play)
@@ -127,9 +127,9 @@ class Session:
         """Retries what was not acknowledged; notices a board that fell silent."""
         if (
             self.phase in (Phase.CONNECTING, Phase.READY)
-            and now - self._received_at > BOARD_SILENCE
+            and now - self._received_at > BOARD_DEADLINE
         ):
-            events = self.closed(f'the board has been silent for {BOARD_SILENCE:g} s', now)
+            events = self.closed(f'the board has been silent for {BOARD_DEADLINE:g} s', now)
             self.phase = Phase.WAITING
             return events
         if self.phase is Phase.WAITING and now - self._opened_at > MAX_BOOT:

@@ -21,8 +21,8 @@ from manipulator.nodes.messages import pose_message, seconds
 from manipulator.nodes.path_goals import path_message
 from manipulator.nodes.qos import COMMAND, LATCHED
 from manipulator.pose import Pose
+from manipulator.states import UNKNOWN, MachineState, MotionMode, MotionResult
 
-UNHEARD = 'unknown'
 """The state of a machine that has said none."""
 
 ASKED_AT_MOST, ANSWERED_WITHIN = 4, 4.0
@@ -49,7 +49,7 @@ class Client:
         if self._owns_context:
             rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         self.node = Node('hexarm', namespace=namespace)
-        self.machine_state = DiagnosticStatus(message=UNHEARD)
+        self.machine_state = DiagnosticStatus(message=UNKNOWN)
         self.motion_status = DiagnosticStatus()
         self.diagnostics: dict[str, DiagnosticStatus] = {}
         self._states_heard = 0
@@ -141,9 +141,9 @@ class Client:
         before = self._states_heard
         self.wait(
             'enabling',
-            lambda: self.motion('mode') not in ('', 'disabled') or self._is_lost(before),
+            lambda: self.motion('mode') not in ('', MotionMode.DISABLED) or self._is_lost(before),
             DRIVEN_WITHIN,
-            lambda: self.machine_state.message == 'arming' and self._states_heard,
+            lambda: self.machine_state.message == MachineState.ARMING and self._states_heard,
         )
         if self._is_lost(before):
             raise Refused(f'not enabled: {self.summary}')
@@ -213,7 +213,11 @@ class Client:
         return is_there and bool(publisher.get_subscription_count() >= len(found))
 
     def _await_result(self, is_ours: Callable[[], bool], seconds: float) -> None:
-        ends = {'reached': None, 'refused': Refused, 'stopped': Stopped}
+        ends: dict[str, type[ManipulatorError] | None] = {
+            MotionResult.REACHED: None,
+            MotionResult.REFUSED: Refused,
+            MotionResult.STOPPED: Stopped,
+        }
         if self._setpoints is None:
             self._setpoints = self.node.create_subscription(
                 PoseStamped, 'setpoint', self._on_setpoint, COMMAND
@@ -263,6 +267,6 @@ class Client:
             self.diagnostics[entry.name] = entry
 
 
-WITHOUT_BOARD = (UNHEARD, 'disconnected', 'booting')
-ENABLING = ('arming', 'enabled', 'holding')
+WITHOUT_BOARD = (UNKNOWN, MachineState.DISCONNECTED, MachineState.BOOTING)
+ENABLING = (MachineState.ARMING, MachineState.ENABLED, MachineState.HOLDING)
 """States of a machine whose servos were asked for, until it can take goals."""

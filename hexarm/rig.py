@@ -27,6 +27,7 @@ from hexarm.client import ENABLING, Client, NotReady
 from hexarm.graph import Graph, machine_graph
 from hexarm.tapped_line import Tap, TappedLine
 from manipulator.errors import ManipulatorError, Refused
+from manipulator.states import MotionMode
 
 Pulses = tuple[float | None, ...]
 
@@ -206,12 +207,16 @@ class Rig:
                 if self.user.machine_state.message not in ENABLING:
                     self.enable()
                 self.set_parameters('trajectory', CIRCLE)
-                self.user.wait('goals', lambda: self.user.motion('mode') != 'disabled', 5.0)
+                self.user.wait(
+                    'goals', lambda: self.user.motion('mode') != MotionMode.DISABLED, 5.0
+                )
                 self.user.home()
                 self.user.trigger('trajectory/start_cycle')
-                self.user.wait('the circle', lambda: self.user.motion('mode') == 'cycle', 3.0)
+                self.user.wait(
+                    'the circle', lambda: self.user.motion('mode') == MotionMode.CYCLE, 3.0
+                )
                 self.user.spin(seconds)
-                if self.user.motion('mode') == 'cycle':
+                if self.user.motion('mode') == MotionMode.CYCLE:
                     return
             except ManipulatorError as error:
                 last = error

@@ -8,6 +8,7 @@ on receipt time alone.
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from manipulator.deadlines import MESSAGE_AGE
 from manipulator.errors import InvalidInput, ManipulatorError
 
 NOTABLE_OFFSET = 0.5
@@ -32,7 +33,7 @@ class StampFilter:
     that queued while this process was frozen come all at once, and do not agree for so long.
     """
 
-    maximum_age: float = 0.5
+    maximum_age: float = MESSAGE_AGE
     offset: float | None = None
     _last_stamp: float = float('-inf')
     _refused: tuple[float, float] | None = None

@@ -3,13 +3,11 @@
 import numpy as np
 
 from manipulator.arrays import Array
+from manipulator.deadlines import COMMAND_MEMORY
 from manipulator.errors import LimitViolated
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.static_deflection import commanded
-
-FORGET_AFTER = 0.25
-"""Seconds after which the last command is no longer taken as the joints' position."""
 
 SHORTEST_STEP, LONGEST_STEP = 0.02, 0.1
 """A joint may step as far as its speed allows within this time (messages may bunch up).
@@ -55,7 +53,7 @@ class SetpointValidator:
     def admit(self, T_base_platform: Pose, now: float) -> Array:
         """The joints (n,) at the setpoint; raises Unreachable or LimitViolated."""
         age = now - self._commanded_at
-        is_fresh = self._commanded is not None and age < FORGET_AFTER
+        is_fresh = self._commanded is not None and age < COMMAND_MEMORY
         near = self._commanded if is_fresh else self._measured
         if not is_fresh:
             self._unused = 0.0
@@ -78,7 +76,7 @@ class SetpointValidator:
         """
         if not self._joins_branches:
             return near
-        is_fresh = age < FORGET_AFTER
+        is_fresh = age < COMMAND_MEMORY
         is_regular = is_fresh and age < IN_STEP * self._last_age and self._last_age < IN_STEP * age
         if near is None or not is_regular or np.abs(self._last_step).max() < STANDING:
             return near

@@ -17,13 +17,14 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from bridge.calibration import Calibration
-from bridge.driver import Asked, BoardDriver
+from bridge.driver import BoardDriver, Request
 from bridge.link_thread import LinkThread, SerialPort
 from bridge.nodes.board_topics import LEVELS, BoardTopics
 from bridge.nodes.program_topics import ProgramTopics
 from bridge.nodes.stop_node import StopNode
 from bridge.servo_config import BoardConfig
 from bridge.stop_socket import StopSocket, stop_address
+from manipulator.deadlines import STATE_PERIOD
 from manipulator.errors import ManipulatorError
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.graph_check import received_by
@@ -34,8 +35,6 @@ from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.subscriptions import decoded
 
-HEARTBEAT = 0.5
-"""Seconds between two `machine_state`; receivers time out after three."""
 MOST_BYTES = 10_000
 """Of a joint_command: that of seven joints has less than 500."""
 
@@ -87,7 +86,7 @@ class SerialBridge(Node):
         self.create_subscription(Float64, 'gripper', self._on_gripper, COMMAND)
         create_late_service(self, Trigger, '~/clear_fault', self._on_clear_fault)
         create_late_service(self, SetBool, '~/enable', self._on_enable)
-        self._heartbeat = SteadyTimer(self, HEARTBEAT, lambda: self._link.post(self._beat))
+        self._heartbeat = SteadyTimer(self, STATE_PERIOD, lambda: self._link.post(self._beat))
         received_beside = received_by(self._stop_node)
         self._diagnostics = Diagnostics(
             self, self._report, ('joint_command',), list(received_beside)
@@ -111,15 +110,15 @@ class SerialBridge(Node):
     def _on_enable(self, call: Call) -> None:
         self._answer(call, partial(self._driver.enable, call.request.data))
 
-    def _answer(self, call: Call, ask: Callable[[], Asked]) -> None:
-        """Has it asked in the link's thread, and answered there as soon as the board has."""
+    def _answer(self, call: Call, ask: Callable[[], Request]) -> None:
+        """Has it request in the link's thread, and answered there as soon as the board has."""
 
         def begin() -> None:
-            asked = ask()
-            asked.future.add_done_callback(lambda done: answer(asked))
+            request = ask()
+            request.future.add_done_callback(lambda done: answer(request))
 
-        def answer(asked: Asked) -> None:
-            call.response.success, call.response.message = self._driver.answer(asked)
+        def answer(request: Request) -> None:
+            call.response.success, call.response.message = self._driver.answer(request)
             call.send()
 
         self._link.post(begin)
@@ -178,4 +177,4 @@ class SerialBridge(Node):
         }
         if validator.has_notable_offset:
             values['joint_command_clock_offset_s'] = validator.clock_offset
-        return LEVELS[current.level], current.reason or current.word, values
+        return LEVELS[current.level], current.reason or current.state, values

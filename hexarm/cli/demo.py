@@ -22,6 +22,7 @@ from hexarm.panel_process import offered_panel
 from manipulator.errors import Refused
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.states import MotionMode
 
 if TYPE_CHECKING:
     from hexarm.client import Client
@@ -143,7 +144,7 @@ def drive(client: 'Client', goal: Pose, *, is_possible: bool = True) -> None:
 
     busy = (Stopped, NotReady, Refused) if is_possible else (Stopped, NotReady)
     for tries_left in (2, 1, 0):
-        client.wait('the machine', lambda: client.motion('mode') != 'disabled', 10.0)
+        client.wait('the machine', lambda: client.motion('mode') != MotionMode.DISABLED, 10.0)
         try:
             client.go_to(goal)
         except busy as reason:

@@ -11,6 +11,7 @@ from hexarm.cli.statuses import INTERRUPTED, REFUSED
 from hexarm.cli.up import Interrupted, StopSignal
 from hexarm.namespaces import NobodyThere, namespace_of, nobody_in
 from manipulator.errors import Refused
+from manipulator.states import UNKNOWN, MachineState
 
 if TYPE_CHECKING:
     from hexarm.client import Client
@@ -83,17 +84,17 @@ def run(call: Call, arguments: argparse.Namespace) -> int:
 
 def remedy(client: 'Client', namespace: str) -> str:
     """What ends a stop or a fault, where the machine has one."""
-    if client.machine_state.message not in ('stopped', 'fault'):
+    if client.machine_state.message not in (MachineState.STOPPED, MachineState.FAULT):
         return ''
     return f'. Look at the machine, then: hexarm clear {namespace}'
 
 
 def await_machine(client: 'Client') -> None:
     """Waits until the machine has said its state; NobodyThere tells where it was looked for."""
-    from hexarm.client import UNHEARD, NotReady  # noqa: PLC0415 (needs ROS)
+    from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
 
     try:
-        client.wait('a machine', lambda: client.machine_state.message != UNHEARD, HEARD_WITHIN)
+        client.wait('a machine', lambda: client.machine_state.message != UNKNOWN, HEARD_WITHIN)
     except NotReady as error:
         raise NobodyThere(
             nobody_in(client.node.get_namespace(), client.topics, client.domain)

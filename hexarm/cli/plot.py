@@ -9,6 +9,7 @@ from hexarm.cli.answers import Answer, answering, picture_file
 from hexarm.namespaces import namespace_of
 from manipulator.errors import InvalidInput
 from manipulator.formatting import counted
+from manipulator.states import MotionResult
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -47,7 +48,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
         draw(summary, begin, end, picture)
         files = [picture]
     distance, angle = part.pose_error.values.T
-    refused = sum(e.count for e in part.events if e.what == 'refused')
+    refused = sum(e.count for e in part.events if e.what == MotionResult.REFUSED)
     figures = {
         'namespace': summary.namespace,
         'seconds': round(end - begin, 3),

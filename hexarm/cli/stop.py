@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Protocol
 from bridge.stop_socket import domain_here, send_stop, stop_address
 from hexarm.cli.statuses import REFUSED
 from hexarm.namespaces import NobodyThere, namespace_of, nobody_in
+from manipulator.states import MachineState
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
@@ -27,7 +28,7 @@ OBEYED_WITHIN = 3.0
 AGAIN_AFTER = 0.1
 """Seconds from one STOP to the next, as long as it has not."""
 
-STOPPED = 'stopped'
+STOPPED = MachineState.STOPPED
 
 
 class Button(Protocol):

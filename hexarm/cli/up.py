@@ -21,6 +21,7 @@ from hexarm.machines import described, family, load, read
 from hexarm.namespaces import NAMESPACE
 from hexarm.panel_process import panel_process, panel_words
 from manipulator.errors import ManipulatorError, Refused
+from manipulator.states import UNKNOWN, MachineState, MotionMode
 
 if TYPE_CHECKING:
     from hexarm.client import Client
@@ -31,7 +32,12 @@ LOOKS = 0.7
 """Seconds in which a graph that runs already is found: at most 0.46 s in 64 tries."""
 OURS = ('trajectory', 'ik', 'pose', 'serial_bridge')
 """Nodes of which a namespace has one; a fake board may be there for `--port` to name."""
-SERVOS_OFF = ('unknown', 'disconnected', 'booting', 'disarmed')
+SERVOS_OFF = (
+    UNKNOWN,
+    MachineState.DISCONNECTED,
+    MachineState.BOOTING,
+    MachineState.DISARMED,
+)
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
 NAME = 'a shipped name or the path of a machine file'
 SHORT = ', '.join(f'{kind} is short for {name}' for kind, name in MACHINES.items())
@@ -200,7 +206,7 @@ def enable(client: 'Client', namespace: str) -> None:
             return
         except Refused:
             client.spin(SETTLES)
-            if client.machine_state.message != 'stopped':
+            if client.machine_state.message != MachineState.STOPPED:
                 raise
         print(
             f'{client.summary}. It is enabled once you have looked at it and called\n'
@@ -208,7 +214,7 @@ def enable(client: 'Client', namespace: str) -> None:
             f'or  ros2 service call /{space}/serial_bridge/clear_fault std_srvs/srv/Trigger',
             flush=True,
         )
-        while client.machine_state.message == 'stopped':
+        while client.machine_state.message == MachineState.STOPPED:
             client.spin(0.2)
 
 
@@ -239,11 +245,13 @@ def _go_to_park(client: 'Client') -> None:
     """Raises Refused, Stopped or NotReady where it does not get there."""
     from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
 
-    if client.machine_state.message != 'enabled':
+    if client.machine_state.message != MachineState.ENABLED:
         raise Refused(f'the machine is {client.machine_state.message}')
     print('parking; Ctrl-C again switches the servos off where they are', flush=True)
     with contextlib.suppress(NotReady):
-        client.wait('the pose', lambda: client.motion('mode') not in ('', 'disabled'), 1.0)
+        client.wait(
+            'the pose', lambda: client.motion('mode') not in ('', MotionMode.DISABLED), 1.0
+        )
     client.park()
 
 

@@ -16,6 +16,7 @@ from hexarm.panel.view import View
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.states import MachineState
 
 UNITS = np.array([1e3] * 3 + [180.0 / np.pi] * 3)
 NAMES = tuple(f'{axis} [{unit}]' for axis, unit in zip(AXES, ['mm'] * 3 + ['°'] * 3, strict=True))
@@ -85,12 +86,12 @@ def slider_marks(marks: tuple[tuple[float, str], ...]) -> tuple[Any, ...]:
 
 
 RED, GREEN, GREY = (218, 54, 51), (46, 160, 67), (68, 76, 86)
-STATE_COLOURS = {
-    'enabled': '#40c08c',
-    'arming': '#f5b041',
-    'holding': '#f5b041',
-    'stopped': '#e74c3c',
-    'fault': '#e74c3c',
+STATE_COLOURS: dict[str, str] = {
+    MachineState.ENABLED: '#40c08c',
+    MachineState.ARMING: '#f5b041',
+    MachineState.HOLDING: '#f5b041',
+    MachineState.STOPPED: '#e74c3c',
+    MachineState.FAULT: '#e74c3c',
 }
 DIM = '#8b949e'
 

@@ -17,13 +17,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from manipulator.arrays import Array, frozen
+from manipulator.deadlines import RELEASE
 from manipulator.errors import InvalidInput
-
-SILENCE = 0.25
-"""Without a beat for longer than this, nobody is holding."""
-
-LATE = 0.25
-"""A beat that answers an older tick comes from a page or a line that stands still."""
 
 ANOTHER = 'another page has the joystick'
 LAPSED = 'the page was silent: press again'
@@ -68,7 +63,7 @@ class Joystick:
             return
         if self._hold is not None and self._hold.page != page:
             self._end(page, beat.press, ANOTHER)
-        elif beat.tick is not None and not 0.0 <= now - beat.tick <= LATE:
+        elif beat.tick is not None and not 0.0 <= now - beat.tick <= RELEASE:
             self._end(page, beat.press, STALE)
         elif self._hold is not None and self._hold.press == beat.press:
             self._hold.received_at = now
@@ -110,7 +105,7 @@ class Joystick:
         return self._reasons.get(page, '')
 
     def _expire(self, now: float) -> None:
-        if self._hold is not None and now - self._hold.received_at > SILENCE:
+        if self._hold is not None and now - self._hold.received_at > RELEASE:
             self._end(self._hold.page, self._hold.press, LAPSED)
 
     def _end(self, page: int, press: int, reason: str) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from manipulator.arrays import Array
 from manipulator.frames import Frames
 from manipulator.pose import Pose
+from manipulator.states import UNKNOWN
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +39,7 @@ class View:
     measured: Stance | None = None
     commanded: Stance | None = None
     frames: Frames = field(default_factory=Frames)
-    machine_state: str = 'unknown'
+    machine_state: str = UNKNOWN
     machine_reason: str = ''
     mode: str = ''
     motion: str = ''

@@ -17,6 +17,7 @@ from hexarm.recording.run_summary import Event, RunSummary, Series
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.pose import Pose
+from manipulator.states import MachineState, MotionResult
 
 SEPARATOR = '=' * 80
 PLAIN = re.compile(r'bool|byte|char|float(32|64)|u?int(8|16|32|64)|w?string')
@@ -68,7 +69,14 @@ JOINTS = ('joint_command', 'joint_states')
 STATES = ('machine_state', 'motion_status')
 TOPICS = (*POSES, *JOINTS, *STATES, 'emergency_stop')
 DIAGNOSTICS = '/diagnostics'
-BAD_STATES = ('disconnected', 'stopped', 'fault', 'refused', 'holding')
+BAD_STATES = (
+    MachineState.DISCONNECTED,
+    MachineState.STOPPED,
+    MachineState.FAULT,
+    MachineState.HOLDING,
+    MotionResult.REFUSED,
+    MotionResult.STOPPED,
+)
 COUNTERS = ('setpoints_refused', 'twists_refused', 'joint_states_refused', 'refusals')
 """Diagnostics that count refusals; those of goals stand in motion_status, each with its reason."""
 
@@ -149,7 +157,9 @@ class LogParser:
             self._reported[f'{node} {key}'] = count
             if isinstance(before, int) and count > before:
                 reason = values.get('last_twist_refusal' if 'twist' in key else 'last_refusal', '')
-                self.events.append(Event(at, node, 'refused', reason, True, count - before))
+                self.events.append(
+                    Event(at, node, MotionResult.REFUSED, reason, True, count - before)
+                )
 
     def _on_state(self, name: str, at: float, message: Any) -> None:
         values = {pair.key: pair.value for pair in message.values}

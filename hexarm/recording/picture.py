@@ -14,10 +14,17 @@ from matplotlib.figure import Figure
 
 from hexarm.recording.run_summary import Event, RunSummary, Series
 from manipulator.arrays import Array
+from manipulator.states import MachineState, MotionResult
 
 ASKED, DONE, GOAL, BAD, NOTE = '#9aa5b1', '#0b6e99', '#d4a017', '#c1121f', '#4a5a6a'
 JOINTS = ('#0b6e99', '#3aa6b9', '#6a994e', '#d4a017', '#d1603d', '#8e4162', '#5c677d')
-STATES = {'enabled': '#6a994e', 'holding': '#d4a017', 'stopped': BAD, 'fault': BAD}
+RESULTS: dict[str, str] = {MotionResult.MOVING: DONE, MotionResult.PLANNING: '#3aa6b9'}
+STATES: dict[str, str] = {
+    MachineState.ENABLED: '#6a994e',
+    MachineState.HOLDING: '#d4a017',
+    MachineState.STOPPED: BAD,
+    MachineState.FAULT: BAD,
+}
 AXES = ('x (mm)', 'roll (°)', 'y (mm)', 'pitch (°)', 'z (mm)', 'yaw (°)')
 SMALLEST_SPAN = 0.2
 """Of an axis (mm, °): what does not move is not drawn as if it did."""
@@ -26,7 +33,12 @@ LISTED = 16
 NUMBER_WIDTH = 0.021
 """Of an event's number, as part of the axis of time."""
 
-QUIET = ('idle', 'planning', 'moving', 'reached')
+QUIET = (
+    MotionResult.IDLE,
+    MotionResult.PLANNING,
+    MotionResult.MOVING,
+    MotionResult.REACHED,
+)
 
 
 def draw(summary: RunSummary, begin: float, end: float, picture: Path) -> None:
@@ -87,7 +99,7 @@ def _states(axes: Axes, events: tuple[Event, ...], begin: float, end: float) -> 
         for event, until in zip(changes, [*(e.time for e in changes[1:]), end], strict=True):
             left, right = max(event.time, begin), min(until, end)
             colour = STATES.get(event.what, BAD if event.is_bad else ASKED)
-            colour = {'moving': DONE, 'planning': '#3aa6b9'}.get(event.what, colour)
+            colour = RESULTS.get(event.what, colour)
             if right > left:
                 axes.barh(y, right - left, 0.42, left, align='edge', color=colour, alpha=0.55)
             if right - left > 0.09 * (end - begin):

@@ -18,10 +18,8 @@ from std_msgs.msg import Bool, Float64, String
 from std_srvs.srv import Trigger
 
 from manipulator.arrays import Array, frozen
+from manipulator.deadlines import HAND_OVER, RELEASE
 from manipulator.nodes.qos import COMMAND, EVERY_WORD, LATCHED
-
-PATIENCE = 0.25
-"""Seconds in which the trajectory node must confirm that it brakes."""
 
 LATCHED_BY = 'EMERGENCY STOP, because {}: serial_bridge/clear_fault ends it'
 NO_SUBSCRIBER = 'no subscriber on emergency_stop: switch off the servo supply'
@@ -50,8 +48,8 @@ class StopButton:
 
     def watch(self) -> None:
         """Loses patience with a trajectory node that does not answer."""
-        if self._asked_at is not None and time.monotonic() - self._asked_at > PATIENCE:
-            self._stop_at_once(f'the trajectory node did not answer within {PATIENCE:g} s')
+        if self._asked_at is not None and time.monotonic() - self._asked_at > RELEASE:
+            self._stop_at_once(f'the trajectory node did not answer within {RELEASE:g} s')
 
     def close(self, patience: Duration) -> None:
         """Waits until all subscribers have received it: then the publisher may end."""
@@ -77,8 +75,6 @@ class StopButton:
 
 NO_TWIST = frozen([0.0] * 6)
 
-HAND_OVER = 0.3
-"""Seconds of silence after which the trajectory node regards the source as released."""
 
 HALF_OPEN = 0.5
 """Of a gripper that has not been moved yet: where a machine parks it."""

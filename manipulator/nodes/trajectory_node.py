@@ -33,6 +33,7 @@ from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.subscriptions import FilteredCallback
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
+from manipulator.states import MotionResult
 from manipulator.teleop.arbiter import PEOPLE
 from manipulator.trajectory.controller import MEASUREMENT_DELAY, MotionController, lag_of
 from manipulator.trajectory.following_error import Tolerances
@@ -177,9 +178,9 @@ class TrajectoryNode(Node):
     def _publish(self, new: MotionStatus) -> None:
         """Publishes a status; refusals and stops are logged."""
         text = f'{new.result}: {new.reason}' if new.reason else new.result
-        if new.result == 'refused':
+        if new.result == MotionResult.REFUSED:
             self.get_logger().warning(f'goal {text}', throttle_duration_sec=1.0)
-        elif new.result == 'stopped':
+        elif new.result == MotionResult.STOPPED:
             self.get_logger().info(text)
         values = {
             'mode': new.mode,
@@ -190,7 +191,7 @@ class TrajectoryNode(Node):
         if new.percent is not None:
             values['percent'] = str(new.percent)
         name = self.get_fully_qualified_name().lstrip('/')
-        level = WARN if new.result == 'refused' else OK
+        level = WARN if new.result == MotionResult.REFUSED else OK
         self._statuses.publish(status(level, name, text, values))
 
     def _report(self) -> Report:

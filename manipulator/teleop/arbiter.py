@@ -1,6 +1,6 @@
 """Who jogs the machine: a person before the computer, among people the first to move.
 
-A source owns the machine until it has been silent for SILENCE. A source that was rejected,
+A source owns the machine until it has been silent for RELEASE. A source that was rejected,
 overridden or stopped must stay silent before it is accepted again: so nothing resumes by itself.
 Times are monotonic receipt times in seconds.
 
@@ -14,6 +14,7 @@ for up to 20 s) does no harm, and does not count for long.
 from dataclasses import dataclass, field, replace
 from typing import NoReturn
 
+from manipulator.deadlines import RELEASE
 from manipulator.errors import Refused
 
 OVERLAP = 0.25
@@ -68,9 +69,6 @@ class SoleSource:
         return step <= 0 or has_jumped or publishers > self.publishers
 
 
-SILENCE = 0.25
-"""Seconds without a message after which a source has released."""
-
 COMPUTER = 'cmd_vel'
 PEOPLE = ('cmd_vel/joy', 'cmd_vel/panel', 'cmd_vel/keyboard')
 SOURCES = (COMPUTER, *PEOPLE)
@@ -89,7 +87,7 @@ class Arbiter:
 
         is_computer_busy: a goal, path or cycle is being driven.
         """
-        if now - self._received_at.get(source, float('-inf')) > SILENCE:
+        if now - self._received_at.get(source, float('-inf')) > RELEASE:
             self._blocked.pop(source, None)
         owner = self.owner(now)
         self._received_at[source] = now
@@ -105,7 +103,7 @@ class Arbiter:
 
     def owner(self, now: float) -> str:
         """The source that owns the machine, '' where none does."""
-        if self._owner and now - self._received_at[self._owner] > SILENCE:
+        if self._owner and now - self._received_at[self._owner] > RELEASE:
             self._owner = ''
         return self._owner
 

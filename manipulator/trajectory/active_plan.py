@@ -6,19 +6,20 @@ At a scaling factor of 1 the plan's own time runs as planned, at 0 it is halted.
 from dataclasses import dataclass
 
 from manipulator.errors import Refused
+from manipulator.states import MotionMode
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.joint_move import JointMove
 from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import Hold, MotionState, Plan
 from manipulator.trajectory.point_to_point import LineMove, MoveInMotion
 
-MODES: dict[type, str] = {
-    Hold: 'hold',
-    LineMove: 'move',
-    MoveInMotion: 'move',
-    JointMove: 'move',
-    Cycle: 'cycle',
-    TimedPath: 'path',
+MODES: dict[type, MotionMode] = {
+    Hold: MotionMode.HOLD,
+    LineMove: MotionMode.MOVE,
+    MoveInMotion: MotionMode.MOVE,
+    JointMove: MotionMode.MOVE,
+    Cycle: MotionMode.CYCLE,
+    TimedPath: MotionMode.PATH,
 }
 
 
@@ -41,7 +42,7 @@ class ActivePlan:
         return self.plan.at(self.plan.duration)
 
     @property
-    def mode(self) -> str:
+    def mode(self) -> MotionMode:
         """The motion mode of `motion_status`."""
         return MODES[type(self.plan)]
 

@@ -16,6 +16,7 @@ from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, NoSolution, Refused
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.states import MotionResult
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.executor import STOPPED
@@ -176,9 +177,12 @@ class MotionController:
     def cycle_answer(self, stamp: float) -> Answer | None:
         """Whether the cycle of that stamp has begun, or why not; None while that is open."""
         status = self.supervisor.status
-        if status.goal_stamp == stamp and status.result == 'moving':
+        if status.goal_stamp == stamp and status.result == MotionResult.MOVING:
             return Answer(True, 'cycling until stopped')
-        if status.goal_stamp == stamp and status.result in ('refused', 'stopped'):
+        if status.goal_stamp == stamp and status.result in (
+            MotionResult.REFUSED,
+            MotionResult.STOPPED,
+        ):
             return Answer(False, status.reason or status.result)
         if self._is_newest(stamp):
             return None
@@ -186,7 +190,9 @@ class MotionController:
 
     def refuse(self, stamp: float, error: ManipulatorError) -> None:
         """Reports the goal or path of that stamp as refused."""
-        self.news.add(MotionStatus(self.supervisor.status.mode, 'refused', stamp, str(error)))
+        self.news.add(
+            MotionStatus(self.supervisor.status.mode, MotionResult.REFUSED, stamp, str(error))
+        )
 
     # The tick
 

@@ -13,6 +13,7 @@ from manipulator.arrays import Array
 from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.states import MotionMode, MotionResult
 from manipulator.trajectory.active_plan import ActivePlan, TimeScaling
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
@@ -71,7 +72,7 @@ class Executor:
         waiting = self._planning.goal or self._next
         if isinstance(waiting, Goal):
             return waiting.pose
-        return self._active.end.pose if self._active.mode == 'move' else None
+        return self._active.end.pose if self._active.mode == MotionMode.MOVE else None
 
     @property
     def is_at_rest(self) -> bool:
@@ -97,12 +98,12 @@ class Executor:
         """Notes that a path of that stamp is being planned; `dropped` is the reason if it ends."""
         self._refuse_while_jogged()
         self.expected = stamp
-        self._report('planning', stamp)
+        self._report(MotionResult.PLANNING, stamp)
 
     def refuse(self, stamp: float, reason: str) -> None:
         """Reports the expected path as refused."""
         self.expected = None
-        self._report('refused', stamp, reason)
+        self._report(MotionResult.REFUSED, stamp, reason)
 
     def jog(self, command: JogCommand | None) -> None:
         """The jog command of the owning source from now on; None without an owner.
@@ -134,7 +135,7 @@ class Executor:
         self._drop_path(STOPPED)
         self._jog_command = None
         if self._jogging is None and self._active.is_hold:
-            self._report('stopped', stamp, reason)
+            self._report(MotionResult.STOPPED, stamp, reason)
         else:
             self._scaling.is_stopping = True
 
@@ -169,7 +170,7 @@ class Executor:
         except Unreachable as error:
             self._drop()
             self._begin(Hold(before), self._active.stamp)
-            self._report('stopped', self._active.stamp, str(error))
+            self._report(MotionResult.STOPPED, self._active.stamp, str(error))
             return before
         return pose
 
@@ -213,12 +214,12 @@ class Executor:
         self.joints = jogging.motion.joints
         is_stopping = self._scaling.is_stopping
         if jogging.motion.is_at_rest and (self._jog_command is None or is_stopping):
-            result = 'stopped' if is_stopping else 'idle'
+            result = MotionResult.STOPPED if is_stopping else MotionResult.IDLE
             self._jogging, self._scaling.is_stopping = None, False
             self._begin(Hold(jogging.motion.pose), 0.0)
             self._report(result, 0.0)
         else:
-            self.status = MotionStatus('jog', 'moving', 0.0, jogging.reason)
+            self.status = MotionStatus(MotionMode.JOG, MotionResult.MOVING, 0.0, jogging.reason)
         return jogging.motion.pose
 
     def _plan(self) -> None:
@@ -229,11 +230,11 @@ class Executor:
             return
         failed = self._planning.step(self._active, self.joints)
         if failed is not None and failed.is_final:
-            self._report('refused', failed.goal.stamp, str(failed.error))
+            self._report(MotionResult.REFUSED, failed.goal.stamp, str(failed.error))
         elif failed is not None:
             self._next, self._scaling.is_stopping = failed.goal, True
         elif self._planning.is_notable:
-            self._report('planning', self.newest_stamp)
+            self._report(MotionResult.PLANNING, self.newest_stamp)
 
     def _join(self, planned: Planned) -> None:
         """Switches to a plan that begins at this tick, or has begun within it."""
@@ -245,9 +246,9 @@ class Executor:
     def _begin(self, plan: Plan, stamp: float) -> None:
         self._active, self._planning.ready = ActivePlan(plan, stamp), None
         if not self._active.is_hold:
-            self._report('moving', stamp)
+            self._report(MotionResult.MOVING, stamp)
 
-    def _report(self, result: str, stamp: float, reason: str = '') -> None:
+    def _report(self, result: MotionResult, stamp: float, reason: str = '') -> None:
         self.status = MotionStatus(self._active.mode, result, stamp, reason)
 
     def _advance(self) -> None:
@@ -260,13 +261,13 @@ class Executor:
         if ready is not None and self._active.time >= ready.begin:
             self._join(ready)
         if self._scaling.is_stopping and self._scaling.factor <= 0.0:
-            self._settle('stopped')
+            self._settle(MotionResult.STOPPED)
         elif self._active.is_over:
-            self._settle('reached')
-        elif self.status.result == 'moving':
+            self._settle(MotionResult.REACHED)
+        elif self.status.result == MotionResult.MOVING:
             self.status = replace(self.status, percent=self._active.percent)
 
-    def _settle(self, result: str) -> None:
+    def _settle(self, result: MotionResult) -> None:
         """The plan has ended: hold its last pose, or begin the waiting goal."""
         waiting, self._next = self._next, None
         stamp = self._active.stamp
@@ -282,7 +283,7 @@ class Executor:
             if self._planning.goal is None:
                 self._planning.request(waiting)
         else:
-            command = self._jog_command if result == 'stopped' else None
+            command = self._jog_command if result == MotionResult.STOPPED else None
             self._report(result, stamp, _taken_over_by(command) if command else '')
 
 

@@ -7,14 +7,13 @@ from math import radians
 import numpy as np
 
 from manipulator.arrays import Array, frozen
+from manipulator.deadlines import FOLLOWING_PATIENCE
 from manipulator.machine import Machine
+from manipulator.states import MotionResult
 from manipulator.trajectory.motion_status import MotionStatus
 
 WINDOW = 0.5
 """Seconds by which the joints may lag behind."""
-
-PATIENCE = 0.3
-"""Seconds for which the error may exceed its tolerance."""
 
 ARRIVAL_PATIENCE = 1.0
 """Seconds that the joints may take to arrive once a plan's time is over."""
@@ -60,7 +59,7 @@ class FollowingError:
         self._tolerances = tolerances
         self._commanded: deque[Array] = deque(maxlen=max(round(WINDOW / dt), 1))
         self._is_outside = 0
-        self._allowed_ticks = round(PATIENCE / dt)
+        self._allowed_ticks = round(FOLLOWING_PATIENCE / dt)
         self._ticks_outside = 0
         self._worst = ''
         self._measured: Array | None = None
@@ -128,11 +127,11 @@ class Arrival:
         """
         if status is self._judged:
             return None
-        is_late = status.result == 'reached' and bool(deviation)
+        is_late = status.result == MotionResult.REACHED and bool(deviation)
         self._waited = self._waited + 1 if is_late else 0
         if is_late and self._waited * self._dt < ARRIVAL_PATIENCE:
             return None
         self._judged, self._waited = status, 0
         if is_late:
-            return MotionStatus(status.mode, 'stopped', status.goal_stamp, deviation)
+            return MotionStatus(status.mode, MotionResult.STOPPED, status.goal_stamp, deviation)
         return status

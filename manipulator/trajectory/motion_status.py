@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from manipulator.states import MotionMode, MotionResult
+
 
 @dataclass(frozen=True)
 class MotionStatus:
@@ -12,8 +14,8 @@ class MotionStatus:
     what limits a jog. percent: elapsed share of a path's time.
     """
 
-    mode: str = 'hold'
-    result: str = 'idle'
+    mode: MotionMode = MotionMode.HOLD
+    result: MotionResult = MotionResult.IDLE
     goal_stamp: float = 0.0
     reason: str = ''
     percent: int | None = None
@@ -41,7 +43,7 @@ class MotionNews:
             return
         self._last = status
         self._new.append(status)
-        if status.result == 'refused':
+        if status.result == MotionResult.REFUSED:
             self.refusals += 1
             self.last_refusal = status.reason
 

@@ -11,6 +11,7 @@ from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.states import MotionResult
 from manipulator.trajectory.executor import OVERTAKEN, Executor
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionNews, MotionStatus
@@ -86,7 +87,7 @@ class PathPlanning:
         if self._job is not None:
             self.cancel()
             mode = self._supervisor.status.mode
-            self._news.add(MotionStatus(mode, 'stopped', self._stamp, reason))
+            self._news.add(MotionStatus(mode, MotionResult.STOPPED, self._stamp, reason))
 
     def _pursue(self, job: 'Job[TimedPath | Pose]', executor: Executor) -> None:
         try:

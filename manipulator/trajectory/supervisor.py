@@ -10,36 +10,31 @@ from dataclasses import replace
 import numpy as np
 
 from manipulator.arrays import Array
+from manipulator.deadlines import POSE_DEADLINE, POSE_PAUSE, STATE_DEADLINE
 from manipulator.errors import Refused
 from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.states import MachineState, MotionMode, MotionResult
 from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.following_error import Arrival, FollowingError, Tolerances
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.worker import Worker
 
-HOLDING = 'holding'
-DRIVABLE = ('enabled', HOLDING)
+DRIVABLE = (MachineState.ENABLED, MachineState.HOLDING)
 """Machine states in which the board follows setpoints; it holds after its deadline."""
 
 REMEDIES = {
     '': 'no machine_state received from serial_bridge',
-    'disconnected': 'the board does not answer',
-    'booting': 'its board is still booting',
-    'arming': 'its servos are being switched on',
-    'playing': 'its board plays a program of its own',
-    'stopped': 'clear the stop first',
-    'fault': 'clear the fault first',
+    MachineState.DISCONNECTED: 'the board does not answer',
+    MachineState.BOOTING: 'its board is still booting',
+    MachineState.ARMING: 'its servos are being switched on',
+    MachineState.PLAYING: 'its board plays a program of its own',
+    MachineState.STOPPED: 'clear the stop first',
+    MachineState.FAULT: 'clear the fault first',
 }
 """What is missing before the machine can be driven, by machine state."""
-
-POSE_PATIENCE, POSE_DEADLINE = 0.2, 0.5
-"""Seconds without a pose after which motion pauses, and after which it is dropped."""
-
-STATE_DEADLINE = 1.5
-"""Seconds without a machine state after which the last one is discarded."""
 
 PRESENT = 0.1
 """Of the following tolerance: how far joints may be from the pose at takeover."""
@@ -47,11 +42,13 @@ PRESENT = 0.1
 MISMATCHES = 50
 """Poses in a row that do not match the joints before that is reported: some are only late."""
 
-RESULTS = ('reached', 'refused', 'stopped')
+RESULTS = (MotionResult.REACHED, MotionResult.REFUSED, MotionResult.STOPPED)
 """Results of goals: still reported where a machine that held is taken over again at once."""
 
-DISABLED = MotionStatus('disabled', 'idle', 0.0, 'the servos are not enabled')
-CONNECTING = MotionStatus('disabled', 'idle', 0.0, 'the board does not follow setpoints yet')
+DISABLED = MotionStatus(MotionMode.DISABLED, MotionResult.IDLE, 0.0, 'the servos are not enabled')
+CONNECTING = MotionStatus(
+    MotionMode.DISABLED, MotionResult.IDLE, 0.0, 'the board does not follow setpoints yet'
+)
 
 
 class NotYet(Refused):
@@ -119,7 +116,7 @@ class MotionSupervisor:
     def note_machine_state(self, state: str, is_followed: bool, is_measured: bool = False) -> None:
         """The reported machine state; whether the board follows setpoints, and measures."""
         self._is_measured = is_measured
-        is_lost = state not in DRIVABLE or (state == HOLDING and state != self._state)
+        is_lost = state not in DRIVABLE or (state == MachineState.HOLDING and state != self._state)
         is_new = state in DRIVABLE and self._state not in DRIVABLE
         was_followed, self._state, self._is_followed = self._is_followed, state, is_followed
         if is_lost:
@@ -156,7 +153,7 @@ class MotionSupervisor:
         if seconds > POSE_DEADLINE:
             self.release(f'no pose received for {POSE_DEADLINE:g} s')
         elif self._executor is not None:
-            self._executor.blind(seconds > POSE_PATIENCE)
+            self._executor.blind(seconds > POSE_PAUSE)
 
     def note_bridge_silence(self, seconds: float) -> None:
         """Seconds without a machine state: that of a dead bridge must not be used."""
@@ -176,7 +173,7 @@ class MotionSupervisor:
             stamp = self._executor.newest_stamp
             self._executor.close()
             self._executor = self._following_error = None
-            self.status = MotionStatus('disabled', 'stopped', stamp, reason)
+            self.status = MotionStatus(MotionMode.DISABLED, MotionResult.STOPPED, stamp, reason)
 
     def override(self, rate: float) -> None:
         """Scales all motion, now and later; Refused outside [0, 1]."""
@@ -220,7 +217,7 @@ class MotionSupervisor:
         if self._executor is None:
             return True
         status = self._executor.status
-        is_awaited = self._is_followed and status.result == 'reached'
+        is_awaited = self._is_followed and status.result == MotionResult.REACHED
         return self._executor.is_at_rest and (self._arrival.has_judged(status) or not is_awaited)
 
     def _distance_words(self) -> str:
@@ -268,7 +265,9 @@ class MotionSupervisor:
                 f'its pose does not match {kinematics.joint_names[worst]}, which differs by '
                 f'{gaps[worst]:.2g} {kinematics.joint_unit}: disable and enable it; it then parks'
             )
-            self.status = MotionStatus('disabled', 'idle', self.status.goal_stamp, self._mismatch)
+            self.status = MotionStatus(
+                MotionMode.DISABLED, MotionResult.IDLE, self.status.goal_stamp, self._mismatch
+            )
 
     def _clear_mismatch(self) -> None:
         if self._mismatch:

@@ -64,7 +64,7 @@ class Rig:
         self.run(0.3)
         assert self.answered(self.driver.enable(True))[0]
         self.run(1.0)
-        assert self.state.status.word == 'enabled'
+        assert self.state.status.state == 'enabled'
 
     def command(self, positions, names=None):
         stamp = EPOCH + self.now
@@ -102,7 +102,7 @@ def test_a_machine_that_was_stopped_is_followed_again_with_the_next_frame(enable
     enabled.command(enabled.park)
     enabled.answered(enabled.driver.stop())
     enabled.answered(enabled.driver.clear_fault())
-    assert (enabled.state.status.word, enabled.state.is_followed) == ('enabled', False)
+    assert (enabled.state.status.state, enabled.state.is_followed) == ('enabled', False)
     enabled.command(enabled.park)
     assert enabled.state.is_followed
 
@@ -123,7 +123,7 @@ def test_what_is_not_enabled_says_why_it_takes_no_command(rig):
     rig.enable()
     rig.command(rig.park)
     rig.run(0.3)
-    assert rig.state.status.word == 'holding'
+    assert rig.state.status.state == 'holding'
     rig.driver.stop()
     rig.run(0.1)
     with pytest.raises(Refused, match=r'^stopped \(until ~/clear_fault is called\)$'):
@@ -262,4 +262,4 @@ def test_what_goes_wrong_is_announced_in_words(enabled):
     enabled.run(0.6)
     assert enabled.troubles[0] == 'DISARM: no answer from the board after 4 tries'
     assert 'silent' in enabled.troubles[1]
-    assert enabled.state.status.word == 'disconnected'
+    assert enabled.state.status.state == 'disconnected'

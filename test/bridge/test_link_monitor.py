@@ -55,12 +55,12 @@ def receive(monitor, heard, now=0.0):
 
 
 def test_words_from_the_port_to_the_board(monitor):
-    assert monitor.status.word == 'disconnected'
+    assert monitor.status.state == 'disconnected'
     monitor.session.opened(0.0)
     monitor.note(Opened(), 0.0)
-    assert monitor.status.word == 'booting'
+    assert monitor.status.state == 'booting'
     monitor.note(Disconnected('nobody said HELLO'), 5.0)
-    assert (monitor.status.word, monitor.status.reason) == ('disconnected', 'nobody said HELLO')
+    assert (monitor.status.state, monitor.status.reason) == ('disconnected', 'nobody said HELLO')
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_one_word_for_each_mode(monitor, mode, word):
     monitor.note(Connected(HELLO), 0.0)
     monitor.note(Acknowledged(Arm(PARK)), 0.0)
     receive(monitor, state(mode))
-    assert monitor.status.word == word
+    assert monitor.status.state == word
 
 
 @pytest.mark.parametrize('mode', [Mode.DISARMED, Mode.ARMING, Mode.ARMED, Mode.PLAYING])
@@ -99,13 +99,13 @@ def test_a_stop_and_a_fault_are_to_be_cleared_and_an_absent_board_is_to_be_asked
 def test_a_board_that_somebody_else_armed_is_not_enabled(monitor):
     monitor.note(Connected(HELLO), 0.0)
     receive(monitor, state(Mode.ARMED))
-    assert monitor.status.word == 'unclaimed'
+    assert monitor.status.state == 'unclaimed'
     monitor.note(Acknowledged(Arm(PARK)), 0.0)
-    assert monitor.status.word == 'enabled'
+    assert monitor.status.state == 'enabled'
     monitor.note(Disconnected('gone'), 0.0)
     monitor.note(Connected(HELLO), 0.0)
     receive(monitor, state(Mode.ARMED))
-    assert monitor.status.word == 'unclaimed'
+    assert monitor.status.state == 'unclaimed'
 
 
 def test_the_fault_is_named(monitor):

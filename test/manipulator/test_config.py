@@ -91,7 +91,7 @@ def test_value_inside_a_list_is_named_by_its_place():
     ('text', 'word'),
     [
         ('a: &x 1\nb: *x', 'aliases'),
-        ('a: 1\na: 2', 'twice'),
+        ('a: 1\na: 2', 'duplicated'),
         ('a: !!python/object/apply:os.system ["true"]', 'python/object'),
         ('- 1\n- 2', 'a list'),
         ('', 'nothing'),

@@ -77,7 +77,7 @@ class Loop:
 
     def until(self, word, ticks=400):
         for _ in range(ticks):
-            if self.monitor.status.word == word:
+            if self.monitor.status.state == word:
                 return
             self._step()
         raise AssertionError(f'{self.monitor.status} is not {word}')
@@ -89,7 +89,7 @@ class Loop:
         self.run(5)
 
     def arm(self):
-        if self.monitor.status.word != 'enabled':
+        if self.monitor.status.state != 'enabled':
             self.ask(Arm(self.park))
 
     def ask(self, command):
@@ -138,7 +138,7 @@ class Loop:
     # What the driver announces
 
     def on_machine_state(self, state):
-        self._state = (state.status.word, state.is_followed, state.is_measured)
+        self._state = (state.status.state, state.is_followed, state.is_measured)
 
     def on_written(self, ticket, now):
         self._written = ticket

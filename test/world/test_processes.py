@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from manipulator.deadlines import POSE_DEADLINE
 from manipulator.pose import Pose
-from manipulator.trajectory.supervisor import POSE_DEADLINE
 from sampling import enough
 
 FAR = Pose.from_xyz_rpy((0.010, 0.0, 0.0412))

@@ -18,6 +18,7 @@ from manipulator.frames import Frames
 from manipulator.machine import Machine
 from manipulator.nodes.messages import PLATFORM_FRAME, joints_of, point_of, pose_of
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
+from manipulator.states import UNKNOWN
 
 STREAMS = {
     'pose': MEASUREMENT,
@@ -62,7 +63,7 @@ class MachineSubscriptions:
             name: _Newest(JointState if 'joint' in name else PoseStamped) for name in STREAMS
         }
         self._subscriptions: list[Any] = []
-        self.machine_state = DiagnosticStatus(message='unknown')
+        self.machine_state = DiagnosticStatus(message=UNKNOWN)
         self.motion_status = DiagnosticStatus()
         self._reports: dict[str, tuple[DiagnosticStatus, float]] = {}
         subscribe = node.create_subscription

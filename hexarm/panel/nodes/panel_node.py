@@ -29,6 +29,7 @@ from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.pose import Pose
+from manipulator.states import MachineState, MotionMode
 
 TICK = 0.02
 DRAW_EVERY, SAMPLE_EVERY, GOAL_EVERY, REDRAW_EVERY = 3, 5, 5, 20
@@ -37,7 +38,7 @@ DRAW_EVERY, SAMPLE_EVERY, GOAL_EVERY, REDRAW_EVERY = 3, 5, 5, 20
 HAND_RESTS = 2.0
 """Seconds after the last move of a slider in which the sliders stay where the hand left them."""
 
-FOLLOWED = ('hold', 'jog', 'cycle', 'path')
+FOLLOWED = (MotionMode.HOLD, MotionMode.JOG, MotionMode.CYCLE, MotionMode.PATH)
 """Modes in which the machine goes where the sliders did not ask it to."""
 
 ELSEWHERE = 1e-4
@@ -123,7 +124,10 @@ class PanelNode(Node):
         if view.mode in FOLLOWED and self._is_elsewhere(pose):
             self._page.sliders.follow(pose)
             self._page.scene.show_goal(pose)
-        if view.mode == 'hold' and np.abs(self._reach_at.twist_to(pose)).max() > ELSEWHERE:
+        if (
+            view.mode == MotionMode.HOLD
+            and np.abs(self._reach_at.twist_to(pose)).max() > ELSEWHERE
+        ):
             self._ask_reach(pose)
 
     def _is_elsewhere(self, pose: Pose) -> bool:
@@ -157,7 +161,7 @@ class PanelNode(Node):
     def _why_still(self) -> str:
         """What a hand on the joystick should know."""
         state = self._subscriptions.machine_state.message
-        return '' if state == 'enabled' else f'the machine is {state}'
+        return '' if state == MachineState.ENABLED else f'the machine is {state}'
 
     def _on_speed(self, message: Float64) -> None:
         if 0.0 <= message.data <= 1.0:

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hexarm.panel.joystick import LATE, SILENCE, Beat, Joystick
+from hexarm.panel.joystick import Beat, Joystick
+from manipulator.deadlines import RELEASE
 
 UP = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 STEP = 0.033
@@ -49,8 +50,8 @@ def test_a_page_that_is_gone_stops_at_once():
 def test_silence_ends_the_press():
     joystick = Joystick()
     now = held(joystick)
-    assert joystick.stick(now + SILENCE) is UP
-    assert joystick.stick(now + SILENCE + 1e-3) is None
+    assert joystick.stick(now + RELEASE) is UP
+    assert joystick.stick(now + RELEASE + 1e-3) is None
     assert 'press again' in joystick.reason(1)
 
 
@@ -68,7 +69,7 @@ def test_beats_after_a_silence_move_nothing_until_a_new_press():
 def test_beats_that_queued_up_on_the_line_end_the_press():
     joystick = Joystick()
     now = held(joystick)
-    joystick.hear(1, beat(0, tick=now - LATE - 0.01), now + 0.01)
+    joystick.hear(1, beat(0, tick=now - RELEASE - 0.01), now + 0.01)
     assert joystick.stick(now + 0.01) is None
 
 
@@ -133,6 +134,6 @@ def test_whatever_comes_it_moves_only_on_a_fresh_beat_of_the_holder(events):
             joystick.stop()
         if joystick.stick(now) is not None:
             at, delay = heard[joystick.holder(now)]
-            assert now - at <= SILENCE
+            assert now - at <= RELEASE
             assert delay is not None
-            assert delay <= LATE + 1e-9
+            assert delay <= RELEASE + 1e-9

@@ -1,10 +1,11 @@
 import pytest
 
+from manipulator.deadlines import RELEASE
 from manipulator.errors import Refused
-from manipulator.teleop.arbiter import COMPUTER, SILENCE, Arbiter
+from manipulator.teleop.arbiter import COMPUTER, Arbiter
 
 JOY, PANEL = 'cmd_vel/joy', 'cmd_vel/panel'
-LATER = SILENCE + 0.01
+LATER = RELEASE + 0.01
 
 
 def test_nobody_has_the_machine_at_first():
@@ -16,7 +17,7 @@ def test_whoever_moves_first_has_it_until_he_falls_silent():
     arbiter.receive(JOY, 0.0)
     with pytest.raises(Refused, match='cmd_vel/joy controls the machine'):
         arbiter.receive(PANEL, 0.1)
-    assert arbiter.owner(SILENCE) == JOY
+    assert arbiter.owner(RELEASE) == JOY
     assert arbiter.owner(LATER) == ''
     arbiter.receive(PANEL, 1.0)
     assert arbiter.owner(1.0) == PANEL

@@ -88,7 +88,7 @@ def test_pad_that_was_killed_and_started_again_counts_after_a_second():
 
 def test_source_of_twists_that_was_killed_and_started_again_counts_at_once():
     killed = after(SoleSource(), sent(50.0, 700, 0.0, 3.0), 1)
-    begin = killed.heard + OVERLAP + 0.01
+    begin = killed.received_at + OVERLAP + 0.01
     for now, sequence in sent(50.0, 1, begin, begin + 5.0):
         killed = killed.receive(sequence, 2, now)
         assert not killed.is_mixed(now)

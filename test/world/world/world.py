@@ -106,7 +106,7 @@ class World:
 
     @property
     def state(self):
-        return self.bridge.monitor.status.word
+        return self.bridge.monitor.status.state
 
     @property
     def status(self):

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from manipulator.deadlines import POSE_DEADLINE, POSE_PAUSE, STATE_DEADLINE
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.supervisor import POSE_DEADLINE, POSE_PATIENCE, STATE_DEADLINE
 
 HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))
 DT = 0.01
@@ -63,12 +63,12 @@ def test_without_poses_it_first_pauses_and_then_lets_go(stage):
     stage.pursue(Goal(HIGHER, 7.0))
     stage.run(10)
     stage.does_pose_come = False
-    stage.run(round(POSE_PATIENCE / DT) + 20)
+    stage.run(round(POSE_PAUSE / DT) + 20)
     standing = stage.setpoints[-1]
     stage.run(5)
     assert np.abs(standing.twist_to(stage.setpoints[-1])).max() == 0.0
     assert stage.status.result == 'moving'
-    stage.run(round((POSE_DEADLINE - POSE_PATIENCE) / DT))
+    stage.run(round((POSE_DEADLINE - POSE_PAUSE) / DT))
     assert stage.status.reason == f'no pose received for {POSE_DEADLINE:g} s'
     assert stage.tick() is None
 
