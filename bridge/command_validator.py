@@ -23,7 +23,7 @@ class CommandValidator:
     since the last command (at most 0.05 s) and one pulse period of 0.02 s; what that one left
     unused of a gap before it counts as well, for after a stall two come at once. Where there is
     no last command, or its deadline has passed, it must begin where the joints are: within
-    0.005 s of their way.
+    0.005 s at full speed.
     """
 
     def __init__(self, calibration: Calibration, deadline: float) -> None:
@@ -65,16 +65,16 @@ class CommandValidator:
         `present` is where the joints are (rad or m, in the calibration's order; NaN: unknown).
         stamp None means "now". InvalidInput, StaleMessage or Refused names what is wrong.
         """
-        wanted = self._ordered(names, positions)
-        counts = self._calibration.counts(wanted)
+        target = self._ordered(names, positions)
+        counts = self._calibration.counts(target)
         if stamp is not None:
             self._stamps.admit(stamp, receipt)
-        self._refuse_jump(wanted, receipt, present)
-        self._last, self._last_at = wanted, receipt
+        self._refuse_jump(target, receipt, present)
+        self._last, self._last_at = target, receipt
         return Setpoint(round(1e3 * self._deadline), counts)
 
     def _ordered(self, names: Sequence[str], positions: Sequence[float]) -> Array:
-        """Positions in the calibration's order, whatever order they came in."""
+        """Positions in the calibration's order, from any order."""
         if len(names) != len(positions):
             there = counted(len(positions), 'position')
             raise InvalidInput(f'{counted(len(names), "joint name")}, but {there}')
@@ -96,23 +96,23 @@ class CommandValidator:
             raise InvalidInput(f'no position for {", ".join(missing)}')
         return [list(names).index(name) for name in known]
 
-    def _refuse_jump(self, wanted: Array, receipt: float, present: Array | None) -> None:
+    def _refuse_jump(self, target: Array, receipt: float, present: Array | None) -> None:
         elapsed = receipt - self._last_at
         if self._last is not None and elapsed <= self._deadline:
             start, where = self._last, 'the last command'
             time = PULSE_PERIOD + min(max(elapsed, 0.0) + self._unused, LONGEST_GAP)
         elif present is not None and np.all(np.isfinite(present)):
-            start, where, time, elapsed = present, 'where the joint is', START, 0.0
+            start, where, time, elapsed = present, 'the reported position', START, 0.0
         else:
             raise Refused('the positions of the joints are not known yet')
-        ways = np.abs(wanted - start)
-        i = int(np.argmax(ways))
+        steps = np.abs(target - start)
+        i = int(np.argmax(steps))
         allowed = self._calibration.speed * time
-        if ways[i] > allowed:
+        if steps[i] > allowed:
             name, unit = self._calibration.names[i], self._calibration.unit
             raise Refused(
-                f'{name}: {wanted[i]:.4g} {unit} would jump by {ways[i]:.4g} from {where}, '
+                f'{name}: {target[i]:.4g} {unit} would jump by {steps[i]:.4g} from {where}, '
                 f'at most {allowed:.4g}'
             )
-        needed = float(ways[i]) / self._calibration.speed
+        needed = float(steps[i]) / self._calibration.speed
         self._unused = max(elapsed - PULSE_PERIOD - needed, 0.0)

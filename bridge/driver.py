@@ -1,4 +1,4 @@
-"""What the bridge does between the graph and the board: it admits, sends, answers and tells.
+"""The bridge between the graph and the board: admits, sends, answers and reports.
 
 No ROS, no thread, no port, no clock: decoded values and times in, values out.
 """
@@ -67,7 +67,7 @@ class Listener(Protocol):
 class BoardDriver:
     """One board and its servos.
 
-    It belongs to the thread that has the port, with its link and all that stands behind it.
+    It belongs to the thread that has the port, with its link and everything below it.
     `now` is monotonic, in seconds.
     """
 
@@ -77,7 +77,7 @@ class BoardDriver:
         listener: Listener,
         epoch: float = 0.0,
     ) -> None:
-        """`epoch` is what the system's clock says where `now` is zero, s."""
+        """`epoch` is the system's clock where `now` is zero, s."""
         self.calibration = Calibration.from_config(config.servos)
         self.validator = CommandValidator(
             self.calibration, 1e-3 * config.link.setpoint_deadline_ms
@@ -134,9 +134,9 @@ class BoardDriver:
         return self._request(Stop(), 'stopped: ~/clear_fault ends it')
 
     def answer(self, request: Request) -> tuple[bool, str]:
-        """Whether the board obeyed, and what to say, once the future is done.
+        """Whether the board obeyed, and the answer in words, once the future is done.
 
-        It is done only when machine_state shows it: who is answered may look at once.
+        It is done only when machine_state shows the effect.
         """
         error = request.future.exception()
         if error is None:
@@ -160,8 +160,8 @@ class BoardDriver:
     def _why_not_enabled(self) -> str:
         current = self.monitor.status
         if current.state is MachineState.ENABLED:
-            is_stopping = self.session.is_stop_wanted
-            return 'a STOP is under way' if is_stopping else 'the board takes no setpoints now'
+            is_stopping = self.session.is_stop_requested
+            return 'a STOP is in progress' if is_stopping else 'the board accepts no setpoints now'
         reason = f' ({current.reason})' if current.reason else ''
         return f'{current.state}{reason}'
 

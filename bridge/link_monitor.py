@@ -36,7 +36,7 @@ class Latencies:
         self._seconds.append(max(seconds, 0.0))
 
     def report(self, name: str) -> dict[str, float]:
-        """p50 and p99 in milliseconds, under names that say so; empty when there are none."""
+        """p50 and p99 in milliseconds, by name; empty when there are none."""
         return percentiles_ms(name, tuple(self._seconds))
 
 
@@ -84,13 +84,13 @@ def machine_status(session: Session, is_enabled_here: bool, trouble: str) -> Mac
     if session.phase is not Phase.READY or state is None:
         if trouble or session.phase is Phase.CLOSED:
             return MachineStatus(ERROR, MachineState.DISCONNECTED, trouble)
-        return MachineStatus(WARN, MachineState.BOOTING, 'waiting for the board to say HELLO')
+        return MachineStatus(WARN, MachineState.BOOTING, 'waiting for HELLO from the board')
     if state.mode is Mode.FAULT:
         return MachineStatus(
             ERROR, MachineState.FAULT, _FAULTS.get(state.fault, state.fault.name.lower())
         )
     if state.mode in (Mode.ARMED, Mode.HOLDING) and not is_enabled_here:
-        reason = 'the servos are on, but this bridge was not asked: call ~/enable'
+        reason = 'the servos are on, but were not enabled by this bridge: call ~/enable'
         return MachineStatus(WARN, MachineState.UNCLAIMED, reason)
     return _MODES[state.mode]
 
@@ -127,23 +127,23 @@ class LinkMonitor:
 
     @property
     def status(self) -> MachineStatus:
-        """The state of the machine in one word."""
+        """The machine state."""
         return machine_status(self.session, self.is_enabled_here, self.trouble)
 
     @property
     def is_clear(self) -> bool:
-        """There is a board, and no stop or fault to end, nor one that is still to be said."""
+        """There is a board, and no stop or fault to clear, nor one that is still to be sent."""
         latched_or_unknown = (
             MachineState.DISCONNECTED,
             MachineState.BOOTING,
             MachineState.STOPPED,
             MachineState.FAULT,
         )
-        return not self.session.is_stop_wanted and self.status.state not in latched_or_unknown
+        return not self.session.is_stop_requested and self.status.state not in latched_or_unknown
 
     @property
     def board(self) -> str:
-        """What the board said of itself."""
+        """The board's firmware, from its HELLO."""
         hello = self.session.hello
         if hello is None:
             return 'none'
@@ -154,7 +154,7 @@ class LinkMonitor:
 
     @property
     def unknown_joints(self) -> tuple[str, ...]:
-        """Joints whose position nobody knows."""
+        """Joints whose position is unknown."""
         names = self.calibration.names
         if self.joints is None:
             return names
@@ -185,7 +185,7 @@ class LinkMonitor:
         self.last_refusal = reason
 
     def report(self) -> dict[str, object]:
-        """What /diagnostics tells of the link and the board."""
+        """The values of /diagnostics about the link and the board."""
         session, state = self.session, self.session.state
         values: dict[str, object] = {
             'link': session.phase.value,

@@ -1,10 +1,11 @@
-"""From keys to pulses: one servo after the other is given its sign, centre, scale and range.
+"""The servo wizard, from keys to pulses: sign, centre, scale and range of one servo at a time.
 
-A state machine without terminal, port or clock. Only the servo at hand moves, slowly, never
-further than one step ahead of itself and never beyond the pulse range of the machine file.
+A state machine without terminal, port or clock. Only the active servo moves, slowly, never
+further than one step at a time and never beyond the pulse range of the machine file.
 """
 
 import enum
+import math
 from dataclasses import dataclass, replace
 
 from bridge.calibration import COUNTS_PER_US
@@ -14,7 +15,7 @@ from manipulator.formatting import shown
 
 
 class Stage(enum.Enum):
-    """What is asked of the person now."""
+    """The question to the user."""
 
     DIRECTION = 'direction'
     CENTRE = 'centre'
@@ -49,11 +50,11 @@ NUMBER = '0123456789.-'
 
 @dataclass(frozen=True)
 class ServoWizard:
-    """What the keys so far have found; pulses in microseconds, in the order of `servos`.
+    """The values found so far; pulses in microseconds, in the order of `servos`.
 
-    limits are the pulse ranges as they were before; chosen the servos to walk through, `at` which
-    of them is at hand. `typed` is a number being typed, None where none is; `notice` what to tell
-    the person about the last key.
+    limits are the pulse ranges as they were before; chosen the servos to calibrate, `at` the
+    active one of them. `typed` is a number being typed, None where none is; `notice` the answer to
+    the last key.
     """
 
     servos: tuple[ServoConfig, ...]
@@ -82,17 +83,17 @@ class ServoWizard:
 
     @property
     def index(self) -> int:
-        """Which servo is at hand."""
+        """The index of the active servo."""
         return self.chosen[self.at]
 
     @property
     def servo(self) -> ServoConfig:
-        """The servo at hand, as it is known by now."""
+        """The active servo, with the values found so far."""
         return self.servos[self.index]
 
     @property
     def pulse(self) -> float:
-        """What the servo at hand gets now."""
+        """The present pulse of the active servo."""
         return self.pulses[self.index]
 
     @property
@@ -105,18 +106,20 @@ class ServoWizard:
 
     @property
     def is_over(self) -> bool:
-        """Nothing more is asked."""
+        """Whether the wizard has ended."""
         return self.stage in (Stage.WRITE, Stage.LEAVE)
 
-    def stood(self, pulses: tuple[float, ...]) -> 'ServoWizard':
-        """After the board has stood still at `pulses`: nothing is left to go to."""
+    def stopped_at(self, pulses: tuple[float, ...]) -> 'ServoWizard':
+        """After the board has stopped at `pulses`, which become the target."""
         return replace(self, pulses=pulses, target=pulses[self.index])
 
     def advance(self, dt: float) -> 'ServoWizard':
         """`dt` seconds later; a servo that has returned to its centre hands over to the next."""
-        way = self.target - self.pulse
+        distance = self.target - self.pulse
         reach = SPEED_US_S * dt
-        moved = self.target if abs(way) <= reach else self.pulse + (reach if way > 0 else -reach)
+        moved = (
+            self.target if abs(distance) <= reach else self.pulse + math.copysign(reach, distance)
+        )
         pulses = list(self.pulses)
         pulses[self.index] = moved
         there = replace(self, pulses=tuple(pulses))
@@ -130,7 +133,7 @@ class ServoWizard:
         fresh = replace(self, notice='')
         if self.stage is Stage.REVIEW:
             chosen = {'w': Stage.WRITE, 'q': Stage.LEAVE}.get(key)
-            return replace(fresh, stage=chosen) if chosen else fresh._say('w writes, q leaves')
+            return replace(fresh, stage=chosen) if chosen else fresh._notify('w writes, q leaves')
         if key == 'q':
             return replace(fresh, stage=Stage.REVIEW, target=self.pulse)
         if self.stage is Stage.RETURN:
@@ -148,7 +151,7 @@ class ServoWizard:
     def _answer(self, key: str) -> 'ServoWizard':
         """A key that means something in one stage alone."""
         if self.pulse != self.target:
-            return self._say('it is still moving')
+            return self._notify('it is still moving')
         if self.stage is Stage.DIRECTION and key in ('y', 'n'):
             return self._settle_sign(1 if key == 'y' else -1)
         if self.stage in (Stage.CENTRE, Stage.SCALE) and key == '=':
@@ -159,13 +162,13 @@ class ServoWizard:
             return self._settle_end(key)
         if self.stage is Stage.RANGE and key == 'enter':
             return self._go_on()
-        return self._say(f'{key!r} means nothing here')
+        return self._notify(f'{key!r} means nothing here')
 
     def _jog(self, direction: float) -> 'ServoWizard':
         low, high = self.limits[self.index]
-        wanted = self.pulse + direction * self.step
-        target = min(max(wanted, low), high)
-        at_end = self._say('the end of its pulse range') if target != wanted else self
+        aim = self.pulse + direction * self.step
+        target = min(max(aim, low), high)
+        at_end = self._notify('the end of its pulse range') if target != aim else self
         return replace(at_end, target=target)
 
     def _resize(self, by: int) -> 'ServoWizard':
@@ -186,14 +189,14 @@ class ServoWizard:
         try:
             number = float(typed)
         except ValueError:
-            return self._say(f'{shown(typed)} is no number')
+            return self._notify(f'{shown(typed)} is no number')
         if self.stage is Stage.CENTRE:
             return self._settle_centre(number)
         return self._settle_scale(number)
 
     def _settle_sign(self, sign: int) -> 'ServoWizard':
         if abs(self.pulse - self.begun_at) < LEAST_JOG_US:
-            return self._say(f'jog it by {LEAST_JOG_US:g} µs first, and watch it')
+            return self._notify(f'jog it by {LEAST_JOG_US:g} µs first, and watch it')
         return self._with(sign=sign)._go_on()
 
     def _settle_centre(self, position: float) -> 'ServoWizard':
@@ -203,14 +206,14 @@ class ServoWizard:
     def _settle_scale(self, position: float) -> 'ServoWizard':
         servo, unit = self.servo, 'mm' if self.servo.is_linear else 'deg'
         pulses = self.pulse - servo.centre_us
-        way = servo.sign * (position - _position(servo))
+        change = servo.sign * (position - _position(servo))
         if abs(pulses) < LEAST_SPAN_US:
-            return self._say(f'too near the centre: go {LEAST_SPAN_US:g} µs away from it')
-        if way * pulses <= 0.0:
-            return self._say('that contradicts the direction: b begins this servo again')
-        scale, told = pulses / way, servo.us_per_mm or servo.us_per_deg or 1.0
-        if not told / MOST_SCALE_CHANGE <= scale <= told * MOST_SCALE_CHANGE:
-            return self._say(f'{scale:.3g} µs per {unit} instead of {told:g}: read it again')
+            return self._notify(f'too near the centre: go {LEAST_SPAN_US:g} µs away from it')
+        if change * pulses <= 0.0:
+            return self._notify('that contradicts the direction: b begins this servo again')
+        scale, present = pulses / change, servo.us_per_mm or servo.us_per_deg or 1.0
+        if not present / MOST_SCALE_CHANGE <= scale <= present * MOST_SCALE_CHANGE:
+            return self._notify(f'{scale:.3g} µs per {unit} instead of {present:g}: read it again')
         return self._with(**{f'us_per_{unit}': round(scale, 4)})._go_on()
 
     def _settle_end(self, key: str) -> 'ServoWizard':
@@ -219,14 +222,14 @@ class ServoWizard:
         ends = (pulse, high) if key == '[' else (low, pulse)
         changed = self._with(pulse_range_us=ends)
         which = 'shortest' if key == '[' else 'longest'
-        return changed if changed.notice else changed._say(f'{which} pulse {pulse:g} µs')
+        return changed if changed.notice else changed._notify(f'{which} pulse {pulse:g} µs')
 
     def _with(self, **values: object) -> 'ServoWizard':
-        """With new values of the servo at hand, unless they contradict each other."""
+        """With new values of the active servo, unless they contradict each other."""
         try:
             changed = replace(self.servo, **values)  # type: ignore[arg-type]
         except ConfigError as error:
-            return self._say(str(error))
+            return self._notify(str(error))
         servos = list(self.servos)
         servos[self.index] = changed
         return replace(self, servos=tuple(servos), notice='')
@@ -246,7 +249,7 @@ class ServoWizard:
         ahead = replace(self, at=self.at + 1, stage=Stage.DIRECTION)
         return replace(ahead, target=start, begun_at=start)
 
-    def _say(self, notice: str) -> 'ServoWizard':
+    def _notify(self, notice: str) -> 'ServoWizard':
         return replace(self, notice=notice)
 
 

@@ -18,7 +18,7 @@ WARN_AGAIN_AFTER = 2.0
 
 
 class BoardTopics:
-    """The driver's listener; in the link's thread alone."""
+    """The driver's listener; in the link's thread only."""
 
     def __init__(self, node: Node, names: Sequence[str], port: str) -> None:
         """`names` are those of the calibration, `port` what `machine_state` names."""

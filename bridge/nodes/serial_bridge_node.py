@@ -40,7 +40,7 @@ MOST_BYTES = 10_000
 
 
 class SerialBridge(Node):
-    """`serial_bridge`; its topics, services and parameters stand in docs/interfaces.md."""
+    """`serial_bridge`; its topics, services and parameters are in docs/interfaces.md."""
 
     def __init__(self, board_config: Callable[[str], BoardConfig]) -> None:
         super().__init__('serial_bridge')
@@ -49,7 +49,7 @@ class SerialBridge(Node):
             self, 'port', '/dev/ttyACM0', 'serial port of the board; /dev/serial/by-id/… is best'
         )
         baud = declare(
-            self, 'baud', 0, 'bits per second; 0: the machine file says', (0, 4_000_000)
+            self, 'baud', 0, 'bits per second; 0: that of the machine file', (0, 4_000_000)
         )
         config = board_config(machine)
         line = dataclasses.replace(config.link, baud=baud or config.link.baud)
@@ -76,7 +76,7 @@ class SerialBridge(Node):
         self._stop_node.start()
 
     def close(self) -> None:
-        """Gives the port back; the board's deadline does what the machine file says."""
+        """Closes the port; the board's deadline then has the effect set by `on_link_loss`."""
         self._stop_node.close()
         self._link.close()
         self._stop_socket.close()
@@ -110,11 +110,11 @@ class SerialBridge(Node):
     def _on_enable(self, call: Call) -> None:
         self._answer(call, partial(self._driver.enable, call.request.data))
 
-    def _answer(self, call: Call, ask: Callable[[], Request]) -> None:
-        """Has it request in the link's thread, and answered there as soon as the board has."""
+    def _answer(self, call: Call, send: Callable[[], Request]) -> None:
+        """Sends the request in the link's thread, and answers there as soon as the board has."""
 
         def begin() -> None:
-            request = ask()
+            request = send()
             request.future.add_done_callback(lambda done: answer(request))
 
         def answer(request: Request) -> None:

@@ -118,7 +118,7 @@ class ServoLine:
         return self.is_in_use and not self.is_off and self.mode is not None
 
     @property
-    def has_let_go(self) -> bool:
+    def has_released(self) -> bool:
         """The servos had power and have it no more."""
         return self._is_energised and self.mode in (Mode.DISARMED, Mode.FAULT)
 

@@ -124,7 +124,7 @@ class CalibrationSession:
         if self.line.mode is Mode.STOPPED:
             if 'c' in keys:
                 self._clear()
-            return wizard.stood(self._pulses())
+            return wizard.stopped_at(self._pulses())
         for key in keys:
             wizard = wizard.press(key)
         wizard = wizard.advance(dt)
@@ -144,7 +144,7 @@ class CalibrationSession:
             raise TerminalGone('the terminal has gone')
         if self.line.trouble:
             raise LinkError(self.line.trouble)
-        if self.line.has_let_go:
+        if self.line.has_released:
             raise LinkError('the board has taken the power from the servos')
         return key_names(characters)
 

@@ -131,8 +131,8 @@ def test_what_is_not_enabled_says_why_it_takes_no_command(rig):
 
 
 def test_a_command_while_a_stop_is_under_way_says_so(enabled):
-    enabled.driver.session.is_stop_wanted = True
-    with pytest.raises(Refused, match=r'^a STOP is under way$'):
+    enabled.driver.session.is_stop_requested = True
+    with pytest.raises(Refused, match=r'^a STOP is in progress$'):
         enabled.command(enabled.park)
 
 
@@ -159,7 +159,7 @@ def test_after_an_answer_the_next_command_must_start_where_the_joints_are(enable
         rig.driver.clear_fault()
     while not rig.driver.session.accepts_setpoints:
         rig.run(STEP)
-    with pytest.raises(Refused, match='where the joint is'):
+    with pytest.raises(Refused, match='the reported position'):
         rig.command(far)
 
 
@@ -200,7 +200,7 @@ def test_a_refusal_is_told_with_what_is_wrong_with_the_board(rig):
     rig.driver.link.lost('/dev/ttyACM0 has vanished', rig.now)
     asked = rig.driver.enable(True)
     rig.run(STEP)
-    reason = 'no board to talk to: no port: /dev/ttyACM0 has vanished'
+    reason = 'no board is connected: no port: /dev/ttyACM0 has vanished'
     assert rig.driver.answer(asked) == (False, reason)
 
 
@@ -261,5 +261,5 @@ def test_what_goes_wrong_is_announced_in_words(enabled):
     enabled.driver.enable(False)
     enabled.run(0.6)
     assert enabled.troubles[0] == 'DISARM: no answer from the board after 4 tries'
-    assert 'silent' in enabled.troubles[1]
+    assert 'no frame' in enabled.troubles[1]
     assert enabled.state.status.state == 'disconnected'

@@ -204,7 +204,7 @@ def test_a_board_that_is_silent_is_lost(rig):
     for _ in range(12):
         rig.now += TICK
         rig.turn()
-    assert 'silent for 0.5 s' in rig.logged(Disconnected)[0].reason
+    assert 'no frame from the board for 0.5 s' in rig.logged(Disconnected)[0].reason
 
 
 def test_at_first_the_port_is_to_be_opened_and_nothing_is_read():
@@ -237,7 +237,7 @@ def test_without_a_port_requests_are_refused_and_a_stop_is_said_as_soon_as_there
     rig.link.lost('the port has vanished', rig.now)
     asked = rig.link.request(Stop())
     rig.run(0.1)
-    with pytest.raises(Refused, match='no board to talk to: no port'):
+    with pytest.raises(Refused, match='no board is connected: no port'):
         asked.result(0.0)
     assert rig.logged(Stop) == []
     rig.link.opened(rig.now)

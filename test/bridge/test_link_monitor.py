@@ -85,7 +85,7 @@ def test_one_word_for_each_mode(monitor, mode, word):
 def test_there_is_nothing_to_clear_unless_a_stop_is_still_to_be_said(monitor, mode):
     receive(monitor, state(mode))
     assert monitor.is_clear
-    monitor.session.is_stop_wanted = True
+    monitor.session.is_stop_requested = True
     assert not monitor.is_clear
 
 

@@ -165,7 +165,7 @@ def test_a_mute_board_is_lost_though_the_port_is_open(rig):
     rig.arm()
     rig.board.is_mute = True
     rig.wait_for_event(Disconnected)
-    assert 'silent' in rig.events[-1].reason
+    assert 'no frame' in rig.events[-1].reason
     rig.board.is_mute = False
     rig.wait_for_event(Connected, 2)
 
@@ -183,7 +183,7 @@ def test_a_board_is_not_lost_because_this_thread_was_held_up(rig):
 
 def test_a_missing_port_is_said_and_looked_for(no_board):
     thread, events = no_board
-    with pytest.raises(Refused, match='no board to talk to: no port'):
+    with pytest.raises(Refused, match='no board is connected: no port'):
         thread.request(Stop()).result(2.0)
     deadline = time.monotonic() + 5.0
     while len(events) < 3 and time.monotonic() < deadline:

@@ -113,7 +113,7 @@ def test_linear_servos_are_asked_in_millimetres():
 
 
 def test_a_stop_leaves_nothing_to_go_to():
-    wizard = begin().press('right').advance(0.02).stood((1502.0, *CENTRES[1:]))
+    wizard = begin().press('right').advance(0.02).stopped_at((1502.0, *CENTRES[1:]))
     assert wizard.target == wizard.pulse == 1502.0
 
 

@@ -142,7 +142,7 @@ def test_a_program_does_not_spoil_an_upload(calm, tap):
     calm.wait('rows', lambda: tap.heard(TableRow, began))
     answer = calm.play_cycle()
     calm.wait('an answer', answer.done)
-    assert answer.result().message == 'another upload is under way'
+    assert answer.result().message == 'another upload is in progress'
     calm.wait(
         'the upload', lambda: 'table of 100 rows, 100 ms apart, is on board' in calm.said, 20.0
     )

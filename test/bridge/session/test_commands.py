@@ -75,7 +75,7 @@ def test_the_mode_is_known_from_the_acknowledgement_before_a_state_tells_it(arme
     (frame,) = FrameReader().feed(armed.session.take_output())
     armed.session.receive(encode(Ack(frame.sequence, Result.OK), 1), armed.now)
     assert armed.session.state == replace(before, mode=mode)
-    with pytest.raises(Refused, match=f'takes no setpoints now: {mode.name.lower()}'):
+    with pytest.raises(Refused, match=f'accepts no setpoints now: {mode.name.lower()}'):
         armed.setpoint()
 
 
@@ -118,7 +118,7 @@ def test_a_stop_takes_the_place_of_what_is_under_way(line):
     line.loses = False
     events = line.command(Stop())
     assert events == [CommandFailed(Arm(PARK), 'STOP came after it'), Acknowledged(Stop())]
-    with pytest.raises(Refused, match='STOP is under way'):
+    with pytest.raises(Refused, match='STOP is in progress'):
         line.session.send_command(Stop(), line.now)
         line.session.send_command(Arm(PARK), line.now)
 

@@ -85,7 +85,7 @@ def test_every_trouble_that_can_be_asked_of_the_fake_board_shows_in_the_state(en
     enabled.trigger('fake_hardware/reset')
     enabled.wait_for_state('disarmed')
     assert enabled.inject('version').successful
-    enabled.wait('the version', lambda: 'the board speaks protocol 2' in enabled.summary)
+    enabled.wait('the version', lambda: 'the board has protocol 2' in enabled.summary)
     enabled.wait_for_state('disarmed')
     refused = enabled.inject('fire')
     assert not refused.successful
