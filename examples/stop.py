@@ -49,7 +49,7 @@ def emergency_stop(node, namespace):
     end = time.monotonic() + 10.0
     while not states or states[-1].message != 'stopped':
         if time.monotonic() > end:
-            state = states[-1].message if states else 'nobody answers'
+            state = states[-1].message if states else 'unknown'
             sys.exit(f'not confirmed within 10 s: {state}')
         publisher.publish(Bool(data=True))
         rclpy.spin_once(node, timeout_sec=0.02)

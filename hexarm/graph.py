@@ -23,7 +23,7 @@ PR_SET_PDEATHSIG = 1
 class Executable:
     """One process: the name in hexarm/nodes.py, its own parameters, the file it waits for.
 
-    `command` is what runs it when it is no node of ours; `prefix` stands before the command, as in
+    `command` is what runs it when it is no node of ours; `prefix` precedes the command, as in
     `ip netns exec far`.
     """
 
@@ -90,7 +90,7 @@ class Graph:
         return self
 
     def __exit__(self, *exception: object) -> None:
-        """Stops every node, the board last: asked first, killed where asking does not help."""
+        """Stops every node, the board last: by a signal first, killed where that does not help."""
         deadline = time.monotonic() + PATIENCE
         for process in reversed(self._processes.values()):
             process.terminate()
@@ -148,5 +148,5 @@ def _environment() -> dict[str, str]:
 
 
 def _die_with_parent() -> None:
-    """Asks the kernel to end the node when this process dies without stopping it."""
+    """Has the kernel end the node when this process dies without stopping it."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)

@@ -18,13 +18,13 @@ PROGRAMS = {'machine': 'hexarm_machine', 'panel': 'hexarm_panel'}
 
 
 def graph(kind: str) -> LaunchDescription:
-    """The launch description of a hexapod or an arm; nothing moves before somebody enables it."""
+    """The launch description of a hexapod or an arm; nothing moves before it is enabled."""
     arguments = {
         'machine': (MACHINES[kind], 'machine file: a shipped name or a path'),
         'port': ('fake', "a device, as /dev/serial/by-id/…, or 'fake' for the fake board"),
         'namespace': (kind, 'where the graph lives'),
-        'frame_prefix': ('', 'stands before the frames of tf and markers, as in hexapod/'),
-        'panel': ('false', 'true: the page to look at it and to drive it, too'),
+        'frame_prefix': ('', 'prefix of the frames of tf and markers, as in hexapod/'),
+        'panel': ('false', 'true: also the page to watch and drive it'),
     }
     declared = [
         DeclareLaunchArgument(name, default_value=default, description=meaning)

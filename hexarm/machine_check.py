@@ -106,7 +106,7 @@ def _machine(kind: object, there: Mapping[str, Any], whole: MachineFile | None) 
 
 
 def _between(machine: Machine, calibration: Calibration) -> Iterator[str]:
-    """What servos and machine say of each other and do not agree on."""
+    """Contradictions between servos and machine."""
     wanted, names = machine.kinematics.joint_names, calibration.names
     missing = [name for name in wanted if name not in names]
     for name in missing:

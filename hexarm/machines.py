@@ -53,7 +53,7 @@ def shipped() -> dict[str, Path]:
 
 
 def find(name_or_path: str) -> Path:
-    """The file of a shipped machine's name, or of a path; ConfigError says what there is."""
+    """The file of a shipped machine's name, or of a path; ConfigError names what there is."""
     path = Path(name_or_path).expanduser()
     if path.suffix in ('.yaml', '.yml') or '/' in name_or_path:
         if os.path.isfile(path):
@@ -84,7 +84,7 @@ def family(name_or_path: str) -> str:
 
 
 def board_config(name_or_path: str) -> BoardConfig:
-    """What the bridge and the board need of a machine file; ConfigError says what is wrong."""
+    """What the bridge and the board need of a machine file; ConfigError with all problems."""
     return BoardConfig.from_machine(read(name_or_path), str(find(name_or_path)))
 
 
@@ -118,7 +118,7 @@ def loader(kind: str) -> Callable[[MachineFile], Machine]:
 
 
 def load(name_or_path: str) -> Machine:
-    """Kinematics, constraints and motion limits of a machine; ConfigError says what is wrong."""
+    """Kinematics, constraints and motion limits of a machine; ConfigError with all problems."""
     machine_file = read(name_or_path)
     try:
         machine = loader(machine_file.kind)(machine_file)
@@ -140,7 +140,7 @@ def _park(machine_file: MachineFile, kinematics: Kinematics) -> Array | None:
 
 
 def _deflection(machine_file: MachineFile, kinematics: Kinematics) -> StaticDeflection | None:
-    """What the machine's nodes compensate, where its file asks for it."""
+    """The static deflection that the machine's nodes compensate, where its file sets that."""
     if (machine_file.dynamics or {}).get('compensation') is not True:
         return None
     from hexarm.simulation.compensation import deflection_of  # noqa: PLC0415 (most machines need no masses)

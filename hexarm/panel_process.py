@@ -25,14 +25,14 @@ def panel_address(panel: Executable) -> str:
 
 
 def panel_words(panel: Executable) -> str:
-    """The address, and a word where it is not the usual one."""
+    """The address, and a remark where it is not the usual one."""
     is_usual = panel.parameters['port'] == str(FIRST_PORT)
     taken = '' if is_usual else f' ({FIRST_PORT} is taken, perhaps by another page)'
     return panel_address(panel) + taken
 
 
 def offered_panel(machine: str, say: Callable[[str], None]) -> list[Executable]:
-    """The panel and a word about it; without viser only the word."""
+    """The panel and a line about it; without viser only the line."""
     try:
         panel = panel_process(machine)
     except ModuleNotFoundError:

@@ -46,7 +46,7 @@ CIRCLE = {  # 15 mm/s, and never a moment of rest
 class Recorder:
     """Stands in for a FakeMachine and keeps every change of its pulses, and when it was.
 
-    Stepped by the board's thread, asked from another.
+    Stepped by the board's thread, read from another.
     """
 
     def __init__(self, machine: FakeMachine) -> None:
@@ -112,7 +112,7 @@ class Recorder:
             if time.monotonic() - max(last, since) > quiet:
                 return max(last, since)
             time.sleep(0.01)
-        raise TimeoutError('the servo targets never stood still')
+        raise TimeoutError('the servo targets never came to rest')
 
 
 class Rig:
@@ -171,7 +171,7 @@ class Rig:
         return self._graphs[name].pids()[name]
 
     def dead(self) -> list[str]:
-        """What is to be said of processes that ended by themselves."""
+        """A text for each process that ended by itself."""
         return [words for graph in self._graphs.values() if (words := graph.dead())]
 
     def send(self, name: str, number: int) -> float:
@@ -192,7 +192,7 @@ class Rig:
         self.board.do(lambda: self.board.plug(line))
 
     def enable(self) -> None:
-        """Asks again where the bridge is no more, or lost its board on a computer that stalls."""
+        """Repeats a request where the bridge has ended, or lost its board on a busy computer."""
         for _ in range(TRIES):
             with contextlib.suppress(NotReady, Refused):
                 self.user.enable()
@@ -223,9 +223,9 @@ class Rig:
         raise NotReady(f'no circle in {TRIES} tries ({last}): {self.user.summary}')
 
     def stop_time(self, name: str, number: int) -> float:
-        """Seconds from a signal to a process until the servo targets stand still."""
+        """Seconds from a signal to a process until the servo targets are at rest."""
         signalled = self.send(name, number)
-        # Nothing but the signal must move them afterwards: hear nothing, ask for nothing.
+        # Nothing but the signal must move them afterwards: receive nothing, request nothing.
         return self.recorder.standstill(signalled, FROZEN) - signalled
 
     def set_parameters(self, node: str, values: Mapping[str, Sequence[float]]) -> None:
@@ -248,7 +248,7 @@ class Rig:
 
     def _end_all(self) -> None:
         for name in self._graphs:
-            # A frozen process hears nothing else.
+            # A frozen process receives nothing else.
             if self._graphs[name].dead() is None:
                 self.send(name, signal.SIGCONT)
         for graph in reversed(self._graphs.values()):

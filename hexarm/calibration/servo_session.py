@@ -27,22 +27,22 @@ FOUND = {
     Mode.ARMED: 'The servos have power already and stay where they are.\n',
     Mode.HOLDING: 'The servos have power already and stay where they are.\n',
 }
-"""What is said before anything is energised, by the mode that the board is found in."""
+"""Printed before anything is energised, by the board's mode."""
 
 POSITIVE = {
     'rotary_hexapod': ' (the crank turns from its tangent upwards)',
     'linear_hexapod': ' (the leg grows longer)',
     'serial_arm': ' (a right-hand turn about the axis)',
 }
-"""Which way is positive, by the kind of machine."""
+"""The positive direction, by the kind of machine."""
 
 
 def question(wizard: ServoWizard, positive: str) -> str:
-    """What is asked in the present stage."""
+    """The question of the present stage."""
     servo, unit = wizard.servo, 'mm' if wizard.servo.is_linear else '°'
     centre = servo.centre_mm if servo.centre_mm is not None else servo.centre_deg
     low, high = servo.pulse_range_us
-    told = {
+    question_text = {
         Stage.DIRECTION: f'jog it. Does a longer pulse (→) move it towards positive{positive}? '
         'y or n',
         Stage.CENTRE: f'bring it to {centre:g} {unit} and press ENTER; '
@@ -55,15 +55,17 @@ def question(wizard: ServoWizard, positive: str) -> str:
         Stage.REVIEW: 'w: servos off and write, q: servos off and leave',
     }.get(wizard.stage, '')
     name = 'end' if wizard.stage is Stage.REVIEW else f'{servo.name}, {wizard.stage.value}'
-    return f'{name}: {told}\n'
+    return f'{name}: {question_text}\n'
 
 
 def status(wizard: ServoWizard, stopped: bool, seen: str) -> str:
     """The line that is rewritten all the time."""
     typed = '' if wizard.typed is None else f'  ={wizard.typed}_'
     notice = 'STOPPED, c clears it' if stopped else wizard.notice
-    told = f'  {notice}' if notice else ''
-    return f' {wizard.servo.name}  {wizard.pulse:7.1f} µs  step {wizard.step:g}{seen}{typed}{told}'
+    notice = f'  {notice}' if notice else ''
+    return (
+        f' {wizard.servo.name}  {wizard.pulse:7.1f} µs  step {wizard.step:g}{seen}{typed}{notice}'
+    )
 
 
 TICK, LONGEST_TICK = 0.02, 0.1
@@ -71,12 +73,12 @@ LATCHED = (Mode.STOPPED, Mode.FAULT)
 
 
 class TerminalGone(ManipulatorError):
-    """Nobody is there any more to watch the machine."""
+    """The terminal has closed: the machine is not watched any more."""
 
 
 @dataclass(frozen=True)
 class CalibrationSession:
-    """Terminal and board of one machine; `display` tells where a fake servo stands."""
+    """Terminal and board of one machine; `display` returns the position of a fake servo."""
 
     terminal: Terminal
     line: ServoLine
@@ -86,7 +88,7 @@ class CalibrationSession:
     display: Callable[[int], str]
 
     def run(self) -> ServoWizard | None:
-        """The wizard at its end, None where the person did not want to begin.
+        """The wizard at its end, None where the user did not begin.
 
         TerminalGone, LinkError: it cannot go on; Refused: the board does not energise.
         """
@@ -138,7 +140,7 @@ class CalibrationSession:
             self.terminal.show(f'\r\x1b[Knot cleared: {error}\n')
 
     def _keys(self) -> tuple[str, ...]:
-        """What was pressed since the last call, as long as there is a person and a board."""
+        """The keys since the last call; raises where terminal or board have gone."""
         characters = self.terminal.read()
         if characters is None:
             raise TerminalGone('the terminal has gone')
@@ -153,7 +155,7 @@ class CalibrationSession:
         return tuple(by_channel[servo.channel] for servo in self.servos)
 
     def _show(self, before: ServoWizard, wizard: ServoWizard) -> None:
-        """The question where there is a new one, and the line that is always new."""
+        """The question where there is a new one, and the status line."""
         if (before.stage, before.at) != (wizard.stage, wizard.at) and not wizard.is_over:
             self.terminal.show(f'\r\x1b[K{question(wizard, self.positive)}')
         is_stopped = self.line.mode is Mode.STOPPED

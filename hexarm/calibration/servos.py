@@ -1,7 +1,7 @@
 """`hexarm calibrate servos MACHINE`: signs and centres, one servo at a time, by the keyboard.
 
 Without a board it uses a fake one in this process, whose servos are mounted otherwise than the
-file says; what one would see on a machine stands on the screen.
+file says; what one would see on a machine is shown on the screen.
 """
 
 import argparse
@@ -35,7 +35,7 @@ BOOT_S = 0.3
 
 
 def mounted_wrongly(config: BoardConfig, seed: int) -> BoardConfig:
-    """The same board with some servos the other way round, and all centres off by up to 60 µs."""
+    """The same board with some servos reversed, and all centres off by up to 60 µs."""
     luck = random.Random(seed)
 
     def wrong(servo: ServoConfig) -> ServoConfig:
@@ -44,7 +44,7 @@ def mounted_wrongly(config: BoardConfig, seed: int) -> BoardConfig:
         centre = min(max(centre, low), high)
         return replace(servo, sign=luck.choice((-1, 1)), centre_us=centre)
 
-    # Nothing is asked of the true park position: the board only ever gets pulses.
+    # The true park position does not matter: the board only ever gets pulses.
     joints = tuple(map(wrong, config.servos.joints))
     centres = tuple(joint.centre_mm or joint.centre_deg or 0.0 for joint in joints)
     if joints[0].is_linear:
@@ -119,7 +119,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def chosen_servos(servos: tuple[ServoConfig, ...], names: list[str] | None) -> tuple[int, ...]:
-    """Which servos to walk through; InvalidInput names one that there is not."""
+    """The servos to calibrate; InvalidInput names an unknown one."""
     known = [servo.name for servo in servos]
     for name in names or ():
         if name not in known:

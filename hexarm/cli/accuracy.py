@@ -94,7 +94,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
 
 
 def servo_errors(kinematics: Kinematics, file: MachineFile, noise: float) -> JointErrors:
-    """The noise asked for, dead band and play of the machine file's simulated servos."""
+    """The requested noise, dead band and play of the machine file's simulated servos."""
     config = BoardConfig.from_machine(file)
     count = len(kinematics.joint_names)
     servos = config.servos.joints[:count]  # an arm's gripper comes after its joints

@@ -136,7 +136,7 @@ def tour(client: 'Client') -> Observation:
 
 
 def drive(client: 'Client', goal: Pose, *, is_possible: bool = True) -> None:
-    """Goes to the goal; again where a busy computer stopped the machine, on the way or before.
+    """Goes to the goal; again where a busy computer stopped the machine, in motion or before.
 
     A goal that is possible is refused only by a machine that is not ready.
     """

@@ -1,4 +1,4 @@
-"""`hexarm plot FILE`: what a recording tells, as a picture or as tables; needs no ROS."""
+"""`hexarm plot FILE`: a recording as a picture or as tables; needs no ROS."""
 
 import argparse
 from pathlib import Path
@@ -14,7 +14,7 @@ from manipulator.states import MotionResult
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('plot', help='draw what a recording tells')
+    parser = commands.add_parser('plot', help='draw a recording')
     parser.add_argument('file', type=Path, metavar='FILE', help='an MCAP recording, or its folder')
     parser.add_argument(
         '-o', '--output', type=picture_file, metavar='PICTURE', help='default: FILE with .png'

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hexarm.client import Client
 
 SETTLES = 1.0
-"""Seconds within which a STOP from before is said to the board, and obeyed."""
+"""Seconds within which an earlier STOP is sent to the board, and obeyed."""
 LOOKS = 0.7
 """Seconds in which a graph that runs already is found: at most 0.46 s in 64 tries."""
 OURS = ('trajectory', 'ik', 'pose', 'serial_bridge')
@@ -48,7 +48,7 @@ class NodeDied(ManipulatorError):
 
 
 class Interrupted(ManipulatorError):
-    """Somebody pressed Ctrl-C, or asked the process to end."""
+    """Ctrl-C, or a signal to end the process."""
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -59,7 +59,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument('--port', default='fake', help="a device, 'fake' (default) or 'simavr'")
     parser.add_argument('--namespace', help='default: hexapod or arm, as the machine is')
     parser.add_argument('--separate', action='store_true', help='one process for each node')
-    parser.add_argument('--panel', action='store_true', help='with a web page to look and drive')
+    parser.add_argument('--panel', action='store_true', help='with a web page to watch and drive')
     parser.set_defaults(run=run)
 
 
@@ -197,7 +197,7 @@ def check_alive(graph: Graph) -> None:
 
 
 def enable(client: 'Client', namespace: str) -> None:
-    """Energises the servos; a machine that is stopped waits until somebody has cleared it."""
+    """Energises the servos; a machine that is stopped waits until it is cleared."""
     space = namespace.strip('/')
     while True:
         print('energising the servos, one by one', flush=True)
@@ -219,10 +219,10 @@ def enable(client: 'Client', namespace: str) -> None:
 
 
 def park(client: 'Client', stop: StopSignal) -> None:
-    """Goes to park and switches the servos off; where it cannot, asks before it lets go.
+    """Goes to park and switches the servos off; where it cannot, asks before it releases.
 
     In a terminal the answer is another Ctrl-C. Without one the servos stay on: what the board then
-    does is what the machine file says of a lost link.
+    does is set by `on_link_loss` of the machine file.
     """
     if client.machine_state.message in SERVOS_OFF:
         return
@@ -256,9 +256,9 @@ def _go_to_park(client: 'Client') -> None:
 
 
 def _may_let_go(client: 'Client', stop: StopSignal) -> bool:
-    """Whether somebody at a terminal confirms that the servos may be switched off here."""
+    """Whether a user at a terminal confirms that the servos may be switched off here."""
     if not sys.stdin.isatty():
-        print('the servos stay on: the board does what on_link_loss says', flush=True)
+        print('the servos stay on: the board acts as set by on_link_loss', flush=True)
         return False
     print('The servos hold. Ctrl-C switches them off here: an arm may fall.', flush=True)
     stop.is_set = False

@@ -48,9 +48,11 @@ def answer(arguments: argparse.Namespace) -> Answer:
 
 
 def _drawn(machine_file: MachineFile, arm: SerialArm) -> tuple[list[float], list[float]]:
-    """Radius (m) and torque (N m) of each joint; the torque is 0 where nobody told it."""
+    """Radius (m) and torque (N m) of each joint; the torque is 0 where it is not given."""
     if machine_file.dynamics is None:
         count = len(arm.joint_names)
         return [THICKNESS * arm.characteristic_length] * count, [0.0] * count
-    told = build(ArmDynamicsConfig, machine_file.dynamics, 'dynamics').links
-    return [1e-3 * link.radius_mm for link in told], [link.drive.torque_n_m for link in told]
+    recorded = build(ArmDynamicsConfig, machine_file.dynamics, 'dynamics').links
+    return [1e-3 * link.radius_mm for link in recorded], [
+        link.drive.torque_n_m for link in recorded
+    ]

@@ -81,7 +81,7 @@ def default_points(machine: Machine) -> int:
 
 
 def _for_programs(found: Survey) -> dict[str, Any]:
-    def told(volume: Volume) -> dict[str, Any]:
+    def described(volume: Volume) -> dict[str, Any]:
         return {
             'value': volume.value,
             'error': volume.error,
@@ -94,11 +94,11 @@ def _for_programs(found: Survey) -> dict[str, Any]:
         'ranges': {name: list(ends) for name, ends in found.ranges.items()},
         'volumes': {
             'constant_orientation': {
-                **told(found.constant_orientation),
+                **described(found.constant_orientation),
                 'connected_share': found.connected_share,
             },
             'some_orientation': {
-                **told(found.some_orientation),
+                **described(found.some_orientation),
                 'tilt': found.tilt,
                 'search_gain': found.search_gain,
             },

@@ -44,7 +44,7 @@ class ScriptedPad:
         self.rest(0.2)
 
     def rest(self, seconds: float) -> None:
-        """Nobody touches the pad."""
+        """The pad is not touched."""
         self._play(seconds, {}, is_held=False)
 
     def drive(self, seconds: float, **sticks: float) -> None:
@@ -84,8 +84,8 @@ def teleop() -> Executable:
 
 
 def arm_tour(client: 'Client', machine: Machine, say: 'Callable[[str], None]') -> ArmObservation:
-    """Drives the arm by a scripted pad; true joint angles are heard all the while."""
-    say('the arm: energising its drives, then a gamepad takes it over')
+    """Drives the arm by a scripted pad; true joint angles are received throughout."""
+    say('the arm: energising its drives, then a gamepad takes over')
     client.enable()
     pad = ScriptedPad(client)
     messages: list[JointState] = []
@@ -100,7 +100,7 @@ def arm_tour(client: 'Client', machine: Machine, say: 'Callable[[str], None]') -
         phases.append(Phase(name, begin, time.time()))
         pad.rest(SETTLED)
 
-    say('a goal 0.35 m away; on its way the stick pulls the arm back')
+    say('a goal 0.35 m away; before it arrives the stick pulls the arm back')
     client.publish_goal(kinematics.home.moved([-0.35, 0.0, 0.0, 0.0, 0.0, 0.0]))
     pad.rest(0.7)
     phase('override', {'seconds': 2.0, 'forward': 1.0})
@@ -123,9 +123,9 @@ def arm_tour(client: 'Client', machine: Machine, say: 'Callable[[str], None]') -
 
 
 def look_at(client: 'Client', point: np.ndarray) -> None:
-    """Tells the arm what to look at."""
+    """Publishes the point to look at."""
     publisher = client.node.create_publisher(PointStamped, 'look_at', COMMAND)
-    client.wait('a listener', lambda: publisher.get_subscription_count() > 0, 5.0)
+    client.wait('a subscriber on look_at', lambda: publisher.get_subscription_count() > 0, 5.0)
     message = PointStamped()
     message.point.x, message.point.y, message.point.z = point.tolist()
     publisher.publish(message)

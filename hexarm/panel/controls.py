@@ -49,7 +49,7 @@ class GoalSliders:
         return pose_at(self._values)
 
     def follow(self, pose: Pose) -> None:
-        """Shows another pose without asking for it: the machine went there by other means."""
+        """Shows another pose without a request: the machine went there by other means."""
         values = coordinates(pose, self._centre)
         shown = np.clip(np.round(values * UNITS, 1), self._low, self._high)
         self._values = values
@@ -96,7 +96,7 @@ STATE_COLOURS: dict[str, str] = {
 DIM = '#8b949e'
 
 STOP_AGAIN = 1.0
-"""How often STOP is said while it is held, Hz."""
+"""How often STOP is sent while it is held, Hz."""
 
 IN_SIGHT = """
 <style>
@@ -137,7 +137,7 @@ class Buttons:
             requests.emergency_stop()
 
         # Coroutines run in the server's own loop: they wait for no thread.
-        stop.on_hold(on_stop, callback_hz=STOP_AGAIN)  # said as the finger comes down …
+        stop.on_hold(on_stop, callback_hz=STOP_AGAIN)  # sent on press …
         stop.on_click(on_stop)  # … and by the keyboard
         gui.add_html(IN_SIGHT.format(stop._impl.uuid))
         self._group(gui, 'Servos', {
@@ -157,14 +157,14 @@ class Buttons:
         self._speed = gui.add_slider('speed [%]', 0, 100, 1, 100)
         self._speed.on_update(self._on_speed)
 
-    def show(self, view: View, said: str) -> None:
+    def show(self, view: View, notice: str) -> None:
         """The machine's state, and the last answer to a button."""
-        line = state_line(view, said)
+        line = state_line(view, notice)
         if self._line.content != line:
             self._line.content = line
 
     def show_speed(self, share: float) -> None:
-        """The override that somebody set."""
+        """The override that is set."""
         percent = round(100 * share)
         if self._speed.value != percent:
             self._speed.value = percent
@@ -183,7 +183,7 @@ class Buttons:
         group.on_click(on_press)
 
 
-def state_line(view: View, said: str) -> str:
+def state_line(view: View, notice: str) -> str:
     """The state in colour, the motion beside it, reasons below; as HTML."""
     colour = STATE_COLOURS.get(view.machine_state, DIM)
     motion = f' · {_escaped(view.motion or view.mode)}' if view.mode else ''
@@ -191,7 +191,7 @@ def state_line(view: View, said: str) -> str:
         f'<b style="color:{colour}">{_escaped(view.machine_state)}</b>'
         f'<span style="color:{DIM}">{motion}</span>'
     ]
-    lines += [f'<span>{_escaped(text)}</span>' for text in (view.machine_reason, said) if text]
+    lines += [f'<span>{_escaped(text)}</span>' for text in (view.machine_reason, notice) if text]
     inner = '<br>'.join(lines)
     return f'<div id="state" style="padding:2px 12px 8px;font-size:13px">{inner}</div>'
 

@@ -22,7 +22,7 @@ PAST_TOOL = 0.02
 
 @dataclass(frozen=True)
 class GripperJoint:
-    """A joint outside the kinematics: where it stands when closed and when open, in rad (or m)."""
+    """A joint outside the kinematics: its positions closed and open, in rad (or m)."""
 
     name: str
     closed: float
@@ -34,7 +34,7 @@ class GripperJoint:
 
 
 def gripper_of(name_or_path: str) -> GripperJoint | None:
-    """The joint that a machine file marks as its gripper; ConfigError says what is wrong."""
+    """The joint that a machine file marks as its gripper; ConfigError with all problems."""
     servos = board_config(name_or_path).servos
     calibration = Calibration.from_config(servos)
     for joint in servos.joints:
@@ -68,7 +68,7 @@ class GripperSlider:
         self._slider.on_update(self._on_update)
 
     def follow(self, opening: float) -> None:
-        """Shows an opening without asking for it."""
+        """Shows an opening without a request."""
         percent = round(100 * opening)
         if self._slider.value != percent:
             self._slider.value = percent

@@ -22,7 +22,7 @@ FASTEST = 100
 
 
 class Page:
-    """Everything that a viser server shows of one machine; shared by all who look."""
+    """Everything that a viser server shows of one machine; shared by all its viewers."""
 
     def __init__(
         self,
@@ -59,16 +59,16 @@ class Page:
 
     @property
     def joystick_share(self) -> float:
-        """The part of the machine's speeds that a whole deflection asks for."""
+        """The part of the machine's speeds at full deflection."""
         return float(self._joystick_speed.value) / FASTEST
 
-    def show(self, view: View, said: str) -> None:
+    def show(self, view: View, notice: str) -> None:
         """What moves: many times a second."""
         self.scene.show(view)
-        self._buttons.show(view, said)
+        self._buttons.show(view, notice)
 
     def show_speed(self, share: float) -> None:
-        """The speed override that somebody set."""
+        """The speed override that is set."""
         self._buttons.show_speed(share)
 
     def follow_gripper(self, measured: Stance | None) -> None:
@@ -81,7 +81,7 @@ class Page:
         self._plots.note(view, now)
 
     def redraw(self, view: View) -> None:
-        """What may lag: plots, the way driven, the words of the nodes."""
+        """What may lag: plots, the trail, the nodes' reports."""
         self._plots.draw()
         self.scene.draw_trail()
         text = diagnostics_text(view.nodes)
@@ -98,7 +98,7 @@ class Page:
         self._is_reach_shown.on_update(
             lambda event: self.scene.set_reach_visible(event.target.value)
         )
-        gui.add_button('Clear the way driven').on_click(lambda event: self.scene.clear_trail())
+        gui.add_button('Clear the trail').on_click(lambda event: self.scene.clear_trail())
         gui.add_markdown(LEGEND)
 
 

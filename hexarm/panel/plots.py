@@ -57,8 +57,8 @@ class Plots:
 
 def errors(commanded: Pose, measured: Pose) -> Array:
     """(2,): how far apart two poses are, in mm and degrees."""
-    way = commanded.twist_to(measured)
-    return np.array([1e3 * np.linalg.norm(way[:3]), np.degrees(np.linalg.norm(way[3:]))])
+    offsets = commanded.twist_to(measured)
+    return np.array([1e3 * np.linalg.norm(offsets[:3]), np.degrees(np.linalg.norm(offsets[3:]))])
 
 
 def _series(name: str, colour: str) -> dict[str, Any]:

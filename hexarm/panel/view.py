@@ -23,7 +23,7 @@ class Stance:
 
 @dataclass(frozen=True)
 class NodeReport:
-    """What one node last said on /diagnostics; age in seconds, level 0 (good) to 3."""
+    """One node's last report on /diagnostics; age in seconds, level 0 (good) to 3."""
 
     name: str
     level: int
@@ -34,7 +34,7 @@ class NodeReport:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """Measured and commanded stance (None while nothing fresh is known) and all the words."""
+    """Measured and commanded stance (None while nothing fresh is known) and all texts."""
 
     measured: Stance | None = None
     commanded: Stance | None = None

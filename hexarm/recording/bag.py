@@ -21,11 +21,11 @@ class NotWritten(ManipulatorError, OSError):
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic as its publishers offer it; `qualities` and `type_hash` as rosbag2 keeps them."""
+    """A topic as its publishers offer it; `qos` and `type_hash` as rosbag2 keeps them."""
 
     name: str
     type_name: str
-    qualities: str = ''
+    qos: str = ''
     type_hash: str = ''
 
 
@@ -76,11 +76,11 @@ class Bag:
             topic.name,
             MessageEncoding.CDR,
             self._schemas[topic.type_name],
-            {'offered_qos_profiles': topic.qualities, 'topic_type_hash': topic.type_hash},
+            {'offered_qos_profiles': topic.qos, 'topic_type_hash': topic.type_hash},
         )
 
     def write(self, topic: str, message: bytes, at: int) -> None:
-        """Adds a serialized message that was heard at that time, ns since 1970."""
+        """Adds a serialized message that was received at that time, ns since 1970."""
         try:
             self._writer.add_message(self._channels[topic], at, message, at)
         except OSError as error:

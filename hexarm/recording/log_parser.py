@@ -78,7 +78,7 @@ BAD_STATES = (
     MotionResult.STOPPED,
 )
 COUNTERS = ('setpoints_refused', 'twists_refused', 'joint_states_refused', 'refusals')
-"""Diagnostics that count refusals; those of goals stand in motion_status, each with its reason."""
+"""Diagnostics that count refusals; those of goals are in motion_status, each with its reason."""
 
 
 def is_needed(topic: str) -> bool:
@@ -124,7 +124,7 @@ def _chosen(parsers: dict[str, 'LogParser'], namespace: str | None) -> str:
 
 @dataclass
 class LogParser:
-    """Collects what one machine's topics report."""
+    """Collects the messages of one machine's topics."""
 
     namespace: str
     rows: dict[str, list[tuple[float, Any]]] = field(default_factory=dict)
@@ -211,8 +211,8 @@ def _on_the_turn_of(setpoint: Series, poses: Series) -> Series:
     """The poses with their angles moved by whole turns next to the setpoint's."""
     if not len(setpoint):
         return poses
-    asked = setpoint.before(np.maximum(poses.times, setpoint.times[0]))
-    turns = np.round((asked - poses.values)[:, 3:] / (2 * np.pi))
+    commanded = setpoint.before(np.maximum(poses.times, setpoint.times[0]))
+    turns = np.round((commanded - poses.values)[:, 3:] / (2 * np.pi))
     angles = poses.values[:, 3:] + 2 * np.pi * turns
     return Series(poses.times, np.hstack([poses.values[:, :3], angles]))
 

@@ -16,7 +16,7 @@ from hexarm.recording.run_summary import Event, RunSummary, Series
 from manipulator.arrays import Array
 from manipulator.states import MachineState, MotionResult
 
-ASKED, DONE, GOAL, BAD, NOTE = '#9aa5b1', '#0b6e99', '#d4a017', '#c1121f', '#4a5a6a'
+COMMANDED, DONE, GOAL, BAD, NOTE = '#9aa5b1', '#0b6e99', '#d4a017', '#c1121f', '#4a5a6a'
 JOINTS = ('#0b6e99', '#3aa6b9', '#6a994e', '#d4a017', '#d1603d', '#8e4162', '#5c677d')
 RESULTS: dict[str, str] = {MotionResult.MOVING: DONE, MotionResult.PLANNING: '#3aa6b9'}
 STATES: dict[str, str] = {
@@ -44,8 +44,8 @@ QUIET = (
 def draw(summary: RunSummary, begin: float, end: float, picture: Path) -> None:
     """Saves the picture of the time from begin to end (s)."""
     part = summary.between(begin, end)
-    told = numbered(part.events)
-    lines = min(len(told), LISTED) + (len(told) > LISTED)
+    listed = numbered(part.events)
+    lines = min(len(listed), LISTED) + (len(listed) > LISTED)
     height = 12.2 + 0.24 * lines
     plt.rcParams.update({'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False})
     figure = plt.figure(figsize=(13, height), dpi=110)
@@ -66,10 +66,10 @@ def draw(summary: RunSummary, begin: float, end: float, picture: Path) -> None:
         axes.tick_params(labelbottom=axes in panels[8:])
     for axes in panels:
         axes.grid(alpha=0.25)
-        for _, event in told:
+        for _, event in listed:
             axes.axvline(event.time, color=BAD if event.is_bad else NOTE, lw=0.7, alpha=0.55)
-    _numbers(strips, told)
-    _words(figure, summary, told, height)
+    _numbers(strips, listed)
+    _words(figure, summary, listed, height)
     figure.savefig(picture)
     plt.close(figure)
 
@@ -98,7 +98,7 @@ def _states(axes: Axes, events: tuple[Event, ...], begin: float, end: float) -> 
         changes = [e for e in events if e.source == source]
         for event, until in zip(changes, [*(e.time for e in changes[1:]), end], strict=True):
             left, right = max(event.time, begin), min(until, end)
-            colour = STATES.get(event.what, BAD if event.is_bad else ASKED)
+            colour = STATES.get(event.what, BAD if event.is_bad else COMMANDED)
             colour = RESULTS.get(event.what, colour)
             if right > left:
                 axes.barh(y, right - left, 0.42, left, align='edge', color=colour, alpha=0.55)
@@ -110,11 +110,11 @@ def _poses(panels: list[Axes], part: RunSummary) -> None:
     for k, axes in enumerate(panels):
         column = k // 2 if k % 2 == 0 else 3 + k // 2
         scale = 1e3 if column < 3 else np.degrees(1.0)
-        asked, done, goals = (
+        commanded, done, goals = (
             Series(s.times, scale * s.values[:, [column]])
             for s in (part.setpoint, part.pose, part.goals)
         )
-        _line(axes, asked, color=ASKED, lw=3.2, label='commanded (setpoint)')
+        _line(axes, commanded, color=COMMANDED, lw=3.2, label='commanded (setpoint)')
         _line(axes, done, color=DONE, lw=1.1, label='measured (pose)')
         axes.set_ylabel(AXES[k])
         _goals(axes, goals)
@@ -160,7 +160,7 @@ def _joints(panels: list[Axes], part: RunSummary) -> None:
 
 
 def _line(axes: Axes, series: Series, **style: Any) -> None:
-    """A line that breaks where nothing was heard for long."""
+    """A line that breaks where nothing was received for long."""
     times, values = broken(series)
     axes.plot(times, values, solid_capstyle='round', **style)
 
@@ -174,13 +174,13 @@ def broken(series: Series) -> tuple[Array, Array]:
     return np.insert(series.times, gaps, np.nan), np.insert(series.values, gaps, np.nan, axis=0)
 
 
-def _numbers(strips: list[Axes], told: list[tuple[int, Event]]) -> None:
+def _numbers(strips: list[Axes], listed: list[tuple[int, Event]]) -> None:
     """The number of each event above its moment, pushed aside where there are many."""
     for axes in strips:
         left, right = axes.get_xlim()
         step = NUMBER_WIDTH * (right - left)
         place = left - step
-        for number, event in told[:LISTED]:
+        for number, event in listed[:LISTED]:
             place = max(event.time, place + step)
             axes.text(
                 place, 1.02, str(number), ha='center', va='bottom', size=7.5, weight='bold',
@@ -189,17 +189,17 @@ def _numbers(strips: list[Axes], told: list[tuple[int, Event]]) -> None:
 
 
 def _words(
-    figure: Figure, summary: RunSummary, told: list[tuple[int, Event]], height: float
+    figure: Figure, summary: RunSummary, listed: list[tuple[int, Event]], height: float
 ) -> None:
     name = f'/{summary.namespace}: commanded, measured, refused'
     figure.text(0.02, 1 - 0.36 / height, name, size=14, weight='bold')
     handles, labels = figure.axes[2].get_legend_handles_labels()
     figure.legend(handles, labels, ncols=3, frameon=False, loc='upper right')
-    lines = [_sentence(number, event) for number, event in told[:LISTED]]
-    if len(told) > LISTED:
-        lines.append(f'… and {len(told) - LISTED} more: hexarm plot --csv lists all')
+    lines = [_sentence(number, event) for number, event in listed[:LISTED]]
+    if len(listed) > LISTED:
+        lines.append(f'… and {len(listed) - LISTED} more: hexarm plot --csv lists all')
     for k, line in enumerate(lines):
-        is_bad = k < LISTED and told[k][1].is_bad
+        is_bad = k < LISTED and listed[k][1].is_bad
         y = (0.24 * (len(lines) - k) - 0.02) / height
         figure.text(0.02, y, line, color=BAD if is_bad else NOTE, size=8.5)
 

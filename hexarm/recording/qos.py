@@ -1,4 +1,4 @@
-"""With which quality of service a topic is heard, and how a recording tells what was offered."""
+"""The quality of service of a recorder's subscriptions, and the offered one as metadata."""
 
 from collections.abc import Sequence
 
@@ -11,10 +11,10 @@ DEPTH = 500
 
 
 def subscription_qos(
-    publishers: Sequence[QoSProfile], listeners: Sequence[QoSProfile]
+    publishers: Sequence[QoSProfile], subscribers: Sequence[QoSProfile]
 ) -> QoSProfile:
-    """What every publisher can serve; before there is one, what it must offer its listeners."""
-    offers = publishers or listeners
+    """What every publisher can serve; before there is one, what other subscribers request."""
+    offers = publishers or subscribers
     every = all if publishers else any
     is_reliable = every(o.reliability == ReliabilityPolicy.RELIABLE for o in offers)
     is_latched = every(o.durability == DurabilityPolicy.TRANSIENT_LOCAL for o in offers)
@@ -32,7 +32,7 @@ def offered(publishers: Sequence[QoSProfile]) -> str:
 
 
 def _as_metadata(profile: QoSProfile) -> dict[str, object]:
-    # Discovery tells neither history nor depth: one that has to keep a message says so.
+    # Discovery provides neither history nor depth: at least one message must be kept.
     return {
         'history': 'keep_last',
         'depth': max(profile.depth, 1),

@@ -29,7 +29,7 @@ DAMAGED = (
 
 
 def messages(path: Path, is_needed: Callable[[str], bool]) -> Iterator[tuple[str, float, Any]]:
-    """Topic, time of receipt (s) and message of each wanted topic, in the order of the file.
+    """Topic, time of receipt (s) and message of each needed topic, in the order of the file.
 
     Takes a bag's folder, too. InvalidInput for what is no MCAP recording of ROS 2 messages, or
     damaged.
@@ -60,7 +60,7 @@ def _decoded(path: Path, is_needed: Callable[[str], bool]) -> Iterator[tuple[str
 
 
 def mcap_of(path: Path) -> Path:
-    """The file itself, or the one in a bag's folder; InvalidInput says what is there instead."""
+    """The file itself, or the one in a bag's folder; InvalidInput names what is there instead."""
     if not path.is_dir():
         return path
     found = sorted(path.glob('*.mcap'))

@@ -1,4 +1,4 @@
-"""What a recording tells of one machine: what was commanded, measured and refused, as numbers."""
+"""The summary of one machine's run: what was commanded, measured and refused, as numbers."""
 
 from dataclasses import dataclass
 
@@ -37,7 +37,7 @@ class Series:
 
 @dataclass(frozen=True)
 class Event:
-    """Something that was said: by whom, what and why; count where it was said repeatedly."""
+    """A reported event: its source, what and why; count where it was reported repeatedly."""
 
     time: float
     source: str
@@ -71,18 +71,18 @@ class RunSummary:
     @property
     def pose_error(self) -> Series:
         """How far each pose is from the last setpoint before it: distance (m), angle (rad)."""
-        asked, done = self.setpoint.before(self.pose.times), self.pose.values
-        known = ~np.isnan(asked[:, 0])
-        asked, done = asked[known], done[known]
-        twist = Pose.from_xyz_rpy(asked[:, :3], asked[:, 3:]).inverse() @ Pose.from_xyz_rpy(
-            done[:, :3], done[:, 3:]
-        )
+        commanded, measured = self.setpoint.before(self.pose.times), self.pose.values
+        known = ~np.isnan(commanded[:, 0])
+        commanded, measured = commanded[known], measured[known]
+        twist = Pose.from_xyz_rpy(
+            commanded[:, :3], commanded[:, 3:]
+        ).inverse() @ Pose.from_xyz_rpy(measured[:, :3], measured[:, 3:])
         angle = np.arccos(np.clip((np.trace(twist.rotation, axis1=1, axis2=2) - 1) / 2, -1, 1))
-        distance = np.linalg.norm(asked[:, :3] - done[:, :3], axis=1)
+        distance = np.linalg.norm(commanded[:, :3] - measured[:, :3], axis=1)
         return Series(self.pose.times[known], np.stack([distance, angle], axis=1))
 
     @property
     def joint_error(self) -> Series:
         """How far each joint is from its last command before (n, joints)."""
-        asked = self.joint_command.before(self.joint_states.times)
-        return Series(self.joint_states.times, self.joint_states.values - asked)
+        commanded = self.joint_command.before(self.joint_states.times)
+        return Series(self.joint_states.times, self.joint_states.values - commanded)

@@ -59,8 +59,8 @@ def test_words_from_the_port_to_the_board(monitor):
     monitor.session.opened(0.0)
     monitor.note(Opened(), 0.0)
     assert monitor.status.state == 'booting'
-    monitor.note(Disconnected('nobody said HELLO'), 5.0)
-    assert (monitor.status.state, monitor.status.reason) == ('disconnected', 'nobody said HELLO')
+    monitor.note(Disconnected('no HELLO came'), 5.0)
+    assert (monitor.status.state, monitor.status.reason) == ('disconnected', 'no HELLO came')
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What the panel's node hears of a machine, kept until the page shows it."""
+"""The panel's subscriptions to a machine, kept until the page shows them."""
 
 import contextlib
 import time
@@ -34,7 +34,7 @@ FRESH = 0.5
 
 @dataclass
 class _Newest:
-    """The newest message of a topic, as it came: most are overtaken before anybody looks."""
+    """The newest message of a topic, serialized: most are replaced before they are shown."""
 
     kind: type
     serialized: bytes = b''
@@ -72,8 +72,8 @@ class MachineSubscriptions:
         subscribe(DiagnosticStatus, 'motion_status', self._on_motion_status, LATCHED)
         subscribe(DiagnosticArray, '/diagnostics', self._on_diagnostics, 10)
 
-    def listen(self, is_watched: bool) -> None:
-        """Hears the fast topics only while somebody looks: they are most of the work."""
+    def watch(self, is_watched: bool) -> None:
+        """Subscribes to the fast topics only while a page is open: they are most of the work."""
         if is_watched == bool(self._subscriptions):
             return
         for subscription in self._subscriptions:

@@ -1,4 +1,4 @@
-"""One web page for one machine: hears the graph, draws the page, sends what hands ask for."""
+"""One web page for one machine: shows the graph, sends the user's requests."""
 
 import time
 from collections.abc import Callable
@@ -39,7 +39,7 @@ HAND_RESTS = 2.0
 """Seconds after the last move of a slider in which the sliders stay where the hand left them."""
 
 FOLLOWED = (MotionMode.HOLD, MotionMode.JOG, MotionMode.CYCLE, MotionMode.PATH)
-"""Modes in which the machine goes where the sliders did not ask it to."""
+"""Modes in which the machine moves without the sliders."""
 
 ELSEWHERE = 1e-4
 REACH_GRID = (13, 24)
@@ -83,7 +83,7 @@ class PanelNode(Node):
         self.get_logger().info(f'the page is on {self.address}')
 
     def close(self) -> None:
-        """Lets go of the machine, then of the pages."""
+        """Releases the machine, then closes the pages."""
         self._topics.close()
         stop_server(self._server)
 
@@ -96,7 +96,7 @@ class PanelNode(Node):
         if self._is_time_for(GOAL_EVERY):
             self._requests.send_goal()
         is_watched = bool(self._server.get_clients())
-        self._subscriptions.listen(is_watched)
+        self._subscriptions.watch(is_watched)
         if is_watched:
             self._draw()
 

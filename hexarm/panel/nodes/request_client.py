@@ -1,4 +1,4 @@
-"""What the panel asks of the graph: goals, services, the emergency stop, the speed override."""
+"""The panel's requests to the graph: goals, services, the emergency stop, the speed override."""
 
 import queue
 import time
@@ -77,7 +77,7 @@ class RequestClient:
         self._goal = pose
 
     def put(self) -> None:
-        """Everything wished since the last time, to the graph."""
+        """Sends all requests since the last call to the graph."""
         while True:
             try:
                 self._pending.get_nowait()()
@@ -107,7 +107,7 @@ class RequestClient:
     def _call(self, name: str, request: Any) -> None:
         client = self._clients[name]
         if not client.service_is_ready():
-            self.notice = f'{name}: nobody answers'
+            self.notice = f'{name}: the service is not available'
             return
         future = client.call_async(request)
         self._waiting[future] = name, time.monotonic() + ANSWERED_WITHIN
@@ -119,7 +119,7 @@ class RequestClient:
         self.notice = '' if answer.success else f'{name}: {answer.message}'
 
     def _give_up(self) -> None:
-        """Says which services do not answer: a node that was killed looks ready for 20 s."""
+        """Notes services that do not answer: a node that was killed seems ready for 20 s."""
         now = time.monotonic()
         for future, (name, until) in list(self._waiting.items()):
             if now > until:

@@ -42,7 +42,7 @@ def test_a_machine_is_enabled_stopped_cleared_and_disabled_without_ros2(user, sa
 def test_where_nobody_answers_namespace_and_domain_are_named_and_where_somebody_is(user, says):
     status, said = says('enable', 'hexapd')
     assert (status, said.count('\n')) == (1, 1)
-    assert 'hexarm: nobody answers in /hexapd on ROS domain ' in said
+    assert 'hexarm: no machine found in /hexapd on ROS domain ' in said
     assert said.endswith('there are machines in /hexapod\n')
 
 
@@ -63,4 +63,4 @@ def test_a_stop_goes_out_over_ros_before_the_machine_has_said_anything(user, hex
     user.wait('the end', lambda: process.poll() is not None)
     user.node.destroy_subscription(listener)
     assert process.returncode == 1
-    assert 'nobody answers in /silent' in process.stdout.read()
+    assert 'no machine found in /silent' in process.stdout.read()

@@ -162,7 +162,7 @@ def test_it_says_that_it_records_only_once_it_has_met_publishers(user, hexarm, t
     recorder = hexarm('record', 'later', '-o', str(tmp_path / 'later.mcap'))
     assert recorder.stdout.readline() == 'waiting for publishers of /later\n'
     said = recorder.stdout.readline()
-    assert said.startswith('nobody answers in /later on ROS domain')
+    assert said.startswith('no machine found in /later on ROS domain')
     assert said.endswith('; still waiting, Ctrl-C ends it\n')
     publisher = user.node.create_publisher(Float64, '/later/voltage', 10)
     assert recorder.stdout.readline().startswith('recording /later into ')
@@ -180,7 +180,7 @@ def test_it_says_that_it_records_only_once_it_has_met_publishers(user, hexarm, t
 def test_namespace_without_a_machine_says_so_and_leaves_no_file(hexarm, tmp_path):
     path = tmp_path / 'nothing.mcap'
     said = ends_with(hexarm('record', 'nobody', '-o', str(path), '--for', '1.5'), 1)
-    assert 'nobody answers in /nobody on ROS domain' in said
+    assert 'no machine found in /nobody on ROS domain' in said
     assert not path.exists()
 
 
@@ -189,7 +189,7 @@ def test_misspelt_topic_alone_is_not_blamed_on_the_graph(user, hexarm, tmp_path)
     words = ('-o', str(path), '--for', '6', '--topics', 'poes')
     said = ends_with(hexarm('record', 'hexapod', *words), 1)
     assert 'there is no topic /hexapod/poes, did you mean /hexapod/pose?' in said
-    assert 'is a graph running' not in said
+    assert 'is it running' not in said
     assert not path.exists()
 
 

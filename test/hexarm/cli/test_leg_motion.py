@@ -35,7 +35,7 @@ def test_figures_of_the_experiment(capsys, machine, height, axis, vector, degree
 def test_table_has_eleven_steps_and_the_deviation(capsys):
     assert main(['leg-motion', 'stewart_6_6', *PAPER]) == 0
     header, *rows, last = capsys.readouterr().out.splitlines()
-    assert header.split()[:2] == ['way', '(%)']
+    assert header.split()[:2] == ['path', '(%)']
     assert [float(row.split()[0]) for row in rows] == [10.0 * k for k in range(11)]
     assert last == 'deviation from linear: at most 2.106 mm (1.326 mm on one axis) and 0.0261°'
 

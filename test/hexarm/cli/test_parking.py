@@ -88,7 +88,7 @@ def test_without_a_terminal_a_machine_that_cannot_park_is_left_holding(
     assert user.asked == []
     said = capsys.readouterr().out
     assert f'not parked: the machine is {state}' in said
-    assert 'the board does what on_link_loss says' in said
+    assert 'the board acts as set by on_link_loss' in said
     assert 'hexarm disable' not in said  # once the graph has ended nobody would hear it
 
 

@@ -18,16 +18,16 @@ def beat(press, tick=None, stick=UP):
 
 def held(joystick, page=1, press=0, now=0.0):
     """A press of two beats, so that a tick has come back; returns the time."""
-    joystick.hear(page, beat(press), now)
-    joystick.hear(page, beat(press, tick=now), now + STEP)
+    joystick.receive(page, beat(press), now)
+    joystick.receive(page, beat(press, tick=now), now + STEP)
     return now + STEP
 
 
 def test_nothing_moves_before_a_tick_came_back():
     joystick = Joystick()
-    joystick.hear(1, beat(0), 0.0)
+    joystick.receive(1, beat(0), 0.0)
     assert joystick.stick(0.0) is None
-    joystick.hear(1, beat(0, tick=0.0), STEP)
+    joystick.receive(1, beat(0, tick=0.0), STEP)
     assert joystick.stick(STEP) is UP
     assert joystick.holder(STEP) == 1
 
@@ -59,7 +59,7 @@ def test_beats_after_a_silence_move_nothing_until_a_new_press():
     joystick = Joystick()
     now = held(joystick) + 1.0
     for _ in range(20):
-        joystick.hear(1, beat(0, tick=now), now + STEP)
+        joystick.receive(1, beat(0, tick=now), now + STEP)
         now += STEP
         assert joystick.stick(now) is None
     now = held(joystick, press=1, now=now)
@@ -69,7 +69,7 @@ def test_beats_after_a_silence_move_nothing_until_a_new_press():
 def test_beats_that_queued_up_on_the_line_end_the_press():
     joystick = Joystick()
     now = held(joystick)
-    joystick.hear(1, beat(0, tick=now - RELEASE - 0.01), now + 0.01)
+    joystick.receive(1, beat(0, tick=now - RELEASE - 0.01), now + 0.01)
     assert joystick.stick(now + 0.01) is None
 
 
@@ -77,19 +77,19 @@ def test_beats_that_queued_up_on_the_line_end_the_press():
 def test_a_tick_from_the_future_or_of_another_press_ends_the_press(tick):
     joystick = Joystick()
     now = held(joystick)
-    joystick.hear(1, beat(0, tick=tick), now + STEP)
+    joystick.receive(1, beat(0, tick=tick), now + STEP)
     assert joystick.stick(now + STEP) is None
 
 
 def test_the_first_page_has_it_and_the_second_must_press_anew():
     joystick = Joystick()
     now = held(joystick, page=1)
-    joystick.hear(2, beat(0, stick=-UP), now)
-    joystick.hear(2, beat(0, tick=now, stick=-UP), now)
+    joystick.receive(2, beat(0, stick=-UP), now)
+    joystick.receive(2, beat(0, tick=now, stick=-UP), now)
     assert joystick.stick(now) is UP
     assert 'another page' in joystick.reason(2)
     joystick.release(1, 0)
-    joystick.hear(2, beat(0, tick=now, stick=-UP), now + STEP)
+    joystick.receive(2, beat(0, tick=now, stick=-UP), now + STEP)
     assert joystick.stick(now + STEP) is None
     now = held(joystick, page=2, press=1, now=now + STEP)
     assert joystick.holder(now) == 2
@@ -99,7 +99,7 @@ def test_a_stop_takes_it_from_the_holder_until_a_new_press():
     joystick = Joystick()
     now = held(joystick)
     joystick.stop()
-    joystick.hear(1, beat(0, tick=now), now + STEP)
+    joystick.receive(1, beat(0, tick=now), now + STEP)
     assert joystick.stick(now + STEP) is None
     assert 'stopped' in joystick.reason(1)
     assert joystick.stick(held(joystick, press=1, now=now + STEP)) is UP
@@ -123,7 +123,7 @@ def test_whatever_comes_it_moves_only_on_a_fresh_beat_of_the_holder(events):
     for kind, page, press, age, pause in events:
         now += pause
         if kind == 'beat':
-            joystick.hear(page, beat(press, None if age is None else now - age), now)
+            joystick.receive(page, beat(press, None if age is None else now - age), now)
             heard[page] = now, age
         elif kind == 'release':
             joystick.release(page, press)
