@@ -10,12 +10,12 @@ from bench.row import Row
 from hexapod_control.workspace import sample
 from hexarm.machines import load
 from manipulator.analysis.accuracy import JointErrors, drawn_spread, linear_spread
+from manipulator.analysis.free_paths import admits
 from manipulator.analysis.nearest import nearest_reachable
 from manipulator.analysis.reach import reach
 from manipulator.analysis.readings import displaced
 from manipulator.analysis.survey import SomeOrientation
 from manipulator.analysis.volume import bounding_box, volume, with_orientation
-from manipulator.analysis.way import admits
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.machine_limits import BodyHeight, JointRange
 from manipulator.machine import Machine

@@ -69,7 +69,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
             'end': _pose(left.pose),
             'reason': left.reason,
         }
-        lines.append(_way_in_words(left))
+        lines.append(_travel_in_words(left))
     return for_programs, lines
 
 
@@ -118,6 +118,6 @@ def _bound(value: float) -> str:
     return f'{value:.4g}' if math.isfinite(value) else ''
 
 
-def _way_in_words(left: Travel) -> str:
+def _travel_in_words(left: Travel) -> str:
     reason = f', then {left.reason}' if left.reason else ', and no limit was met'
     return f'goes on for {left.seconds:.3f} s, {length(left.metres)}{reason}'

@@ -11,10 +11,10 @@ from arm_control.arm import SerialArm
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.cli.progress import progress
 from hexarm.machines import load
+from manipulator.analysis.free_paths import is_joint_box
 from manipulator.analysis.inside import conditions
 from manipulator.analysis.survey import Survey, survey
 from manipulator.analysis.volume import Box, Volume
-from manipulator.analysis.way import is_joint_box
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.formatting import counted

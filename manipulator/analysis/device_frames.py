@@ -50,8 +50,8 @@ class DeviceFrames:
         rows = np.concatenate(
             [np.broadcast_to(np.eye(3), (count, 3, 3)), R_Z @ nominal.rotation], axis=2
         ).reshape(-1, 6)
-        wanted = (measured.position - nominal.position @ R_Z.T).ravel()
-        shifts = np.linalg.lstsq(rows, wanted, rcond=1e-9)[0]
+        target = (measured.position - nominal.position @ R_Z.T).ravel()
+        shifts = np.linalg.lstsq(rows, target, rcond=1e-9)[0]
         return cls(Pose(shifts[:3], R_Z), Pose(shifts[3:], R_X))
 
     @staticmethod

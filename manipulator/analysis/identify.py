@@ -37,7 +37,7 @@ class Fit:
 
 def fit(errors: Errors, tolerances: Array) -> Fit:
     """The values (p,), beginning at zero; NoSolution where no minimum is found."""
-    from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: for who asks)
+    from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: only needed here)
 
     has_prior = np.isfinite(tolerances)
     scale, prior = np.where(has_prior, tolerances, 1.0), np.diag(has_prior.astype(np.float64))

@@ -46,7 +46,7 @@ def joint_box(machine: Machine) -> tuple[Array, Array]:
 
 def _descended(machine: Machine, target: Pose, start: Array, low: Array, high: Array) -> Pose:
     """A local minimum of the distance over joints (n,) between `low` and `high`."""
-    from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: for who asks)
+    from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: only needed here)
 
     kinematics, weights = machine.kinematics, scale(machine)[:, None]
 

@@ -13,7 +13,7 @@ def nearest_point(target: Array, normals: Array, slack: Array) -> tuple[Array, A
     target − y = −normalsᵀ·multipliers. Least distance programming, chapter 23. Where no y does,
     or none is found, y is `target` and the multipliers are NaN.
     """
-    from scipy.optimize import nnls  # noqa: PLC0415 (50 MB: for who asks)
+    from scipy.optimize import nnls  # noqa: PLC0415 (50 MB: only needed here)
 
     lacking = -(slack + normals @ target)
     matrix = np.vstack([normals.T, lacking])

@@ -5,9 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from manipulator.analysis.descent import descended
+from manipulator.analysis.free_paths import (
+    admits,
+    are_linked,
+    free_share_from_home,
+    is_connected,
+    is_joint_box,
+)
 from manipulator.analysis.joint_descent import nearest_by_joints
 from manipulator.analysis.readings import displaced, distance
-from manipulator.analysis.way import admits, are_linked, is_connected, is_joint_box, way_home_share
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -18,7 +24,7 @@ KICKS, KICK_POSES, KICK_RADII, KICK_GAIN = 12, 1500, (3e-2, 1e-2, 1e-3, 1e-4, 1e
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """A reachable pose, and how far it is from the one wanted, in metres (see `metric`)."""
+    """A reachable pose, and how far it is from the target, in metres (see `metric`)."""
 
     pose: Pose
     distance: float
@@ -29,7 +35,7 @@ def nearest_reachable(machine: Machine, target: Pose, most_steps: int = MOST_STE
 
     It is admitted and connected to home: both are checked. It is a local minimum of the distance
     that a random search about it could not better, the best of three that are found from the ends
-    of straight ways: from home towards the target, its position alone, its orientation alone.
+    of lines: from home towards the target, its position alone, its orientation alone.
     """
     if is_joint_box(machine):
         pose = nearest_by_joints(machine, target)
@@ -62,14 +68,14 @@ def _settled(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Po
 
 
 def _starts(machine: Machine, target: Pose) -> list[Pose]:
-    """Ends of free ways from home, the straight one first; `target` alone when that is free."""
+    """Ends of free paths from home, the straight one first; `target` alone when that is free."""
     home = machine.kinematics.home
     twist: Array = home.twist_to(target)
-    straight = way_home_share(machine, target)
+    straight = free_share_from_home(machine, target)
     if straight == 1.0:
         return [target]
     starts = [home.moved(straight * twist)]
     for part in (np.repeat([1.0, 0.0], 3), np.repeat([0.0, 1.0], 3)):
         end = home.moved(part * twist)
-        starts.append(home.moved(way_home_share(machine, end) * part * twist))
+        starts.append(home.moved(free_share_from_home(machine, end) * part * twist))
     return starts

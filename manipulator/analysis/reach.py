@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from manipulator.analysis.free_paths import is_connected
 from manipulator.analysis.readings import LimitReading
 from manipulator.analysis.slope import slopes
-from manipulator.analysis.way import is_connected
 from manipulator.arrays import Array
 from manipulator.errors import Unreachable
 from manipulator.machine import Machine
@@ -18,7 +18,7 @@ from manipulator.unit_hints import hint_at_metres
 class Reach:
     """The answer for one pose.
 
-    is_admitted: it closes and keeps every limit; is_connected: a way from home was found. limits
+    is_admitted: it closes and keeps every limit; is_connected: a path from home was found. limits
     holds a reading for every value that exists, the nearest limit first: what is broken, the
     farthest out first, comes before what is kept. Values that a leg which does not close leaves
     undefined are missing. reason is empty for a reachable pose.
@@ -43,7 +43,7 @@ class Reach:
 def reach(machine: Machine, pose: Pose, near: Array | None = None) -> Reach:
     """Which limits one pose meets, on the branch nearest to `near` (default: home's).
 
-    Connection is judged as `way.is_connected` does.
+    Connection is judged as `free_paths.is_connected` does.
     """
     limits = readings(machine, pose, near)
     try:
@@ -52,7 +52,7 @@ def reach(machine: Machine, pose: Pose, near: Array | None = None) -> Reach:
     except Unreachable as error:
         return Reach(False, False, limits, str(error))
     connected = is_connected(machine, pose)
-    reason = '' if connected else 'keeps all limits, but no way from home that does was found'
+    reason = '' if connected else 'keeps all limits, but no path from home that does was found'
     return Reach(True, connected, limits, reason)
 
 

@@ -13,7 +13,7 @@ from manipulator.machine import Machine
 from manipulator.pose import Pose
 
 CHECKS_PER_LENGTH = 70
-"""How closely a way is checked: as the walkers of the workspace are."""
+"""How closely a path is checked: as the walkers of the workspace are."""
 
 
 def scale(machine: Machine) -> Array:

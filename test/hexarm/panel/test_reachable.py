@@ -11,7 +11,7 @@ from hexarm.panel.reachable import (
     pose_at,
     reachable_ranges,
 )
-from manipulator.analysis.way import admits
+from manipulator.analysis.free_paths import admits
 from manipulator.pose import Pose
 
 PLATFORMS = ['robocake', 'stewart_6_3']

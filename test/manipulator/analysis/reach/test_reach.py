@@ -3,9 +3,9 @@ import pytest
 
 from hexapod_control.workspace import sample
 from manipulator import rotation as so3
+from manipulator.analysis.free_paths import is_connected, is_free
 from manipulator.analysis.reach import reach
 from manipulator.analysis.readings import displaced, distance
-from manipulator.analysis.way import is_connected, is_free
 from manipulator.pose import Pose
 
 
@@ -118,7 +118,7 @@ def test_a_pose_beyond_a_forward_singularity_is_admitted_but_not_connected(roboc
         found = reach(robocake, poses[k])
         assert found.is_admitted
         assert not found.is_connected
-        assert 'no way from home' in found.reason
+        assert 'no path from home' in found.reason
     for k in np.flatnonzero(sides > 0.0)[:10]:
         assert is_connected(robocake, poses[k])
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from hexapod_control.workspace import axis_range
+from manipulator.analysis.free_paths import admits
 from manipulator.analysis.travel import path_report, travel
-from manipulator.analysis.way import admits
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
 

@@ -1,4 +1,4 @@
-"""Ways between poses: whether they are free, and whether one leads from home."""
+"""Paths between poses: whether they are free, and whether one leads from home."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
-INSIDE = 3e-3  # how far inside the limits bent ways keep, by the characteristic length
+INSIDE = 3e-3  # how far inside the limits detours keep, by the characteristic length
 MOST_RESTORATIONS = 8
 MOST_BENDS = 8
 
@@ -51,7 +51,7 @@ def keeps_limits(machine: Machine, poses: Pose, joints: Array) -> Mask:
     return inside
 
 
-def straight_way(machine: Machine, start: Pose, end: Pose) -> Pose:
+def line_between(machine: Machine, start: Pose, end: Pose) -> Pose:
     """Poses from start to end, both with it, at most 1/70 of the characteristic length apart."""
     spacing = machine.kinematics.characteristic_length / CHECKS_PER_LENGTH
     count = int(np.ceil(float(distance(machine, start, end)) / spacing)) + 1
@@ -59,12 +59,12 @@ def straight_way(machine: Machine, start: Pose, end: Pose) -> Pose:
 
 
 def is_free(machine: Machine, start: Pose, end: Pose) -> bool:
-    """Whether the straight way from start to end keeps all limits."""
-    return bool(admits(machine, straight_way(machine, start, end)).all())
+    """Whether the line from start to end keeps all limits."""
+    return bool(admits(machine, line_between(machine, start, end)).all())
 
 
 def is_connected(machine: Machine, pose: Pose) -> bool:
-    """Whether a free way leads from home to an admitted pose: straight, or bent about limits.
+    """Whether a free path leads from home to an admitted pose: straight, or bent about limits.
 
     True is certain (to 1/70 of the characteristic length); False means that none was found.
     """
@@ -75,12 +75,12 @@ def is_connected(machine: Machine, pose: Pose) -> bool:
     home = machine.kinematics.home
     if are_linked(machine, home, pose):
         return True
-    last = home.moved(way_home_share(machine, pose) * home.twist_to(pose))
+    last = home.moved(free_share_from_home(machine, pose) * home.twist_to(pose))
     return are_linked(machine, last, pose)
 
 
 def are_linked(machine: Machine, start: Pose, end: Pose, bends: int = MOST_BENDS) -> bool:
-    """Whether a way is free that is straight, or bent at middles which are put inside."""
+    """Whether a path is free that is straight, or bent at middles which are put inside."""
     if is_free(machine, start, end):
         return True
     middle = put_inside(machine, start.moved(0.5 * start.twist_to(end))) if bends else None
@@ -111,11 +111,11 @@ def put_inside(machine: Machine, pose: Pose) -> Pose | None:
     return pose if admits(machine, pose[None])[0] else None
 
 
-def way_home_share(machine: Machine, pose: Pose) -> float:
-    """The part of the straight way from home to `pose` before the first limit, 1 for all of it."""
+def free_share_from_home(machine: Machine, pose: Pose) -> float:
+    """The part of the line from home to `pose` before the first limit, 1 for all of it."""
     home = machine.kinematics.home
-    way = straight_way(machine, home, pose)
-    inside = admits(machine, way)
+    path = line_between(machine, home, pose)
+    inside = admits(machine, path)
     if inside.all():
         return 1.0
     count = len(inside) - 1
@@ -128,15 +128,15 @@ def way_home_share(machine: Machine, pose: Pose) -> float:
 def last_free(
     machine: Machine,
     start: Pose,
-    way: Array,
+    path: Array,
     free: float,
     beyond: float,
     near: Array | None = None,
 ) -> float:
-    """Between a part of `way` (6,) that is admitted and one that is not: the last admitted one."""
+    """Between an admitted part of `path` (6,) and one that is not: the last admitted one."""
     while beyond - free > 1e-12 * max(1.0, abs(beyond)):
         shares = np.linspace(free, beyond, 34)
-        inside = admits(machine, displaced(machine, start, shares[1:-1, None] * way), near)
+        inside = admits(machine, displaced(machine, start, shares[1:-1, None] * path), near)
         first = len(inside) if inside.all() else int(np.argmin(inside))
         free, beyond = float(shares[first]), float(shares[first + 1])
     return max(free, 0.0)
