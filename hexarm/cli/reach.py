@@ -17,9 +17,8 @@ from hexarm.cli.answers import (
 )
 from hexarm.cli.statuses import OUT_OF_REACH
 from hexarm.machines import load
-from manipulator.analysis.explain import pose_in_words
 from manipulator.analysis.nearest import nearest_reachable
-from manipulator.analysis.reach import Reach, reach
+from manipulator.analysis.reach import Reach, pose_in_words, reach
 from manipulator.analysis.readings import LimitReading
 from manipulator.analysis.travel import Travel, travel
 from manipulator.formatting import length

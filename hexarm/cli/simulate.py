@@ -9,7 +9,7 @@ import numpy as np
 
 from hexarm import machines
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
-from hexarm.cli.mjcf import modelled
+from hexarm.cli.export import modelled
 from hexarm.simulation.compensation import Compensation
 from hexarm.simulation.limit_search import (
     PAPER_AMPLITUDE,

@@ -8,8 +8,7 @@ import numpy as np
 
 from hexarm.panel.controls import Buttons, GoalSliders, Requests
 from hexarm.panel.gripper import GripperSlider
-from hexarm.panel.plots import Plots
-from hexarm.panel.readout import diagnostics_text
+from hexarm.panel.readout import Plots, diagnostics_text
 from hexarm.panel.scene import Scene
 from hexarm.panel.view import Stance, View
 from manipulator.arrays import Array

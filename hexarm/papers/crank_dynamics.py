@@ -7,7 +7,7 @@ import numpy as np
 
 from hexapod_control.rotary import RotaryHexapod
 from hexarm import machines
-from hexarm.cli.mjcf import modelled
+from hexarm.cli.export import modelled
 from hexarm.papers.crank_kinematics import MACHINE
 from hexarm.papers.finding import ROTARY, Finding
 from hexarm.simulation.dynamics_config import RotaryDynamicsConfig

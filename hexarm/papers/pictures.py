@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from hexarm import machines
-from hexarm.cli.mjcf import modelled
+from hexarm.cli.export import modelled
 from hexarm.demo.picture import CRANKS
 from hexarm.papers import linear_platforms
 from hexarm.papers.crank_kinematics import MACHINE, crank_speeds

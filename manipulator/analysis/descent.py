@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from manipulator.analysis.free_paths import admits
-from manipulator.analysis.least_distance import nearest_point
 from manipulator.analysis.readings import displaced, distance, offset, read_limits
-from manipulator.analysis.slope import slopes
+from manipulator.analysis.slope import nearest_point, slopes
 from manipulator.arrays import Array, Mask
 from manipulator.machine import Machine
 from manipulator.pose import Pose

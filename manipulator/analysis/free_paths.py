@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from manipulator.analysis.least_distance import nearest_point
 from manipulator.analysis.readings import CHECKS_PER_LENGTH, displaced, distance, offset
-from manipulator.analysis.slope import slopes
+from manipulator.analysis.slope import nearest_point, slopes
 from manipulator.arrays import Array, Mask
 from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Machine

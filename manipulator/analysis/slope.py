@@ -1,4 +1,4 @@
-"""How every limit's margin changes with the pose, by differences."""
+"""How every limit's margin changes with the pose, and the nearest point within linear limits."""
 
 from dataclasses import dataclass, replace
 
@@ -8,6 +8,32 @@ from manipulator.analysis.readings import Readings, displaced, read_limits
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+
+TOLERANCE = 1e-12
+
+
+def nearest_point(target: Array, normals: Array, slack: Array) -> tuple[Array, Array]:
+    """The y nearest to `target` (n,) with normals·y + slack ≥ 0, and its multipliers (m,).
+
+    target − y = −normalsᵀ·multipliers. Least distance programming, chapter 23. Where no y does,
+    or none is found, y is `target` and the multipliers are NaN.
+    """
+    from scipy.optimize import nnls  # noqa: PLC0415 (50 MB: only needed here)
+
+    lacking = -(slack + normals @ target)
+    matrix = np.vstack([normals.T, lacking])
+    right = np.zeros(len(matrix))
+    right[-1] = 1.0
+    nowhere = target, np.full(len(slack), np.nan)
+    try:
+        weights = nnls(matrix, right)[0]
+    except RuntimeError:  # too many iterations
+        return nowhere
+    residual = matrix @ weights - right
+    if residual[-1] > -TOLERANCE:
+        return nowhere
+    return target - residual[:-1] / residual[-1], -weights / residual[-1]
+
 
 STEP = 1e-6
 """Of the differences, as part of the characteristic length."""

@@ -1,8 +1,10 @@
 """One web page for one machine: shows the graph, sends the user's requests."""
 
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Generic, TypeVar
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -11,15 +13,14 @@ from std_msgs.msg import Float64
 
 from hexarm.panel.gripper import gripper_of
 from hexarm.panel.nodes.machine_subscriptions import MachineSubscriptions
-from hexarm.panel.nodes.newest_worker import NewestWorker
 from hexarm.panel.nodes.request_client import RequestClient
 from hexarm.panel.nodes.web_server import JoystickSocket, address, start_server, stop_server
 from hexarm.panel.page import Page
 from hexarm.panel.pieces import sphere
 from hexarm.panel.reachable import reachable_ranges
 from hexarm.panel.view import View
-from manipulator.analysis.explain import explained
 from manipulator.analysis.inside import surface
+from manipulator.analysis.reach import explained
 from manipulator.arrays import Array
 from manipulator.formatting import counted
 from manipulator.machine import Machine
@@ -30,6 +31,35 @@ from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.pose import Pose
 from manipulator.states import MachineState, MotionMode
+
+Question = TypeVar('Question')
+
+
+class NewestWorker(Generic[Question]):
+    """Calls `work` with the newest question; those that were overtaken are never looked at."""
+
+    def __init__(self, work: Callable[[Question], None]) -> None:
+        self._work = work
+        self._question: Question | None = None
+        self._is_asked = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def ask(self, question: Question) -> None:
+        """Returns at once."""
+        self._question = question
+        self._is_asked.set()
+
+    def _run(self) -> None:
+        while True:
+            self._is_asked.wait()
+            self._is_asked.clear()
+            question, self._question = self._question, None
+            if question is not None:
+                begin = time.monotonic()
+                self._work(question)
+                time.sleep(time.monotonic() - begin)  # leaves half of the time to the rest
+
 
 TICK = 0.02
 DRAW_EVERY, SAMPLE_EVERY, GOAL_EVERY, REDRAW_EVERY = 3, 5, 5, 20

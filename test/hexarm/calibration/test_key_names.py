@@ -1,6 +1,6 @@
 import pytest
 
-from manipulator.teleop.key_names import key_names
+from hexarm.calibration.servo_session import key_names
 
 
 @pytest.mark.parametrize(
