@@ -136,9 +136,9 @@ def test_arguments_are_those_of_the_document(kind):
     text = (ROOT / 'docs' / 'viewers.md').read_text()
     rows = re.findall(r'^\| `(\w+)` \| (\S*) \|', text.split('## ros2 launch')[1], re.MULTILINE)
     machine = {'hexapod': 'robocake', 'arm': 'arm_6r'}[kind]
-    told = dict(rows) | {'machine': machine, 'namespace': kind}
-    told['frame_prefix'] = ''
-    assert {a.name: a.default_value for a in declared} == told
+    reported = dict(rows) | {'machine': machine, 'namespace': kind}
+    reported['frame_prefix'] = ''
+    assert {a.name: a.default_value for a in declared} == reported
     assert all(a.description for a in declared)
 
 

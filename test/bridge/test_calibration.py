@@ -143,7 +143,7 @@ def test_a_park_pose_out_of_reach_is_a_config_error():
         ([], {}, '0 joints, 1 to 8 fit'),
     ],
 )
-def test_what_is_wrong_with_the_servos_is_said(joints, changes, problem):
+def test_what_is_wrong_with_the_servos_is_reported(joints, changes, problem):
     with pytest.raises(ConfigError, match=problem):
         servos(*joints, **changes)
 

@@ -80,7 +80,7 @@ def test_reordered_and_old_commands_are_refused(validator):
     admit(validator, stamp=52.1, receipt=NOW + 2.1)
 
 
-def test_a_sender_whose_clock_is_off_by_an_hour_is_heard_and_reported(validator):
+def test_a_sender_whose_clock_is_off_by_an_hour_is_received_and_reported(validator):
     for k in range(10):
         admit(validator, stamp=NOW - 3600 + 0.01 * k, receipt=NOW + 0.01 * k)
     assert validator.clock_offset == pytest.approx(3600)
@@ -107,8 +107,8 @@ def test_a_clock_that_is_set_makes_no_gap_as_long_as_the_deadline(validator, ste
     times = NOW + 0.01 * np.arange(200)
     stamps = np.where(times < NOW + 1.0, times, times + step)
     pairs = zip(stamps.tolist(), times.tolist(), strict=True)
-    heard = [receipt for stamp, receipt in pairs if is_admitted(validator, stamp, receipt)]
-    assert max(np.diff(heard)) <= 0.1
+    received = [receipt for stamp, receipt in pairs if is_admitted(validator, stamp, receipt)]
+    assert max(np.diff(received)) <= 0.1
 
 
 @pytest.mark.parametrize(('step', 'old'), [(3600.0, -1.0), (3600.0, 3599.0), (-3600.0, -3601.0)])

@@ -116,7 +116,7 @@ def test_a_jump_is_refused_and_nothing_is_sent(enabled, turn):
     assert len(enabled.sent(Setpoint)) == 1
 
 
-def test_what_is_not_enabled_says_why_it_takes_no_command(rig):
+def test_what_is_not_enabled_reports_why_it_takes_no_command(rig):
     rig.run(0.3)
     with pytest.raises(Refused, match=r'^disarmed$'):
         rig.command(rig.park)
@@ -130,7 +130,7 @@ def test_what_is_not_enabled_says_why_it_takes_no_command(rig):
         rig.command(rig.park)
 
 
-def test_a_command_while_a_stop_is_under_way_says_so(enabled):
+def test_a_command_while_a_stop_is_in_progress_reports_that(enabled):
     enabled.driver.session.is_stop_requested = True
     with pytest.raises(Refused, match=r'^a STOP is in progress$'):
         enabled.command(enabled.park)
@@ -196,7 +196,7 @@ def test_what_is_so_already_is_not_asked_of_a_machine_that_may_be_moving(enabled
     assert enabled.sent(Arm | Clear) == []
 
 
-def test_a_refusal_is_told_with_what_is_wrong_with_the_board(rig):
+def test_a_refusal_is_reported_with_what_is_wrong_with_the_board(rig):
     rig.driver.link.lost('/dev/ttyACM0 has vanished', rig.now)
     asked = rig.driver.enable(True)
     rig.run(STEP)
@@ -242,7 +242,7 @@ def test_a_gripper_stays_until_it_is_asked_and_forgets_that_with_the_enable():
     assert rig.sent(Setpoint)[-1].counts == at_park
 
 
-def test_a_machine_without_a_gripper_says_so(enabled):
+def test_a_machine_without_a_gripper_reports_that(enabled):
     with pytest.raises(InvalidInput, match='no gripper'):
         enabled.driver.aim_gripper(0.5)
 

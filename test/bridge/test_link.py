@@ -86,7 +86,7 @@ def rig():
     return rig
 
 
-def test_the_newest_setpoint_is_written_and_its_ticket_told(rig):
+def test_the_newest_setpoint_is_written_and_its_ticket_reported(rig):
     for count in range(3000, 3100):
         rig.put(count)
     rig.turn()
@@ -152,7 +152,7 @@ def test_a_setpoint_waits_while_the_port_has_not_taken_the_last_one(rig):
 
 
 @pytest.mark.parametrize('command', [Stop(), Arm(PARK), Clear(), Disarm()])
-def test_a_frame_is_written_first_then_the_answer_told_then_the_future_done(rig, command):
+def test_a_frame_is_written_first_then_the_answer_reported_then_the_future_done(rig, command):
     asked = rig.link.request(command)
     asked.add_done_callback(lambda done: rig.log.append('answered'))
     rig.run(0.1)
@@ -182,7 +182,7 @@ def test_a_request_that_was_withdrawn_is_not_sent(rig):
     assert rig.logged(Disarm) == []
 
 
-def test_what_piled_up_while_nobody_listened_is_told_as_its_last(rig):
+def test_what_piled_up_while_nobody_listened_is_reported_as_its_last(rig):
     rig.put(3100)
     rig.turn()
     rig.log.clear()
@@ -233,7 +233,7 @@ def test_a_lost_port_is_looked_for_again_and_its_board_comes_back_disarmed(rig):
     assert rig.board.pulses == (None,) * 6
 
 
-def test_without_a_port_requests_are_refused_and_a_stop_is_said_as_soon_as_there_is_one(rig):
+def test_without_a_port_requests_are_refused_and_a_stop_is_sent_as_soon_as_there_is_one(rig):
     rig.link.lost('the port has vanished', rig.now)
     asked = rig.link.request(Stop())
     rig.run(0.1)

@@ -48,10 +48,10 @@ def monitor():
     return LinkMonitor(Session(6), Calibration.from_config(config.servos))
 
 
-def receive(monitor, heard, now=0.0):
+def receive(monitor, received, now=0.0):
     monitor.session.phase = Phase.READY
-    monitor.session.state = heard
-    monitor.note(StateReceived(heard), now)
+    monitor.session.state = received
+    monitor.note(StateReceived(received), now)
 
 
 def test_words_from_the_port_to_the_board(monitor):
@@ -82,7 +82,7 @@ def test_one_word_for_each_mode(monitor, mode, word):
 
 
 @pytest.mark.parametrize('mode', [Mode.DISARMED, Mode.ARMING, Mode.ARMED, Mode.PLAYING])
-def test_there_is_nothing_to_clear_unless_a_stop_is_still_to_be_said(monitor, mode):
+def test_there_is_nothing_to_clear_unless_a_stop_is_still_to_be_sent(monitor, mode):
     receive(monitor, state(mode))
     assert monitor.is_clear
     monitor.session.is_stop_requested = True
@@ -113,7 +113,7 @@ def test_the_fault_is_named(monitor):
     assert monitor.status.reason == 'the battery is too low'
 
 
-def test_unknown_joints_are_told_from_known_ones(monitor):
+def test_unknown_joints_are_distinguished_from_known_ones(monitor):
     assert len(monitor.unknown_joints) == 6
     receive(monitor, state(Mode.ARMING, (3000, 3000, None, None, None, None)))
     assert monitor.joints.is_known == (True, True, False, False, False, False)

@@ -181,7 +181,7 @@ def test_a_board_is_not_lost_because_this_thread_was_held_up(rig):
     assert not any(isinstance(event, Disconnected) for event in rig.events)
 
 
-def test_a_missing_port_is_said_and_looked_for(no_board):
+def test_a_missing_port_is_reported_and_looked_for(no_board):
     thread, events = no_board
     with pytest.raises(Refused, match='no board is connected: no port'):
         thread.request(Stop()).result(2.0)

@@ -92,7 +92,7 @@ def test_noise_neither_arms_a_board_nor_makes_a_host_ready(noise):
 
 
 @pytest.mark.parametrize('noise', [b'\0', b'\x01\0', b'\xff', b'noise without end, '])
-def test_endless_noise_takes_little_of_the_processor_and_requests_are_heard(noise):
+def test_endless_noise_takes_little_of_the_processor_and_requests_are_received(noise):
     ours, theirs = pty.openpty()
     tty.setraw(theirs)
     name, seen = os.ttyname(theirs), []

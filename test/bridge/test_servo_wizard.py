@@ -89,7 +89,7 @@ def test_the_servo_returns_to_its_new_centre_before_the_next_one_is_asked_for():
 
 
 @pytest.mark.parametrize(
-    ('keys', 'said'),
+    ('keys', 'text'),
     [
         (['y'], 'jog it by 20 µs first'),
         (['enter'], 'means nothing here'),
@@ -100,10 +100,10 @@ def test_the_servo_returns_to_its_new_centre_before_the_next_one_is_asked_for():
         (['s', 's', 's', 'right', '['], 'outside'),
     ],
 )
-def test_an_answer_that_cannot_be_is_refused_and_nothing_changes(keys, said):
+def test_an_answer_that_cannot_be_is_refused_and_nothing_changes(keys, text):
     wizard = begin(chosen=(0,))
     wizard = press(wizard, *keys)
-    assert said in wizard.notice
+    assert text in wizard.notice
     assert wizard.servos == SERVOS
 
 

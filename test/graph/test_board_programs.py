@@ -91,7 +91,7 @@ def test_a_table_and_a_cycle_are_played_and_end_enabled(enabled):
     enabled.wait_for_state('enabled')
 
 
-def test_refusals_say_why(enabled):
+def test_refusals_report_why(enabled):
     enabled.upload(swing(rows=600), 'the table has more rows than the board can hold')
     enabled.upload(JointTrajectory(joint_names=['elbow']), "joints are ['elbow'], needs")
     with pytest.raises(Refused, match='no such program'):

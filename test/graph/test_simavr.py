@@ -9,11 +9,11 @@ pytestmark = [pytest.mark.graph, pytest.mark.usefixtures('chip_tools')]
 
 def test_the_graph_enables_parks_and_leaves_no_chip_behind(hexarm, processes_left):
     process = hexarm('up', 'hexapod', '--port', 'simavr')
-    said = ''
-    while 'is up on simavr and enabled' not in said:
+    text = ''
+    while 'is up on simavr and enabled' not in text:
         line = process.stdout.readline()
-        assert line, said
-        said += line
+        assert line, text
+        text += line
     (chip,) = [pid for pid, words in processes_left().items() if 'pty_chip' in words]
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()

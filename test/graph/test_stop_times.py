@@ -100,6 +100,6 @@ def test_after_stop_and_clear_nothing_moves_until_a_new_command(circling):
 
 def setpoints_after_stop(rig, begin):
     """Counts of each setpoint behind the last STOP; one read may bring both, at one time."""
-    said = [message for _, message in rig.tap.heard((Setpoint, Stop), begin)]
-    last_stop = max(k for k, message in enumerate(said) if isinstance(message, Stop))
-    return [message.counts for message in said[last_stop + 1 :]]
+    text = [message for _, message in rig.tap.heard((Setpoint, Stop), begin)]
+    last_stop = max(k for k, message in enumerate(text) if isinstance(message, Stop))
+    return [message.counts for message in text[last_stop + 1 :]]

@@ -74,7 +74,7 @@ def pose_node():
         process.wait()
 
 
-def heard(client, topic, kind=String):
+def received(client, topic, kind=String):
     """Publishes joint states until something comes on the topic."""
     messages = []
     client.node.create_subscription(kind, topic, messages.append, 10)
@@ -95,7 +95,7 @@ def heard(client, topic, kind=String):
 def test_frames_go_out_where_tf2_msgs_is_installed(stand_in, pose_node):
     pose_node('framed', stand_in, frame_prefix='framed/')
     with Client('framed') as client:
-        frames = json.loads(heard(client, '/tf').data)
+        frames = json.loads(received(client, '/tf').data)
     assert [frame[:2] for frame in frames] == [
         ['framed/base', 'framed/platform'],
         ['framed/base', 'framed/work'],
@@ -104,13 +104,13 @@ def test_frames_go_out_where_tf2_msgs_is_installed(stand_in, pose_node):
     assert frames[0][2] == pytest.approx(0.04119, abs=1e-4)
 
 
-def test_without_tf2_msgs_it_works_and_says_nothing(pose_node, tmp_path):
+def test_without_tf2_msgs_it_works_and_reports_nothing(pose_node, tmp_path):
     gone = 'raise ModuleNotFoundError("No module named tf2_msgs", name="tf2_msgs")\n'
     (tmp_path / 'tf2_msgs.py').write_text(gone)
     node = pose_node('unframed', tmp_path, frame_prefix='left_')
     with Client('unframed') as client:
-        assert heard(client, 'pose', PoseStamped).header.frame_id == 'base'
-        (frame,) = {m.header.frame_id for m in heard(client, 'markers', MarkerArray).markers}
+        assert received(client, 'pose', PoseStamped).header.frame_id == 'base'
+        (frame,) = {m.header.frame_id for m in received(client, 'markers', MarkerArray).markers}
         assert client.node.count_publishers('/tf') == 0
     assert frame == 'left_base'
     node.terminate()

@@ -57,7 +57,7 @@ def enabling(monkeypatch):
         one.__exit__(None, None, None)
 
 
-def test_enabling_goes_on_for_as_long_as_the_bridge_says_that_it_arms(enabling):
+def test_enabling_goes_on_for_as_long_as_the_bridge_reports_that_it_arms(enabling):
     long = 4 * DRIVEN_WITHIN
 
     def bridge(seconds):

@@ -140,7 +140,7 @@ def test_arm_whose_next_command_comes_out_of_step_stays_on_its_branch(gap):
     assert np.abs(check.admit(pose, 100.02 + gap) - bent_by(0.005)).max() < 1e-8
 
 
-def test_the_way_from_the_measured_joints_to_the_first_command_is_no_motion_to_go_on_with():
+def test_the_path_from_the_measured_joints_to_the_first_command_is_no_motion_to_go_on_with():
     check, pose = SetpointValidator(ARM), ARM.kinematics.forward(bent_by(0.005)).pose
     check.note_joints(bent_by(0.04))
     check.admit(ARM.kinematics.forward(bent_by(0.04)).pose, 100.0)

@@ -70,7 +70,7 @@ def test_clock_that_went_back_between_rare_messages_is_learnt_with_the_second():
     stamps.admit(190.0, 220.0)
 
 
-def test_late_messages_whose_offsets_do_not_agree_tell_of_no_clock():
+def test_late_messages_whose_offsets_do_not_agree_indicate_no_clock():
     stamps = StampFilter()
     stamps.admit(100.0, 100.0)
     for stamp, receipt in ((101.0, 110.0), (101.2, 111.0), (101.4, 112.0)):

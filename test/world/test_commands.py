@@ -37,7 +37,7 @@ def test_a_path_is_driven_within_half_a_millimetre(world):
     assert np.ptp(turned) > 0.95 * 2 * np.pi
 
 
-def test_a_path_stops_on_its_way(world):
+def test_a_path_stops_on_its_path(world):
     stamp = world.send_path(circle())
     world.wait('path', lambda: world.status.mode == 'path')
     world.run(0.2)

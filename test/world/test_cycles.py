@@ -105,7 +105,7 @@ def test_goals_turn_about_the_pivot(world, ask):
     assert world.pose.position[1] == pytest.approx(0.03 * np.sin(0.1), abs=4e-4)
 
 
-def test_home_is_where_the_machine_file_says(world, ask):
+def test_home_is_where_the_machine_file_puts_it(world, ask):
     assert world.go_to(Pose.from_xyz_rpy((0.004, 0.0, 0.045))).result == 'reached'
     assert ask.home().result == 'reached'
     world.run(0.3)

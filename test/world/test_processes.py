@@ -12,7 +12,7 @@ HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))
 PROCESSES = ['controller', 'inverse', 'forward', 'bridge']
 
 
-def test_a_tick_that_was_frozen_for_too_long_says_no_setpoint(world):
+def test_a_tick_that_was_frozen_for_too_long_reports_no_setpoint(world):
     world.send_goal(HIGHER)
     world.wait('motion', lambda: world.pose.position[2] > 0.0422)
     before = world.now

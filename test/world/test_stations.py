@@ -63,7 +63,7 @@ def test_the_validator_admits_no_command_that_would_have_a_servo_jump(world):
     assert f'{world.machine.kinematics.joint_names[2]}: ' in world.bridge.monitor.last_refusal
 
 
-def test_a_machine_whose_board_holds_is_let_go_and_its_goal_does_not_resume(world):
+def test_a_machine_whose_board_holds_is_released_and_its_goal_does_not_resume(world):
     world.send_goal(FAR)
     world.run(0.3)
     world.links['commands'].loses = lambda: True

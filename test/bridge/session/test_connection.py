@@ -43,13 +43,13 @@ def test_another_joint_count_is_not_talked_to(line_of):
     assert line.sent == []
 
 
-def test_a_board_that_never_speaks_is_said(line):
+def test_a_board_that_never_speaks_is_reported(line):
     line.is_mute = True
     (event,) = line.run(5.5)
     assert 'no HELLO came' in event.reason
 
 
-def test_a_board_of_another_version_fails_what_was_under_way(armed):
+def test_a_board_of_another_version_fails_what_was_in_progress(armed):
     armed.is_mute = True
     armed.session.send_command(Disarm(), armed.now)
     other = Hello(2, ResetCause.EXTERNAL, 6, 10)
@@ -69,7 +69,7 @@ def test_a_board_that_falls_silent_is_lost_and_found_again(armed):
     assert armed.sent == []
 
 
-def test_a_board_that_fell_silent_and_stays_away_is_said_again(armed):
+def test_a_board_that_fell_silent_and_stays_away_is_reported_again(armed):
     armed.is_mute = True
     lost, missed, again = armed.run(0.6 + 5.0 + 5.0)
     assert lost == Disconnected('no frame from the board for 0.5 s')

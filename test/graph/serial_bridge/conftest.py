@@ -103,14 +103,14 @@ class Rig(PatientUser):
         status = self.diagnostics[name]
         return {value.key: value.value for value in status.values} | {'message': status.message}
 
-    def refuses(self, said, **command):
+    def refuses(self, text, **command):
         """Asks for what the bridge must not follow until it says why not."""
 
         def is_refused():
             self.command(**command)
-            return said in self.report()['last_refusal']
+            return text in self.report()['last_refusal']
 
-        self.wait(said, is_refused)
+        self.wait(text, is_refused)
 
     def set_battery(self, volts):
         value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=volts)

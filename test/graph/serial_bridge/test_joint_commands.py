@@ -41,8 +41,8 @@ BAD_COMMANDS = [
 
 
 def test_a_bad_command_is_named_and_the_next_good_one_works(enabled):
-    for command, said in BAD_COMMANDS:
-        enabled.persist(lambda c=command, s=said: enabled.refuses(s, **c))
+    for command, text in BAD_COMMANDS:
+        enabled.persist(lambda c=command, s=text: enabled.refuses(s, **c))
     enabled.stream(PARK + 0.1)
 
 

@@ -149,7 +149,7 @@ def test_a_fake_board_can_be_tried_with_every_machine(name):
     assert not os.path.exists(fake.port)
 
 
-def test_a_port_that_another_program_holds_is_said_kindly(sit_down):
+def test_a_port_that_another_program_holds_is_reported_kindly(sit_down):
     person, _ = sit_down({})
     person.await_words('ENTER energises')
     other = person.another()
@@ -159,7 +159,7 @@ def test_a_port_that_another_program_holds_is_said_kindly(sit_down):
 
 
 @pytest.mark.parametrize(
-    ('words', 'said'),
+    ('words', 'text'),
     [
         (['robocake'], '--output my_robocake.yaml'),
         (['robocake', '--output', '/nowhere/x.yaml'], 'is no folder'),
@@ -168,8 +168,8 @@ def test_a_port_that_another_program_holds_is_said_kindly(sit_down):
         (['robocake', '--output', 'new.yaml'], 'needs a terminal'),
     ],
 )
-def test_what_cannot_be_is_said_before_anything_moves(words, said, capsys, monkeypatch):
+def test_what_cannot_be_is_reported_before_anything_moves(words, text, capsys, monkeypatch):
     with open(os.devnull) as nothing:
         monkeypatch.setattr('sys.stdin', nothing)
         assert main(['calibrate', 'servos', *words]) == 1
-    assert said in capsys.readouterr().err
+    assert text in capsys.readouterr().err

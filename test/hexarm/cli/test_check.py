@@ -64,11 +64,11 @@ def test_missing_key_is_named(place):
 
 
 @pytest.mark.parametrize('section', ['geometry', 'limits', 'motion', 'servos', 'link'])
-def test_missing_section_is_said_once(section):
+def test_missing_section_is_reported_once(section):
     assert problems_of(section_without(ROBOCAKE, section)) == [f'{section}: missing']
 
 
-def test_rod_shorter_than_its_gap_says_by_how_much():
+def test_rod_shorter_than_its_gap_reports_by_how_much():
     (found,) = problems_of(changed(ROBOCAKE, ('rod_length_mm: 58.0', 'rod_length_mm: 20.0')))
     assert 'home' in found
     assert 'rod too short by' in found

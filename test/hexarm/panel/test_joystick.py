@@ -119,21 +119,21 @@ EVENTS = st.lists(
 
 @given(EVENTS)
 def test_whatever_comes_it_moves_only_on_a_fresh_beat_of_the_holder(events):
-    joystick, now, heard = Joystick(), 0.0, {}
+    joystick, now, received = Joystick(), 0.0, {}
     for kind, page, press, age, pause in events:
         now += pause
         if kind == 'beat':
             joystick.receive(page, beat(press, None if age is None else now - age), now)
-            heard[page] = now, age
+            received[page] = now, age
         elif kind == 'release':
             joystick.release(page, press)
         elif kind == 'leave':
             joystick.leave(page)
-            heard.pop(page, None)
+            received.pop(page, None)
         else:
             joystick.stop()
         if joystick.stick(now) is not None:
-            at, delay = heard[joystick.holder(now)]
+            at, delay = received[joystick.holder(now)]
             assert now - at <= RELEASE
             assert delay is not None
             assert delay <= RELEASE + 1e-9

@@ -3,7 +3,7 @@ from hexarm.recording.topics import missing_topics, nothing_recorded
 THERE = ['/hexapod/pose', '/hexapod/joint_states', '/hexapod/machine_state', '/rosout']
 
 
-def test_misspelt_topic_is_told_from_one_that_is_silent():
+def test_misspelt_topic_is_distinguished_from_one_that_is_silent():
     asked = ['/hexapod/poes', '/hexapod/joint_states', '/hexapod/pose', '/zzz']
     assert missing_topics(asked, received={'/hexapod/pose'}, there=THERE) == [
         '/hexapod/joint_states exists, but nothing was published on it',
@@ -12,7 +12,7 @@ def test_misspelt_topic_is_told_from_one_that_is_silent():
     ]
 
 
-def test_namespace_without_topics_is_told_with_domain_and_the_machines_that_there_are():
+def test_namespace_without_topics_is_reported_with_domain_and_the_machines_that_there_are():
     assert nothing_recorded('arm', [], ['/rosout'], 7) == (
         'no machine found in /arm on ROS domain 7: is it running there?'
     )

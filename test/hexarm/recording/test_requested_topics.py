@@ -15,12 +15,12 @@ USERS = ('panel\n',)
 MACHINE = re.compile(r'^\| `([\w/]+)` \| (in|out) \|', re.MULTILINE)
 
 
-def test_commands_are_what_the_nodes_of_the_document_only_hear():
+def test_commands_are_what_the_nodes_of_the_document_only_receive():
     sections = re.split(r'^## ', INTERFACES.read_text(), flags=re.MULTILINE)
     of_the_machine = [text for text in sections if not text.startswith(USERS)]
-    told = MACHINE.findall('\n'.join(of_the_machine))
-    heard, published = ({n for n, way in told if way == kind} for kind in ('in', 'out'))
-    assert heard - published | OF_THE_PAD == COMMANDS
+    reported = MACHINE.findall('\n'.join(of_the_machine))
+    received, published = ({n for n, way in reported if way == kind} for kind in ('in', 'out'))
+    assert received - published | OF_THE_PAD == COMMANDS
 
 
 @pytest.mark.parametrize('topic', ['/arm/pose', '/arm/serial_bridge/log', '/diagnostics', '/tf'])

@@ -41,9 +41,9 @@ def test_in_slow_motion_most_of_the_error_was_sag(capsys):
     errors = []
     for flag in ('--no-compensate', '--compensate'):
         assert main([*words, flag]) == 0
-        told = json.loads(capsys.readouterr().out)
-        assert told['is_compensated'] == (flag == '--compensate')
-        errors.append(told['position_error'])
+        reported = json.loads(capsys.readouterr().out)
+        assert reported['is_compensated'] == (flag == '--compensate')
+        errors.append(reported['position_error'])
     assert errors[1] < 0.4 * errors[0]
 
 
@@ -77,9 +77,9 @@ def test_nodes_bring_the_platform_where_it_was_wanted(example, tmp_path):
     simulation.step(1500)
     real = simulation.pose
     raw = machine.kinematics.forward(command, pose)
-    told = deflected(machine.deflection, machine.kinematics, command, raw).pose
+    reported = deflected(machine.deflection, machine.kinematics, command, raw).pose
     assert np.abs(real.twist_to(pose)[:3]).max() < 1e-5
-    assert np.abs(real.twist_to(told)[:3]).max() < 1e-5
+    assert np.abs(real.twist_to(reported)[:3]).max() < 1e-5
     assert np.abs(real.twist_to(raw.pose)[:3]).max() > 1e-4
 
 

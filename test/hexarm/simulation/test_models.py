@@ -39,7 +39,7 @@ def test_assembly_closes_over_the_whole_workspace(example, name):
 
 
 @pytest.mark.parametrize('name', ARMS)
-def test_arm_stands_where_forward_kinematics_says(example, name):
+def test_arm_is_where_forward_kinematics_puts_it(example, name):
     simulation = example(name).simulation()
     poses, joints = poses_of(example(name).machine, 50)
     for k in range(50):

@@ -41,5 +41,5 @@ def test_endless_reason_is_cut_in_log_and_diagnostics():
     callback = FilteredCallback(node, 'goal_pose', refuse)
     callback(stamped(time.time()))
     assert len(callback.last_refusal) == LONGEST_REASON
-    (said,) = node.get_logger().warning.call_args.args
-    assert len(said) < 2 * LONGEST_REASON
+    (text,) = node.get_logger().warning.call_args.args
+    assert len(text) < 2 * LONGEST_REASON

@@ -46,9 +46,9 @@ def test_a_pose_comes_back_as_it_was_sent():
 @pytest.mark.parametrize('part', ['position', 'orientation'])
 def test_a_number_of_a_pose_that_is_not_finite_is_named(part, bad):
     for name in 'xyz' if part == 'position' else 'xyzw':
-        told = name if part == 'position' else f'q{name}'
+        reported = name if part == 'position' else f'q{name}'
         message = message_with(lambda m, n=name: setattr(getattr(m.pose, part), n, bad))
-        with pytest.raises(InvalidInput, match=f'^{told} is {bad}, needs a finite number'):
+        with pytest.raises(InvalidInput, match=f'^{reported} is {bad}, needs a finite number'):
             pose_of(message)
 
 
@@ -60,7 +60,7 @@ def test_a_number_of_a_pose_that_is_not_finite_is_named(part, bad):
         ((0.0, 0.0, 0.0, -1e308), 'quaternion has length'),
     ],
 )
-def test_a_quaternion_that_is_no_rotation_is_told_with_its_length(quaternion, words):
+def test_a_quaternion_that_is_no_rotation_is_reported_with_its_length(quaternion, words):
     def change(message):
         q = message.pose.orientation
         q.x, q.y, q.z, q.w = quaternion

@@ -68,7 +68,7 @@ def person(monkeypatch):
     return Person(monkeypatch)
 
 
-def test_it_brakes_where_the_trajectory_node_says_so(person):
+def test_it_brakes_where_the_trajectory_node_reports_that(person):
     person.topics.stop()
     person.ticks(3 * RELEASE)
     assert person.trajectory.asked == 1

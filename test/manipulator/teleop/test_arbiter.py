@@ -23,7 +23,7 @@ def test_whoever_moves_first_has_it_until_he_falls_silent():
     assert arbiter.owner(1.0) == PANEL
 
 
-def test_one_who_was_turned_away_must_let_go_before_he_is_heard():
+def test_one_who_was_rejected_must_release_before_he_is_received():
     arbiter = Arbiter()
     arbiter.receive(JOY, 0.0)
     for k in range(1, 20):
@@ -57,7 +57,7 @@ def test_the_computers_twists_wait_for_a_goal_and_a_persons_do_not():
     assert arbiter.owner(0.2) == JOY
 
 
-def test_after_a_stop_the_owner_must_let_go():
+def test_after_a_stop_the_owner_must_release():
     arbiter = Arbiter()
     arbiter.receive(JOY, 0.0)
     arbiter.stop()
@@ -68,7 +68,7 @@ def test_after_a_stop_the_owner_must_let_go():
     assert arbiter.owner(0.02 + LATER) == JOY
 
 
-def test_owner_who_is_turned_away_has_nothing_until_he_has_let_go():
+def test_owner_who_is_rejected_has_nothing_until_he_has_released():
     arbiter = Arbiter()
     arbiter.receive(JOY, 0.0)
     with pytest.raises(Refused, match='two of them: release first'):

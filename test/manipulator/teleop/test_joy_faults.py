@@ -50,7 +50,7 @@ def test_stick_that_never_rests_moves_nothing(gamepad):
 
 
 @pytest.mark.parametrize(
-    ('axes', 'buttons', 'said'),
+    ('axes', 'buttons', 'text'),
     [
         ([], [], 'axis 1 (x) is missing: there are 0'),
         (AXES[:4], BUTTONS, 'axis 4 (z) is missing: there are 4'),
@@ -62,12 +62,12 @@ def test_stick_that_never_rests_moves_nothing(gamepad):
         ([0.0] * 100, BUTTONS, '100 axes and 11 buttons, at most 64'),
     ],
 )
-def test_bad_message_releases_the_deadman_and_names_the_index(driver, axes, buttons, said):
+def test_bad_message_releases_the_deadman_and_names_the_index(driver, axes, buttons, text):
     driver.now += 0.02
     driver.reader = driver.reader.receive(axes, buttons, driver.now)
     assert not driver.command.is_held
     assert not driver.command.twist.any()
-    assert said in driver.command.reason
+    assert text in driver.command.reason
 
 
 def test_good_message_after_a_bad_one_counts(driver):
@@ -149,7 +149,7 @@ def interleaved(reader, begin, buttons=HELD):
     return reader, command
 
 
-def test_frozen_pad_beside_one_that_rests_moves_nothing_and_says_why(gamepad):
+def test_frozen_pad_beside_one_that_rests_moves_nothing_and_reports_why(gamepad):
     _, command = interleaved(JoyReader(gamepad).receive(AXES, BUTTONS, 1.0), 1.01)
     assert not any(w.is_held or w.twist.any() or w.is_homing or w.grip for w in command)
     assert {w.reason for w in command} == {CROWD}
@@ -168,7 +168,7 @@ def test_stop_button_works_while_two_pads_send(gamepad):
     assert reader.stops > 0
 
 
-def test_pad_that_is_left_alone_must_be_let_go_before_it_drives(gamepad):
+def test_pad_that_is_left_alone_must_be_released_before_it_drives(gamepad):
     reader, _ = interleaved(JoyReader(gamepad).receive(AXES, BUTTONS, 1.0), 1.01)
     for k in range(50):
         reader = reader.receive(PUSHED, HELD, 2.01 + 0.02 * k)

@@ -102,7 +102,7 @@ def test_of_many_goals_within_a_tick_the_newest_wins():
     assert motion.state.pose.position[0] == pytest.approx(0.0095)
 
 
-def test_stop_brakes_along_the_straight_way_and_holds():
+def test_stop_brakes_along_the_straight_path_and_holds():
     motion = executor()
     motion.pursue(Goal(pose(x=0.012, y=0.006), 1.0))
     run(motion, 15)
@@ -145,7 +145,7 @@ def test_pause_and_going_on_end_at_the_goal_without_a_jump():
     )
 
 
-def test_speed_override_makes_the_same_way_slower():
+def test_speed_override_makes_the_same_path_slower():
     fast, slow = executor(), executor()
     slow.override(0.25)
     ticks = []
@@ -188,7 +188,7 @@ def test_papers_own_amplitudes_in_phase_are_out_of_reach_and_refused_before_anyt
     assert np.abs(poses[-1].position - HOME.position).max() == 0.0
 
 
-def test_cycle_that_is_too_fast_says_by_how_much():
+def test_cycle_that_is_too_fast_reports_by_how_much():
     motion = executor()
     motion.start_cycle(Cycle(HOME, [0.005, 0, 0, 0, 0, 0], [10.0] * 6, [0] * 6))
     run(motion, 1)

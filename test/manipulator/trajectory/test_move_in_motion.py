@@ -55,7 +55,7 @@ def test_slowdown_stretches_time_and_keeps_the_path():
         assert np.abs(same).max() < 1e-7
 
 
-def test_coordinates_that_change_fast_make_the_state_that_differences_say():
+def test_coordinates_that_change_fast_make_the_state_that_differences_give():
     rng = np.random.default_rng(4)
     for _ in range(20):
         x, v, a = rng.uniform(-1.0, 1.0, (3, 6))

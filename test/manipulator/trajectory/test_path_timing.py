@@ -101,17 +101,17 @@ def said_by_rows(limits, squares, name):
 
 
 @pytest.mark.parametrize(('name', 'part'), [('platform', slice(0, 3)), ('turning', slice(3, 6))])
-def test_rows_of_a_path_say_how_much_the_platform_accelerates(on_a_path, name, part):
+def test_rows_of_a_path_report_how_much_the_platform_accelerates(on_a_path, name, part):
     """At either end of a step, within the polygon of directions: 15° from corner to corner."""
     limits, state, squares = on_a_path
     both = accelerations(state.twist[:, part], limits.nodes, squares)
     longest = np.linalg.norm(both, axis=2).max(axis=0)
-    said = said_by_rows(limits, squares, name)
-    assert (said <= longest * (1 + 1e-9)).all()
-    assert (said >= longest * np.cos(np.radians(7.5)) * (1 - 1e-9)).all()
+    text = said_by_rows(limits, squares, name)
+    assert (text <= longest * (1 + 1e-9)).all()
+    assert (text >= longest * np.cos(np.radians(7.5)) * (1 - 1e-9)).all()
 
 
-def test_rows_of_a_path_say_how_much_each_joint_accelerates(on_a_path):
+def test_rows_of_a_path_report_how_much_each_joint_accelerates(on_a_path):
     limits, state, squares = on_a_path
     jacobian = ROBOCAKE.kinematics.jacobian(state.pose, limits.joints)
     rates = np.linalg.solve(jacobian, state.twist[..., None])[..., 0]

@@ -264,7 +264,7 @@ def test_a_cycle_is_checked_and_approached_beside_the_loop():
     slow.check_limits()
 
 
-def test_a_machine_that_is_let_go_waits_for_no_plan():
+def test_a_machine_that_is_released_waits_for_no_plan():
     slow = Slow(30)
     slow.executor.pursue(Goal(pose(x=0.006), 1.0))
     slow.run(10)

@@ -37,7 +37,7 @@ def drive(motion, goal):
     return poses
 
 
-def test_a_goal_beyond_a_limit_is_refused_for_itself_and_not_for_a_moment_of_the_way():
+def test_a_goal_beyond_a_limit_is_refused_for_itself_and_not_for_a_moment_of_the_path():
     motion = executor()
     drive(motion, Goal(raised(-0.02), 5.0))
     assert (motion.status.result, motion.status.goal_stamp) == ('refused', 5.0)
@@ -54,7 +54,7 @@ def test_a_line_that_leaves_the_reach_is_refused_with_the_place_and_the_reason()
     assert re.fullmatch(pattern, motion.status.reason)
 
 
-def test_a_way_on_which_an_arm_would_have_to_turn_round_is_refused_before_it_takes_for_ever():
+def test_a_path_on_which_an_arm_would_have_to_turn_round_is_refused_before_it_takes_for_ever():
     """Behind joint 1's axis, which does not turn that far: its step is the same however slow."""
     arm = load('arm_6r')
     turn = np.array([2.0, 0.0, 0.0, 0.0, 0.0, 0.0])
@@ -105,7 +105,7 @@ def limited(**parts):
 
 @pytest.mark.parametrize('limit', [0.02, 0.5, 3.0])
 @pytest.mark.parametrize('part', ['linear', 'angular'])
-def test_a_cycle_says_how_many_times_it_is_faster_than_platform_or_tool_may_be(part, limit):
+def test_a_cycle_reports_how_many_times_it_is_faster_than_platform_or_tool_may_be(part, limit):
     axis = 0 if part == 'linear' else 5
     amplitude, frequency = np.zeros(6), np.full(6, 10.0)
     amplitude[axis] = 0.005 if part == 'linear' else 0.1
@@ -120,7 +120,7 @@ def test_a_cycle_says_how_many_times_it_is_faster_than_platform_or_tool_may_be(p
 
 
 @pytest.mark.parametrize(('axis', 'part'), [(2, 'linear'), (3, 'angular')])
-def test_a_cycle_says_how_many_times_it_must_be_slower_for_the_acceleration_of_its_own_part(
+def test_a_cycle_reports_how_many_times_it_must_be_slower_for_the_acceleration_of_its_own_part(
     axis, part
 ):
     amplitude, rate = np.zeros(6), 2 * np.pi * 2.0
@@ -135,14 +135,14 @@ def test_a_cycle_says_how_many_times_it_must_be_slower_for_the_acceleration_of_i
     assert re.search(rf'{name} is [23]\.\d\d times too fast', reason)
 
 
-def test_nothing_came_of_a_path_is_said_with_its_stamp_and_reason():
+def test_nothing_came_of_a_path_is_reported_with_its_stamp_and_reason():
     motion = executor()
     motion.expect(8.0)
     assert (motion.status.result, motion.status.goal_stamp) == ('planning', 8.0)
     assert motion.expected == 8.0
     motion.refuse(8.0, 'the path has a corner')
-    said = motion.status
-    assert (said.result, said.goal_stamp, said.reason) == ('refused', 8.0, 'the path has a corner')
+    text = motion.status
+    assert (text.result, text.goal_stamp, text.reason) == ('refused', 8.0, 'the path has a corner')
     assert motion.expected is None
 
 

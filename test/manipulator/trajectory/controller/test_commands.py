@@ -50,7 +50,7 @@ def test_a_goal_that_comes_too_early_is_driven_once_the_machine_is_taken_over(st
     assert (stage.status.result, stage.refusals) == ('reached', [])
 
 
-def test_a_goal_that_waits_is_driven_also_where_the_bridge_has_nothing_new_to_say(stage):
+def test_a_goal_that_waits_is_driven_also_where_the_bridge_has_nothing_new_to_report(stage):
     stage.state = 'disarmed'
     stage.tick()
     stage.state, stage.does_pose_come = 'enabled', False

@@ -161,7 +161,7 @@ def test_what_ends_the_motion_ends_the_path_before_it_began(slow, end, reason, i
     assert results == {'planning': '', 'stopped': reason}
 
 
-def test_a_stop_at_rest_is_the_last_that_is_said_of_the_path(slow):
+def test_a_stop_at_rest_is_the_last_that_is_reported_of_the_path(slow):
     slow.follow(path(circle()))
     slow.run(1)
     slow.core.stop()

@@ -36,7 +36,7 @@ def test_a_goal_is_reached_and_each_status_is_news_once(stage):
     assert len(stage.statuses) == len(set(stage.statuses))
 
 
-def test_a_controller_that_stood_still_between_ticks_lets_go(moving):
+def test_a_controller_that_stood_still_between_ticks_releases(moving):
     assert moving.tick(period=POSE_DEADLINE + 0.1) is None
     assert (moving.status.result, moving.status.goal_stamp) == ('stopped', 7.0)
     assert 'control loop stalled' in moving.status.reason
@@ -44,7 +44,7 @@ def test_a_controller_that_stood_still_between_ticks_lets_go(moving):
     assert moving.status.result != 'reached'
 
 
-def test_a_controller_that_stood_still_within_a_tick_says_no_setpoint(moving):
+def test_a_controller_that_stood_still_within_a_tick_reports_no_setpoint(moving):
     assert moving.tick(within=POSE_DEADLINE + 0.1) is None
     assert 'control loop stalled' in moving.status.reason
     moving.run(100)
@@ -58,7 +58,7 @@ def test_a_tick_that_is_a_little_late_changes_nothing(moving):
     assert moving.status.result == 'reached'
 
 
-def test_without_poses_it_first_pauses_and_then_lets_go(stage):
+def test_without_poses_it_first_pauses_and_then_releases(stage):
     stage.core.supervisor.override(0.1)
     stage.pursue(Goal(HIGHER, 7.0))
     stage.run(10)
@@ -73,7 +73,7 @@ def test_without_poses_it_first_pauses_and_then_lets_go(stage):
     assert stage.tick() is None
 
 
-def test_without_the_bridges_word_it_lets_go(stage):
+def test_without_the_bridges_word_it_releases(stage):
     stage.does_bridge_say = False
     stage.run(round(STATE_DEADLINE / DT) - 2)
     assert stage.tick() is not None
@@ -82,7 +82,7 @@ def test_without_the_bridges_word_it_lets_go(stage):
     assert 'machine_state timed out' in stage.status.reason
 
 
-def test_what_the_bridge_said_while_the_controller_stood_still_counts_as_said(stage):
+def test_what_the_bridge_reported_while_the_controller_stood_still_counts_as_reported(stage):
     stage.does_bridge_say = False
     stage.run(100)  # 1 s, and then 0.4 s three times, each too short to let go
     for _ in range(3):
@@ -102,8 +102,8 @@ def test_refusals_are_news_and_counted_but_do_not_end_the_motion(moving):
     moving.core.refuse(8.0, InvalidInput('x is nan'))
     moving.core.refuse(8.0, InvalidInput('x is nan'))
     moving.core.refuse(9.0, InvalidInput('y is nan'))
-    said = news.take()
-    assert [(s.result, s.goal_stamp, s.reason) for s in said] == [
+    text = news.take()
+    assert [(s.result, s.goal_stamp, s.reason) for s in text] == [
         ('refused', 8.0, 'x is nan'),
         ('refused', 9.0, 'y is nan'),
     ]

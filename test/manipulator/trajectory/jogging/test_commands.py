@@ -39,7 +39,7 @@ def test_twist_is_the_pivots_in_the_axes_of_its_frame(machine, at_home):
     assert np.linalg.norm(shift[:3]) < 2e-3 * np.linalg.norm(shift[3:])
 
 
-def test_jog_says_why_it_is_scaled_but_not_at_every_tick(machine, at_home):
+def test_jog_reports_why_it_is_scaled_but_not_at_every_tick(machine, at_home):
     motion = at_home(machine)
     reasons = set()
     for _ in range(TICKS):
@@ -50,7 +50,7 @@ def test_jog_says_why_it_is_scaled_but_not_at_every_tick(machine, at_home):
     assert len(reasons) <= TICKS * DT / 0.5 + 1
 
 
-def test_jog_brakes_the_plan_along_its_way_and_drops_it(robocake):
+def test_jog_brakes_the_plan_along_its_path_and_drops_it(robocake):
     robocake.pursue(Goal(HOME.moved([0.012, 0.006, 0, 0, 0, 0]), 7.0))
     robocake.run(15)
     seen = []
@@ -82,7 +82,7 @@ def test_a_single_jog_command_drops_a_goal_that_is_driven_or_waits(robocake, tic
     robocake.check_limits()
 
 
-def test_a_jog_command_drops_a_cycle_on_the_way_to_its_first_pose(robocake):
+def test_a_jog_command_drops_a_cycle_on_the_path_to_its_first_pose(robocake):
     robocake.start_cycle(Cycle(HOME, [0.003] * 3 + [0.0] * 3, [0.5] * 6, [1.0] * 6))
     robocake.run(5)
     robocake.run(1, [0, 0, 0.001, 0, 0, 0])
@@ -114,14 +114,14 @@ def test_goals_and_cycles_are_refused_during_a_jog_and_taken_after_it(robocake):
     assert (robocake.status.result, robocake.status.goal_stamp) == ('reached', 3.0)
 
 
-def test_paused_jog_stands_still_and_says_so(robocake):
+def test_paused_jog_stands_still_and_reports_that(robocake):
     robocake.pause(True)
     poses = robocake.run(20, [0, 0, 0.01, 0, 0, 0])
     assert np.abs(poses[0].twist_to(poses[-1])).max() == 0.0
     assert 'paused' in robocake.status.reason
 
 
-def test_mode_that_makes_no_sense_stands_still_and_says_why(at_home):
+def test_mode_that_makes_no_sense_stands_still_and_reports_why(at_home):
     machine = load('arm_6r')
     motion = at_home(machine)
     here = jog_mode('look_at', Feedback.for_delay(0.0), machine.kinematics.home.position)

@@ -26,7 +26,7 @@ def test_a_driver_that_stood_still_itself_drops_its_goal_and_begins_where_the_jo
     assert np.abs(driving.step().twist_to(there)).max() < 1e-12
 
 
-def test_without_a_pose_motion_brakes_on_its_way_and_goes_on_when_it_is_heard_again(moving):
+def test_without_a_pose_motion_brakes_on_its_path_and_goes_on_when_it_is_received_again(moving):
     moving.note_silence(0.25)
     moving.run(20)
     held = moving.step()
@@ -71,17 +71,17 @@ def test_joints_that_do_not_follow_end_the_motion_and_name_one(driving):
 def test_a_goal_is_not_reached_while_the_joints_are_still_elsewhere(driving):
     high = Pose.from_xyz_rpy((0.0, 0.0, 0.049))
     driving.executor.pursue(Goal(high, 4.0))
-    said = []
+    text = []
     while driving.step() is not None:
         driving.see(HOME)
-        said.append(driving.status.result)
-        assert len(said) < 300
-    assert set(said) == {'moving'}
+        text.append(driving.status.result)
+        assert len(text) < 300
+    assert set(text) == {'moving'}
     assert driving.status.result == 'stopped'
     assert 'away from its command' in driving.status.reason
 
 
-def test_how_much_of_a_path_is_over_is_said_while_the_joints_lag_behind(driving):
+def test_how_much_of_a_path_is_over_is_reported_while_the_joints_lag_behind(driving):
     """By a quarter of a second, which is more than the tolerance of where a goal is reached."""
     inverse, joints = driving.machine.kinematics.inverse, driving.machine.kinematics.inverse(HOME)
     heights = HOME.position + np.array([[0, 0, 0], [0, 0, 0.012], [0, 0, -0.012], [0, 0, 0.012]])
@@ -118,7 +118,7 @@ def test_joints_that_come_late_reach_the_goal_when_they_are_there(driving):
     assert (driving.status.result, driving.status.goal_stamp) == ('reached', 4.0)
 
 
-def test_what_a_bridge_said_that_has_died_counts_for_nothing(driving):
+def test_what_a_bridge_reported_that_has_died_counts_for_nothing(driving):
     driving.note_bridge_silence(1.4)
     assert driving.is_driving
     driving.note_bridge_silence(1.6)

@@ -35,10 +35,10 @@ def test_no_goal_is_taken_until_the_board_follows(supervisor):
     assert supervisor.status.result == 'reached'
 
 
-def test_a_machine_that_was_never_enabled_is_disabled_and_says_so_of_no_goal(supervisor):
-    said = supervisor.status
-    assert (said.mode, said.result, said.goal_stamp) == ('disabled', 'idle', 0.0)
-    assert said.reason == 'the servos are not enabled'
+def test_a_machine_that_was_never_enabled_is_disabled_and_reports_that_of_no_goal(supervisor):
+    text = supervisor.status
+    assert (text.mode, text.result, text.goal_stamp) == ('disabled', 'idle', 0.0)
+    assert text.reason == 'the servos are not enabled'
 
 
 @pytest.mark.parametrize('is_followed', [False, True])
@@ -84,14 +84,14 @@ def test_goal_that_still_waited_when_the_machine_was_lost_is_named(driving):
     assert (driving.status.result, driving.status.goal_stamp) == ('stopped', 9.0)
 
 
-def test_what_became_of_a_goal_is_still_said_once_the_machine_is_taken_over_again(moving):
+def test_what_became_of_a_goal_is_still_reported_once_the_machine_is_taken_over_again(moving):
     moving.note_machine_state('holding', is_followed=False)
     moving.see(ELSEWHERE)
     moving.note_machine_state('enabled', is_followed=True)
     moving.run(20)
-    said = moving.status
-    assert (said.mode, said.result, said.goal_stamp) == ('hold', 'stopped', 7.0)
-    assert 'holding' in said.reason
+    text = moving.status
+    assert (text.mode, text.result, text.goal_stamp) == ('hold', 'stopped', 7.0)
+    assert 'holding' in text.reason
     moving.executor.pursue(Goal(HOME, 8.0))
     moving.run(200)
     assert (moving.status.result, moving.status.goal_stamp) == ('reached', 8.0)
@@ -114,7 +114,7 @@ def test_a_machine_that_is_enabled_anew_is_idle(moving):
         ('disarmed', 'enable it first'),
     ],
 )
-def test_a_machine_that_nobody_may_drive_says_what_is_missing(driving, state, remedy):
+def test_a_machine_that_nobody_may_drive_reports_what_is_missing(driving, state, remedy):
     driving.note_machine_state(state, is_followed=False)
     with pytest.raises(Refused, match=f'the machine is {state}: {remedy}'):
         _ = driving.executor
