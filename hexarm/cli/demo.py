@@ -27,7 +27,7 @@ from manipulator.states import MotionMode
 if TYPE_CHECKING:
     from hexarm.client import Client
     from hexarm.demo.arm_report import ArmResult
-    from hexarm.demo.report import Recorder
+    from hexarm.demo.recording import Recorder
 
 MACHINE = 'robocake'
 CENTRE = np.array([0.0, 0.0, 0.045])
@@ -115,7 +115,7 @@ def put_away(client: 'Client') -> None:
 
 def tour(client: 'Client') -> Observation:
     """Goal moves, a goal out of reach and a circle with a tilt, from outside as a user would."""
-    from hexarm.demo.report import Recorder  # noqa: PLC0415 (needs ROS)
+    from hexarm.demo.recording import Recorder  # noqa: PLC0415 (needs ROS)
 
     say('waiting for the board, then energising the servos one by one')
     client.enable()
