@@ -91,7 +91,7 @@ class MachineWriter:
             raise ConfigError([f'{self.target} exists already: it is not overwritten'])
         folder = self.target.parent
         if not folder.is_dir():
-            raise ConfigError([f'{folder} is no folder'])
+            raise ConfigError([f'{folder} is not a folder'])
         if not os.access(folder, os.W_OK) or (
             output is None and not os.access(self.target, os.W_OK)
         ):

@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     send_stop(stop_address(f'/{space}/serial_bridge', domain_here()))
     with StopNode(space) as button:
         if press(button):
-            print(f'/{space}: machine stopped. Look at the machine, then: hexarm clear {space}')
+            print(f'/{space}: machine stopped. Inspect the machine, then: hexarm clear {space}')
             return 0
         if button.state is None:
             raise NoMachine(button.no_machine())

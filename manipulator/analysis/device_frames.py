@@ -107,7 +107,7 @@ def _rotations(platform: Array, marker: Array) -> tuple[Array, Array]:
     total = np.einsum('nij,nkl->ikjl', marker, platform).reshape(9, 9)
     u, s, vt = np.linalg.svd(total)
     if s[0] - s[1] < 1e-9 * s[0]:
-        raise NoSolution('all poses are turned alike: they do not tell where the device is')
+        raise NoSolution('all poses have one orientation: the device frame is not determined')
     R_Z, R_X = _rotation(u[:, 0].reshape(3, 3)), _rotation(vt[0].reshape(3, 3))
     return R_Z, R_X.T
 

@@ -98,7 +98,7 @@ def test_a_board_that_vanishes_ends_the_session_in_words(sit_down):
     person.begin()
     person.board.do(lambda: person.board.plug(None))
     assert person.await_end() == 1
-    assert 'has vanished' in person.said
+    assert 'was disconnected' in person.said
     assert 'pull their plug' in person.said
     assert 'Traceback' not in person.said
 
@@ -162,7 +162,7 @@ def test_a_port_that_another_program_holds_is_reported_kindly(sit_down):
     ('words', 'text'),
     [
         (['robocake'], '--output my_robocake.yaml'),
-        (['robocake', '--output', '/nowhere/x.yaml'], 'is no folder'),
+        (['robocake', '--output', '/nowhere/x.yaml'], 'is not a folder'),
         (['robocake', '--output', __file__], 'not overwritten'),
         (['robocake', '--output', 'new.yaml', '--only', 'crnk_1'], "did you mean 'crank_1'"),
         (['robocake', '--output', 'new.yaml'], 'needs a terminal'),
