@@ -2,10 +2,22 @@
 
 from pathlib import Path
 
-from setuptools import find_packages, setup
+from setuptools import Extension, find_packages, setup
+from setuptools.command.build_ext import build_ext
+
+from kernel.build import build
 
 NAME = 'hexarm'
 PACKAGES = ['manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm']
+
+
+class BuildKernel(build_ext):
+    """Builds the C library by its own command: setuptools' needs Python's headers."""
+
+    def build_extension(self, ext: Extension) -> None:
+        """Compiles it to where setuptools wants it."""
+        build(Path(self.get_ext_fullpath(ext.name)))
+
 
 setup(
     name=NAME,
@@ -14,6 +26,16 @@ setup(
     license='Apache-2.0',
     python_requires='>=3.10',
     packages=find_packages(include=[pattern for r in PACKAGES for pattern in (r, f'{r}.*')]),
+    ext_modules=[
+        Extension(
+            'manipulator._kernel',
+            sorted(str(f) for f in Path('kernel').glob('*.c')),
+            depends=sorted(str(f) for f in Path('kernel').glob('*.h')),
+            py_limited_api=True,
+        )
+    ],
+    cmdclass={'build_ext': BuildKernel},
+    options={'bdist_wheel': {'py_limited_api': 'cp310'}},
     package_data={'hexarm': ['*.xml', 'panel/joystick.html']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),

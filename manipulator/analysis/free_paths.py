@@ -43,11 +43,8 @@ def admits(machine: Machine, poses: Pose, near: Array | None = None) -> Mask:
 
 def keeps_limits(machine: Machine, poses: Pose, joints: Array) -> Mask:
     """Which of the poses (N,) with their joints (N, n), NaN where they do not close, are kept."""
-    inside = np.asarray(np.isfinite(joints).all(axis=-1), dtype=np.bool_)
-    if inside.all():
-        return machine.constraints.admits(poses, joints)
-    inside[inside] = machine.constraints.admits(poses[inside], joints[inside])
-    return inside
+    inside = machine.constraints.admits(poses, joints)
+    return inside if np.isfinite(joints.sum()) else inside & np.isfinite(joints).all(axis=-1)
 
 
 def line_between(machine: Machine, start: Pose, end: Pose) -> Pose:

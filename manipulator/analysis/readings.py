@@ -82,7 +82,7 @@ def readings_of(machine: Machine, pose: Pose, joints: Array) -> Readings:
     limits = machine.constraints.limits
     return Readings(
         tuple((limit.quantity, o, limit.unit) for limit in limits for o in limit.owners),
-        np.concatenate([limit.values(pose, joints) for limit in limits], axis=-1),
-        np.concatenate([limit.low for limit in limits]),
-        np.concatenate([limit.high for limit in limits]),
+        machine.constraints.values(pose, joints),
+        machine.constraints.low,
+        machine.constraints.high,
     )
