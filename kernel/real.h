@@ -17,6 +17,8 @@ typedef float real;
 #define real_asin asinf
 #define real_atan2 atan2f
 #define real_rint rintf
+#define real_ceil ceilf
+#define real_floor floorf
 #else
 typedef double real;
 #define REAL(number) number
@@ -29,6 +31,8 @@ typedef double real;
 #define real_asin asin
 #define real_atan2 atan2
 #define real_rint rint
+#define real_ceil ceil
+#define real_floor floor
 #endif
 
 #define REAL_PI REAL(3.14159265358979323846)

@@ -12,7 +12,8 @@ from typing import Protocol
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.identification.arm_model import JOINTS, ArmModel
+from arm_control.chain import JOINTS
+from arm_control.identification.arm_model import ArmModel
 from arm_control.identification.arm_model import geometry_lines as arm_lines
 from hexapod_control.identification.leg_model import LegModel, Tolerances
 from hexapod_control.identification.models import geometry_lines, model_of
