@@ -16,7 +16,7 @@ from hexarm.board.header import header_of
 from manipulator.errors import ProtocolError
 
 GOLDEN = Path(__file__).parents[1] / 'bridge' / 'golden_frames.txt'
-PROTOCOL_H = firmware_build.FIRMWARE / 'protocol.h'
+PROTOCOL_H = firmware_build.FIRMWARE / 'core' / 'protocol.h'
 
 
 class Frame(ctypes.Structure):
