@@ -7,6 +7,7 @@
 
 #include "kinematics.h"
 #include "resolved_rate.h"
+#include "target.h"
 
 enum { NOTHING = 1, INVERSE = 2, ARM_STEP = 3, SINE = 4, DONE = 0xFF };
 
@@ -14,19 +15,17 @@ enum { NOTHING = 1, INVERSE = 2, ARM_STEP = 3, SINE = 4, DONE = 0xFF };
 
 static volatile float anything;
 
-#if HAS_KINEMATICS
 static void inverse(float x, float angle)
 {
-    const float position[3] = {x, 0.002f, HOME_HEIGHT_M};
+    const float position[3] = {x, 0.002f, MACHINE.hexapod.home_height};
     const float rpy[3] = {angle, -angle, 0.05f};
     float rotation[9], cranks[LEGS];
     MARK(INVERSE);
     kinematics_rotation(rpy, rotation);
-    bool closes = kinematics_cranks(position, rotation, cranks);
+    bool closes = kinematics_cranks(&MACHINE.hexapod, position, rotation, cranks);
     MARK(INVERSE);
     anything = closes ? cranks[5] : 0;
 }
-#endif
 
 static void arm_step(float q)
 {
@@ -50,9 +49,7 @@ int main(void)
         value = sinf(value + 0.3f);
         MARK(SINE);
         anything = value;
-#if HAS_KINEMATICS
         inverse(0.0003f * k, 0.004f * k);
-#endif
         arm_step(0.02f * k);
     }
     MARK(DONE);

@@ -4,13 +4,13 @@
 #include <avr/sleep.h>
 #include <avr/wdt.h>
 
-#include "battery.h"
 #include "board.h"
-#include "buttons.h"
-#include "clock.h"
-#include "cycle.h"
+#include "chip_clock.h"
+#include "hardware.h"
+#include "inputs.h"
 #include "link.h"
-#include "servo.h"
+#include "pulses.h"
+#include "uart.h"
 
 static uint8_t reset_cause __attribute__((section(".noinit")));
 
@@ -20,6 +20,11 @@ __attribute__((naked, used, section(".init3"))) static void catch_reset(void)
     reset_cause = MCUSR;
     MCUSR = 0;
     wdt_disable();
+}
+
+void hardware_feed_watchdog(void)
+{
+    wdt_reset();
 }
 
 /* Rests until the next interrupt, unless there is work. The tick ends it within 1 ms. */
@@ -37,12 +42,10 @@ static void rest(void)
 
 int main(void)
 {
-    buttons_begin();
-    battery_begin();
-    cycle_begin();
-    link_begin();
-    clock_begin();
-    servo_begin();
+    inputs_begin();
+    uart_begin();
+    chip_clock_begin();
+    pulses_begin();
     board_begin(reset_cause);
     set_sleep_mode(SLEEP_MODE_IDLE);
     wdt_enable(WDTO_250MS);

@@ -2,13 +2,14 @@
 
 #include "clock.h"
 #include "motion.h"
+#include "target.h"
 
-static uint16_t park_counts[JOINT_COUNT];
-static uint32_t next_ms; /* when the next one's turn is */
+static STATE uint16_t park_counts[MAX_JOINTS];
+static STATE uint32_t next_ms; /* when the next one's turn is */
 
-void arming_begin(const uint16_t park[JOINT_COUNT])
+void arming_begin(const uint16_t *park)
 {
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
+    for (uint8_t i = 0; i < MACHINE.joint_count; i++)
         park_counts[i] = park[i];
     next_ms = clock_period_ms();
 }
@@ -20,9 +21,9 @@ bool arming_step(void)
     if (motion_is_all_on())
         return true;
     uint8_t channel = 0;
-    while (motion_on() >> channel & 1)
+    while (motion_is_on(channel))
         channel++;
     motion_energise(channel, park_counts[channel]);
-    next_ms = clock_period_ms() + ARM_INTERVAL_MS;
+    next_ms = clock_period_ms() + MACHINE.arm_interval_ms;
     return false;
 }

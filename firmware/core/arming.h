@@ -6,10 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "machine.h"
-
-/* From the next step on, at these counts; they must be in range. */
-void arming_begin(const uint16_t park[JOINT_COUNT]);
+/* From the next step on, at these counts, one for each joint; they must be in range. */
+void arming_begin(const uint16_t *park);
 
 /* Energises the next servo when it is its turn; true when all are on and the last one has had its
  * time. Call once a period. */

@@ -1,56 +1,56 @@
 #include "buttons.h"
 
-#include <avr/io.h>
 #include <stdint.h>
 
-#include "clock.h"
+#include "hardware.h"
+#include "target.h"
 
-enum { STOP_PIN = _BV(PA0), START_PIN = _BV(PA1), OPEN_MS = 3, CLOSED_MS = 30 };
+enum { OPEN_MS = 3, CLOSED_MS = 30 };
 
-static bool is_stop;
-static uint8_t stop_disagrees_ms;
-static bool is_start_closed = true; /* until it was seen open: a stuck contact starts nothing */
-static uint8_t start_disagrees_ms;
-static bool is_start_wanted;
-static uint16_t read_ms;
+/* A contact, and for how long it has been read otherwise. */
+typedef struct {
+    bool is_closed;
+    uint8_t disagrees_ms;
+} Contact;
 
-void buttons_begin(void)
+static STATE Contact stop = {.is_closed = true};
+static STATE Contact start = {.is_closed = true}; /* until it was seen open */
+static STATE bool is_start_pressed;
+static STATE uint16_t read_ms;
+
+/* One reading, a millisecond after the last; true when the contact has changed. */
+static bool read_contact(Contact *contact, bool is_closed, uint8_t needed_ms)
 {
-    PORTA = STOP_PIN | START_PIN;
+    if (is_closed == contact->is_closed) {
+        contact->disagrees_ms = 0;
+        return false;
+    }
+    if (++contact->disagrees_ms < needed_ms)
+        return false;
+    *contact = (Contact){.is_closed = is_closed};
+    return true;
 }
 
 void buttons_read(void)
 {
-    uint16_t ms = (uint16_t)(clock_us() / 1000);
+    uint16_t ms = (uint16_t)(hardware_us() / 1000);
     if (ms == read_ms)
         return;
     read_ms = ms;
-    uint8_t open = PINA;
-
-    bool is_open = open & STOP_PIN;
-    stop_disagrees_ms = is_open == is_stop ? 0 : stop_disagrees_ms + 1;
-    if (stop_disagrees_ms >= (is_open ? OPEN_MS : CLOSED_MS)) {
-        is_stop = is_open;
-        stop_disagrees_ms = 0;
-    }
-
-    bool is_closed = !(open & START_PIN);
-    start_disagrees_ms = is_closed == is_start_closed ? 0 : start_disagrees_ms + 1;
-    if (start_disagrees_ms >= CLOSED_MS) {
-        is_start_closed = is_closed;
-        is_start_wanted = is_start_wanted || is_closed;
-        start_disagrees_ms = 0;
-    }
+    bool is_stop_closed = !hardware_is_stop_open();
+    read_contact(&stop, is_stop_closed, is_stop_closed ? CLOSED_MS : OPEN_MS);
+    if (read_contact(&start, hardware_is_start_closed(), CLOSED_MS))
+        is_start_pressed = is_start_pressed || start.is_closed;
 }
 
 bool buttons_is_stop(void)
 {
-    return is_stop;
+    return !stop.is_closed;
 }
 
 bool buttons_take_start(void)
 {
-    bool is_wanted = is_start_wanted;
-    is_start_wanted = false;
-    return is_wanted;
+    bool was_pressed = is_start_pressed;
+    is_start_pressed = false;
+    return was_pressed;
 }

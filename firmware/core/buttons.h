@@ -1,12 +1,9 @@
-/* The stop button (D22, a contact that opens) and the start button (D23, a contact that closes).
+/* The stop button (a contact that opens) and the start button (a contact that closes), debounced.
  *
- * Both switch to ground, against the chip's own pull-ups. An open stop contact means stop, so a
- * broken wire stops too; where there is no stop button, D22 is bridged to ground.
+ * An open stop contact means stop, so a broken wire stops too.
  */
 #pragma once
 #include <stdbool.h>
-
-void buttons_begin(void);
 
 /* Reads both; call at least once a millisecond, it keeps the time itself. */
 void buttons_read(void);

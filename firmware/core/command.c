@@ -13,7 +13,7 @@ uint8_t command_counts(const uint8_t *payload, uint8_t length, uint16_t counts[M
         return 0;
     for (uint8_t i = 0; i < length / 2; i++)
         counts[i] = get16(payload + 2 * i);
-    return length / 2;
+    return (uint8_t)(length / 2);
 }
 
 static bool are_counts(uint8_t length)
@@ -31,7 +31,7 @@ bool command_is_well_formed(const Frame *frame)
     case TYPE_TABLE_BEGIN:
         return frame->length == 4;
     case TYPE_TABLE_ROW:
-        return frame->length > 2 && are_counts(frame->length - 2);
+        return frame->length > 2 && are_counts((uint8_t)(frame->length - 2));
     case TYPE_TABLE_END:
     case TYPE_PLAY:
         return frame->length == 2;
@@ -57,7 +57,7 @@ static uint8_t arm(const Frame *frame)
 static uint8_t take_row(const Frame *frame)
 {
     uint16_t counts[MAX_JOINTS];
-    uint8_t joints = command_counts(frame->payload + 2, frame->length - 2, counts);
+    uint8_t joints = command_counts(frame->payload + 2, (uint8_t)(frame->length - 2), counts);
     return table_row(get16(frame->payload), counts, joints);
 }
 

@@ -1,65 +1,92 @@
 #include "cycle.h"
 
 #include <math.h>
-
-#include "kinematics.h"
-#include "protocol.h"
-#include "wire.h"
-
-#if HAS_KINEMATICS
-
-#include <avr/eeprom.h>
+#include <stddef.h>
 #include <string.h>
 
-enum { AXES = 6, LONGEST_S = 60, HIGHEST_MHZ = 25000 };
+#include "hardware.h"
+#include "kinematics.h"
+#include "target.h"
+#include "wire.h"
+
+enum { AXES = 6, LONGEST_S = 60, HIGHEST_MHZ = 25000, COPIES = 2 };
 #define TURN 6.2831853f
 
 typedef struct {
     float amplitude;
-    uint16_t frequency_mhz;
     float phase;
+    uint16_t frequency_mhz;
+    uint16_t unused;
 } Axis;
 
 typedef struct {
     Axis axes[AXES];
+    uint16_t number; /* of two copies that are whole, the higher one is the newer, modulo 65536 */
     uint16_t crc;
 } Kept;
+_Static_assert(COPIES * sizeof(Kept) <= MEMORY_BYTES, "the memory is too small");
 
-static Kept kept;
-static Axis *const axes = kept.axes;
-static Kept in_eeprom EEMEM;
+static STATE Kept kept;
+static STATE uint8_t copy;               /* the one in memory that is whole */
+static STATE uint8_t next = sizeof kept; /* which byte of the other one is written next */
 
-static uint16_t crc_of_axes(void)
+static uint16_t address_of(uint8_t which, uint8_t byte)
+{
+    return (uint16_t)(which * sizeof kept + byte);
+}
+
+static uint16_t crc_of(const Kept *it)
 {
     uint16_t crc = 0xFFFF;
-    for (uint8_t i = 0; i < sizeof kept.axes; i++)
-        crc = wire_crc(crc, ((const uint8_t *)kept.axes)[i]);
+    for (uint8_t i = 0; i < offsetof(Kept, crc); i++)
+        crc = wire_crc(crc, ((const uint8_t *)it)[i]);
     return crc;
+}
+
+/* False, and zeros, where that copy is damaged. */
+static bool read_copy(uint8_t which, Kept *it)
+{
+    for (uint8_t i = 0; i < sizeof *it; i++)
+        ((uint8_t *)it)[i] = hardware_read_memory(address_of(which, i));
+    bool is_whole = it->crc == crc_of(it);
+    if (!is_whole)
+        memset(it, 0, sizeof *it);
+    return is_whole;
 }
 
 void cycle_begin(void)
 {
-    eeprom_read_block(&kept, &in_eeprom, sizeof kept);
-    if (kept.crc != crc_of_axes())
-        memset(&kept, 0, sizeof kept);
+    Kept other;
+    bool is_whole = read_copy(0, &kept);
+    if (read_copy(1, &other) && (!is_whole || (int16_t)(uint16_t)(other.number - kept.number) > 0)) {
+        kept = other;
+        copy = 1;
+    }
 }
 
-/* All bytes in turn: a change is kept after at most 62 periods, and nothing ever waits. */
+/* A byte in turn, so that nothing ever waits: it takes 76 periods. The CRC comes last; until it is
+ * there, the copy is none. */
 void cycle_keep(void)
 {
-    static uint8_t next;
-    if (!eeprom_is_ready())
+    uint8_t older = copy ? 0 : 1;
+    if (next == sizeof kept || !hardware_is_memory_ready())
         return;
-    eeprom_update_byte((uint8_t *)&in_eeprom + next, ((const uint8_t *)&kept)[next]);
-    next = next + 1 == sizeof kept ? 0 : next + 1;
+    hardware_write_memory(address_of(older, next), ((const uint8_t *)&kept)[next]);
+    if (++next == sizeof kept)
+        copy = older;
 }
 
 uint8_t cycle_set(uint8_t axis, float amplitude, uint16_t frequency_mhz, float phase)
 {
+    if (!MACHINE.hexapod.is_known)
+        return RESULT_NO_PROGRAM;
     if (axis >= AXES || !isfinite(amplitude) || !isfinite(phase) || frequency_mhz > HIGHEST_MHZ)
         return RESULT_OUT_OF_RANGE;
-    axes[axis] = (Axis){amplitude, frequency_mhz, fmodf(phase, TURN)};
-    kept.crc = crc_of_axes();
+    kept.axes[axis] = (Axis){amplitude, fmodf(phase, TURN), frequency_mhz, 0};
+    if (next == sizeof kept)
+        kept.number++;
+    kept.crc = crc_of(&kept);
+    next = 0;
     return RESULT_OK;
 }
 
@@ -70,8 +97,10 @@ static bool is_moving(const Axis *axis)
 
 bool cycle_is_there(void)
 {
+    if (!MACHINE.hexapod.is_known)
+        return false;
     for (uint8_t i = 0; i < AXES; i++)
-        if (is_moving(&axes[i]))
+        if (is_moving(&kept.axes[i]))
             return true;
     return false;
 }
@@ -90,61 +119,27 @@ float cycle_duration(void)
 {
     uint16_t slowest_mhz = 0;
     for (uint8_t i = 0; i < AXES; i++)
-        if (is_moving(&axes[i]))
-            slowest_mhz = common_divisor(axes[i].frequency_mhz, slowest_mhz);
+        if (is_moving(&kept.axes[i]))
+            slowest_mhz = common_divisor(kept.axes[i].frequency_mhz, slowest_mhz);
     if (slowest_mhz * (uint32_t)LONGEST_S < 1000)
         return 0;
     return 1000.0f / slowest_mhz;
 }
 
-bool cycle_at(float time, float part, float counts[JOINT_COUNT])
+bool cycle_at(float time, float part, float *counts)
 {
     float offset[AXES];
     for (uint8_t i = 0; i < AXES; i++) {
         /* Whole turns are left out first: what is left keeps its digits. */
-        float turns = time * axes[i].frequency_mhz * 1e-3f;
-        float angle = TURN * (turns - floorf(turns)) + axes[i].phase;
-        offset[i] = part * axes[i].amplitude * sinf(angle);
+        float turns = time * kept.axes[i].frequency_mhz * 1e-3f;
+        float angle = TURN * (turns - floorf(turns)) + kept.axes[i].phase;
+        offset[i] = part * kept.axes[i].amplitude * sinf(angle);
     }
-    const float position[3] = {offset[0], offset[1], offset[2] + HOME_HEIGHT_M};
+    const float position[3] = {offset[0], offset[1], offset[2] + MACHINE.hexapod.home_height};
     float rotation[9], cranks[LEGS];
     kinematics_rotation(offset + 3, rotation);
-    if (!kinematics_cranks(position, rotation, cranks))
+    if (!kinematics_cranks(&MACHINE.hexapod, position, rotation, cranks))
         return false;
-    kinematics_counts(cranks, counts);
-    return kinematics_is_within_limits(position, cranks);
+    kinematics_counts(&MACHINE.hexapod, cranks, counts);
+    return kinematics_is_within_limits(&MACHINE.hexapod, position, cranks);
 }
-
-#else /* a machine whose kinematics the board does not know */
-
-void cycle_begin(void)
-{
-}
-
-void cycle_keep(void)
-{
-}
-
-uint8_t cycle_set(uint8_t axis, float amplitude, uint16_t frequency_mhz, float phase)
-{
-    (void)axis, (void)amplitude, (void)frequency_mhz, (void)phase;
-    return RESULT_NO_PROGRAM;
-}
-
-bool cycle_is_there(void)
-{
-    return false;
-}
-
-float cycle_duration(void)
-{
-    return 0;
-}
-
-bool cycle_at(float time, float part, float counts[JOINT_COUNT])
-{
-    (void)time, (void)part, (void)counts;
-    return false;
-}
-
-#endif

@@ -1,18 +1,17 @@
 /* Periodic motion about home: one sine on each axis, as in the experiment of Prokopovich 2019.
  *
- * The board solves the inverse kinematics itself. The cycle outlives a power-down: it is kept in
- * the EEPROM. Safe state: no cycle (all amplitudes 0), also where what is kept there is damaged.
+ * The board solves the inverse kinematics itself. The cycle outlives a power-down: the memory keeps
+ * it twice, and a new one takes the place of the older copy, so that a reset meanwhile leaves the one
+ * before. Safe state: no cycle (all amplitudes 0), also where both copies are damaged.
  */
 #pragma once
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "machine.h"
-
 /* Remembers the cycle that was set before the power went. */
 void cycle_begin(void);
 
-/* Keeps one byte of the cycle, where the EEPROM has another; call once a period. */
+/* Keeps one byte of a cycle that has changed; call once a period. */
 void cycle_keep(void);
 
 /* Axis 0 to 5 (x, y, z, roll, pitch, yaw): amplitude in m or rad, frequency in thousandths of a
@@ -26,4 +25,4 @@ bool cycle_is_there(void);
 float cycle_duration(void);
 
 /* The counts at `time`, the way from home multiplied by `part`; false where it is out of reach. */
-bool cycle_at(float time, float part, float counts[JOINT_COUNT]);
+bool cycle_at(float time, float part, float *counts);

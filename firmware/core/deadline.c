@@ -1,13 +1,14 @@
 #include "deadline.h"
 
-#include "clock.h"
+#include "hardware.h"
+#include "target.h"
 
-static bool is_set;
-static uint32_t until_us;
+static STATE bool is_set;
+static STATE uint32_t until_us;
 
 void deadline_set(uint16_t ms)
 {
-    until_us = clock_us() + 1000UL * ms;
+    until_us = hardware_us() + (uint32_t)(1000UL * ms);
     is_set = true;
 }
 
@@ -19,5 +20,5 @@ void deadline_forget(void)
 bool deadline_has_passed(void)
 {
     /* The clock may wrap in between: seconds apart, the difference still has its sign. */
-    return is_set && (int32_t)(clock_us() - until_us) >= 0;
+    return is_set && (int32_t)(hardware_us() - until_us) >= 0;
 }

@@ -1,30 +1,8 @@
 #include "kinematics.h"
 
-#if HAS_KINEMATICS
-
 #include <math.h>
 
 #define PI 3.14159265f
-
-typedef struct {
-    float centre[3];   /* of the crank, base frame */
-    float normal[3];   /* tangent x up */
-    float tangent[3];  /* where the crank's angle is 0 */
-    float up[3];       /* where it is a right angle */
-    float platform[3]; /* where the rod ends, platform frame */
-    float crank;       /* lengths */
-    float rod;
-} Leg;
-
-typedef struct {
-    uint8_t channel;
-    float centre;       /* rad */
-    float centre_count; /* pulse there */
-    float scale;        /* counts a radian, signed */
-} Servo;
-
-static const Leg LEG[LEGS] = LEG_GEOMETRY;
-static const Servo SERVO[LEGS] = SERVO_CALIBRATION;
 
 static float dot(const float a[3], const float b[3])
 {
@@ -48,7 +26,8 @@ void kinematics_rotation(const float rpy[3], float rotation[9])
 }
 
 /* The gap from crank axis to platform joint, in the coordinates of its own leg. */
-static void gap_of(const Leg *leg, const float position[3], const float rotation[9], float gap[3])
+static void gap_of(const CrankLeg *leg, const float position[3], const float rotation[9],
+                   float gap[3])
 {
     float way[3];
     for (uint8_t i = 0; i < 3; i++)
@@ -67,10 +46,11 @@ static float within_half_a_turn(float angle, float centre)
     return angle;
 }
 
-bool kinematics_cranks(const float position[3], const float rotation[9], float cranks[LEGS])
+bool kinematics_cranks(const CrankHexapod *hexapod, const float position[3],
+                       const float rotation[9], float cranks[LEGS])
 {
     for (uint8_t i = 0; i < LEGS; i++) {
-        const Leg *leg = &LEG[i];
+        const CrankLeg *leg = &hexapod->legs[i];
         float gap[3];
         gap_of(leg, position, rotation, gap);
         float in_plane = gap[1] * gap[1] + gap[2] * gap[2];
@@ -81,27 +61,26 @@ bool kinematics_cranks(const float position[3], const float rotation[9], float c
         if (!(fabsf(cosine) <= 1.0f)) /* not a number: refused too */
             return false;
         float angle = atan2f(gap[2], gap[1]) + acosf(cosine);
-        cranks[i] = within_half_a_turn(angle, CRANK_CENTRE_RAD);
+        cranks[i] = within_half_a_turn(angle, hexapod->crank_centre);
     }
     return true;
 }
 
-bool kinematics_is_within_limits(const float position[3], const float cranks[LEGS])
+bool kinematics_is_within_limits(const CrankHexapod *hexapod, const float position[3],
+                                 const float cranks[LEGS])
 {
-    if (!(position[2] >= MINIMUM_HEIGHT_M))
+    if (!(position[2] >= hexapod->minimum_height))
         return false;
     for (uint8_t i = 0; i < LEGS; i++)
-        if (!(cranks[i] >= CRANK_LOWEST_RAD && cranks[i] <= CRANK_HIGHEST_RAD))
+        if (!(cranks[i] >= hexapod->crank_lowest && cranks[i] <= hexapod->crank_highest))
             return false;
     return true;
 }
 
-void kinematics_counts(const float cranks[LEGS], float counts[LEGS])
+void kinematics_counts(const CrankHexapod *hexapod, const float cranks[LEGS], float *counts)
 {
     for (uint8_t i = 0; i < LEGS; i++) {
-        const Servo *servo = &SERVO[i];
+        const CrankServo *servo = &hexapod->servos[i];
         counts[servo->channel] = servo->centre_count + servo->scale * (cranks[i] - servo->centre);
     }
 }
-
-#endif

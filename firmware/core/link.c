@@ -1,65 +1,89 @@
 #include "link.h"
 
-#include <avr/interrupt.h>
-#include <avr/io.h>
 #include <string.h>
 
-#include "machine.h"
+#include "hardware.h"
+#include "target.h"
 
 /* Rings of 256 bytes: their indices wrap by themselves. */
-static volatile uint8_t received[256];
-static volatile uint8_t received_end;
-static uint8_t received_start;
-static volatile bool is_received_lost;
+static STATE volatile uint8_t received[256];
+static STATE volatile uint8_t received_end;
+static STATE volatile uint8_t received_start;
 
-static uint8_t waiting[256];
-static volatile uint8_t waiting_start;
-static volatile uint8_t waiting_end;
+/* A bit for each place in `received`: the delimiter there ends a frame that lost bytes. */
+static STATE volatile uint8_t cut[256 / 8];
+static STATE bool is_cut;      /* the frame that is arriving has lost bytes */
+static STATE bool is_end_owed; /* a frame has lost its delimiter */
 
-static uint8_t pending[MAX_STUFFED]; /* of the frame that is arriving */
-static uint8_t pending_length;
-static bool is_skipping;
+static STATE uint8_t waiting[256];
+static STATE volatile uint8_t waiting_start;
+static STATE volatile uint8_t waiting_end;
 
-static uint16_t sent;
-static uint16_t bad_frames;
-static uint16_t overruns;
+static STATE uint8_t pending[MAX_STUFFED]; /* of the frame that is being read */
+static STATE uint8_t pending_length;
+static STATE bool is_too_long;
 
-void link_begin(void)
+static STATE uint16_t sent;
+static STATE uint16_t bad_frames;
+static STATE uint16_t overruns;
+
+static uint8_t bit_of(uint8_t place)
 {
-    UCSR0A = _BV(U2X0);
-    UBRR0 = (F_CPU / 8 + BAUD / 2) / BAUD - 1; /* the nearest, as machine.h has checked */
-    UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);
-    UCSR0B = _BV(RXEN0) | _BV(TXEN0) | _BV(RXCIE0);
+    return (uint8_t)(1 << (place & 7));
 }
 
-ISR(USART0_RX_vect)
+/* False where the ring is full. */
+static bool store(uint8_t byte)
 {
-    if (UCSR0A & _BV(DOR0))
-        is_received_lost = true;
-    uint8_t byte = UDR0;
-    uint8_t end = received_end + 1;
-    if (end == received_start) {
-        is_received_lost = true;
-    } else {
-        received[received_end] = byte;
-        received_end = end;
+    uint8_t end = (uint8_t)(received_end + 1);
+    if (end == received_start)
+        return false;
+    received[received_end] = byte;
+    received_end = end;
+    return true;
+}
+
+/* A delimiter, marked where it ends a frame that lost bytes; false where the ring is full. */
+static bool store_end(bool is_of_cut_frame)
+{
+    uint8_t place = received_end;
+    if (is_of_cut_frame)
+        cut[place >> 3] |= bit_of(place);
+    else
+        cut[place >> 3] &= (uint8_t)~bit_of(place);
+    return store(0);
+}
+
+/* Where the ring is full, the frame that is arriving loses its rest, and no other frame anything. */
+void link_take_byte(uint8_t byte, bool is_after_loss)
+{
+    is_cut = is_cut || is_after_loss;
+    if (byte == 0) {
+        is_end_owed = !store_end(is_cut || is_end_owed);
+        is_cut = false;
+        return;
     }
+    if (is_end_owed && !is_cut)
+        is_end_owed = !store_end(true);
+    is_cut = is_cut || is_end_owed || !store(byte);
 }
 
-ISR(USART0_UDRE_vect)
+bool link_next_byte(uint8_t *byte)
 {
-    UDR0 = waiting[waiting_start++];
     if (waiting_start == waiting_end)
-        UCSR0B &= (uint8_t)~_BV(UDRIE0);
+        return false;
+    *byte = waiting[waiting_start++];
+    return true;
 }
 
-/* The frame that the delimiter has just ended; false where it is none. */
-static bool finish(Frame *frame)
+/* The frame that the delimiter at a place has just ended; false where it is none. */
+static bool finish(uint8_t place, Frame *frame)
 {
     uint8_t length = pending_length;
+    bool is_overrun = is_too_long || cut[place >> 3] & bit_of(place);
     pending_length = 0;
-    if (is_skipping) {
-        is_skipping = false;
+    is_too_long = false;
+    if (is_overrun) {
         count_one(&overruns);
         return false;
     }
@@ -75,19 +99,18 @@ static bool finish(Frame *frame)
 bool link_receive(Frame *frame)
 {
     while (received_start != received_end) {
-        if (is_received_lost) {
-            is_received_lost = false;
-            is_skipping = true;
-        }
-        uint8_t byte = received[received_start++];
-        if (byte == 0) {
-            if (finish(frame))
-                return true;
-        } else if (pending_length < MAX_STUFFED) {
+        uint8_t place = received_start;
+        uint8_t byte = received[place];
+        bool is_whole = byte == 0 && finish(place, frame);
+        received_start = (uint8_t)(place + 1); /* only now may the interrupt use the place again */
+        if (is_whole)
+            return true;
+        if (byte == 0)
+            continue;
+        if (pending_length < MAX_STUFFED)
             pending[pending_length++] = byte;
-        } else {
-            is_skipping = true;
-        }
+        else
+            is_too_long = true;
     }
     return false;
 }
@@ -99,14 +122,14 @@ bool link_is_idle(void)
 
 static void send_bytes(const uint8_t *bytes, uint8_t length)
 {
-    uint8_t room = waiting_start - waiting_end - 1;
+    uint8_t room = (uint8_t)(waiting_start - waiting_end - 1);
     if (room < length)
         return;
     uint8_t end = waiting_end;
     while (length--)
         waiting[end++] = *bytes++;
     waiting_end = end;
-    UCSR0B |= _BV(UDRIE0);
+    hardware_start_sending();
 }
 
 void link_send_delimiter(void)

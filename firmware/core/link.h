@@ -1,7 +1,7 @@
-/* The serial line: bytes to frames and back. Owns USART 0.
+/* The serial line: bytes to frames and back.
  *
- * Interrupts only move bytes between the registers and two rings. Safe state: what is damaged or
- * too long is dropped and counted; the next delimiter starts afresh.
+ * The hardware's interrupts only move bytes between its registers and two rings. Safe state: what
+ * is damaged, too long or incomplete is dropped and counted; the next delimiter starts afresh.
  */
 #pragma once
 #include <stdbool.h>
@@ -9,7 +9,12 @@
 
 #include "wire.h"
 
-void link_begin(void);
+/* For the hardware, also within an interrupt: a byte has arrived, `is_after_loss` where others
+ * before it were lost. */
+void link_take_byte(uint8_t byte, bool is_after_loss);
+
+/* As well: the next byte to be sent; false where there is none. */
+bool link_next_byte(uint8_t *byte);
 
 /* The next whole frame, if one has arrived; looks at no more bytes than the ring holds. */
 bool link_receive(Frame *frame);

@@ -3,53 +3,44 @@
 #include <math.h>
 #include <string.h>
 
-#include "clock.h"
-#include "servo.h"
+#include "counts.h"
+#include "hardware.h"
+#include "target.h"
 
-enum { ALL_ON = (1 << JOINT_COUNT) - 1 };
-
-/* What each servo moves in one period at its rated speed, in counts. */
-static const float STEP[JOINT_COUNT] = STEP_COUNTS;
-
-static float now[JOINT_COUNT];  /* what the last latch put out */
-static float next[JOINT_COUNT]; /* what the next one will */
-static float target[JOINT_COUNT];
-static uint8_t is_on;
-static uint8_t latches; /* how many `now` knows of */
+static STATE float now[MAX_JOINTS];  /* what the last latch put out */
+static STATE float next[MAX_JOINTS]; /* what the next one will */
+static STATE float target[MAX_JOINTS];
+static STATE uint8_t on; /* bit i: channel i */
+static STATE uint32_t latches; /* how many `now` accounts for */
 
 static void account_for_latch(void)
 {
-    uint8_t count = clock_periods();
+    uint32_t count = hardware_periods();
     if (count != latches) {
         latches = count;
         memcpy(now, next, sizeof now);
     }
 }
 
-static uint16_t rounded(float count)
-{
-    return (uint16_t)(count + 0.5f);
-}
-
 /* One period's way from `now` towards `target`, shortened for all channels by one factor. */
-static void look_ahead(float ahead[JOINT_COUNT])
+static void look_ahead(float *ahead)
 {
     float needed = 1.0f;
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
-        needed = fmaxf(needed, fabsf(target[i] - now[i]) / STEP[i]);
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
+    for (uint8_t i = 0; i < MACHINE.joint_count; i++)
+        needed = fmaxf(needed, fabsf(target[i] - now[i]) / MACHINE.step_counts[i]);
+    for (uint8_t i = 0; i < MACHINE.joint_count; i++)
         ahead[i] = needed > 1.0f ? now[i] + (target[i] - now[i]) / needed : target[i];
 }
 
 /* False when a latch came in between: then `now` is old, and what follows from it too. */
 static bool try_to_stage(void)
 {
-    float ahead[JOINT_COUNT];
-    uint16_t counts[JOINT_COUNT];
+    float ahead[MAX_JOINTS] = {0};
+    uint16_t counts[MAX_JOINTS] = {0};
     look_ahead(ahead);
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
-        counts[i] = rounded(ahead[i]);
-    bool is_staged = servo_stage(counts, is_on, latches);
+    counts_round(ahead, counts);
+    counts_clamp(counts);
+    bool is_staged = hardware_stage_pulses(counts, on, latches);
     if (is_staged)
         memcpy(next, ahead, sizeof next);
     return is_staged;
@@ -62,9 +53,9 @@ void motion_advance(void)
     while (!try_to_stage());
 }
 
-void motion_aim(const uint16_t counts[JOINT_COUNT])
+void motion_aim(const uint16_t *counts)
 {
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
+    for (uint8_t i = 0; i < MACHINE.joint_count; i++)
         target[i] = counts[i];
     motion_advance();
 }
@@ -79,7 +70,7 @@ void motion_halt(void)
 
 void motion_energise(uint8_t channel, uint16_t count)
 {
-    is_on |= (uint8_t)(1 << channel);
+    on |= (uint8_t)(1 << channel);
     do {
         account_for_latch();
         now[channel] = target[channel] = count;
@@ -88,18 +79,18 @@ void motion_energise(uint8_t channel, uint16_t count)
 
 void motion_release(void)
 {
-    is_on = 0;
+    on = 0;
     motion_halt();
 }
 
-uint8_t motion_on(void)
+bool motion_is_on(uint8_t channel)
 {
-    return is_on;
+    return on >> channel & 1;
 }
 
 bool motion_is_all_on(void)
 {
-    return is_on == ALL_ON;
+    return on == (1 << MACHINE.joint_count) - 1;
 }
 
 bool motion_is_slewing(void)
@@ -109,5 +100,5 @@ bool motion_is_slewing(void)
 
 uint16_t motion_count(uint8_t channel)
 {
-    return rounded(now[channel]);
+    return counts_nearest(now[channel]);
 }

@@ -7,10 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "machine.h"
-
-/* Aims at `counts`; they must be in range. */
-void motion_aim(const uint16_t counts[JOINT_COUNT]);
+/* Aims at `counts`, one for each joint; they must be in range. */
+void motion_aim(const uint16_t *counts);
 
 /* Stays at what goes out now. */
 void motion_halt(void);
@@ -24,8 +22,8 @@ void motion_release(void);
 /* Looks one period further; call once after each period has begun. */
 void motion_advance(void);
 
-/* Bit i: channel i puts out pulses. */
-uint8_t motion_on(void);
+/* The channel puts out pulses; all channels do. */
+bool motion_is_on(uint8_t channel);
 bool motion_is_all_on(void);
 
 /* Not yet where it was aimed. */

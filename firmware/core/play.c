@@ -3,11 +3,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "counts.h"
 #include "cycle.h"
 #include "motion.h"
 #include "protocol.h"
-#include "servo.h"
 #include "table.h"
+#include "target.h"
 
 #define PERIOD_S 0.02f
 #define RAMP_S 1.0f     /* from standing to full speed, and back */
@@ -15,18 +16,16 @@
 #define ROUNDING 1      /* counts by which a way that is just slow enough may seem too fast */
 #define NEAR_COUNTS 120 /* about 6 degrees: how far that way may be */
 
-static const float STEP[JOINT_COUNT] = STEP_COUNTS;
-
-static uint8_t program;
-static bool is_loop;
-static bool is_finishing;
-static bool is_checked;
-static float duration;
-static float time;     /* in the program, s */
-static float ramp;     /* 0 standing, 1 at full speed */
-static float approach; /* 0 where the joints were, 1 at the program's first counts */
-static float from[JOINT_COUNT];
-static float before[JOINT_COUNT]; /* the sample before, while it is checked and while it plays */
+static STATE uint8_t program;
+static STATE bool is_loop;
+static STATE bool is_finishing;
+static STATE bool is_checked;
+static STATE float duration;
+static STATE float time;     /* in the program, s */
+static STATE float ramp;     /* 0 standing, 1 at full speed */
+static STATE float approach; /* 0 where the joints were, 1 at the program's first counts */
+static STATE float from[MAX_JOINTS];
+static STATE float before[MAX_JOINTS]; /* the sample before, while it is checked or played */
 
 static bool is_cycle(void)
 {
@@ -39,12 +38,6 @@ static float smooth(float u)
     return u * u * (3 - 2 * u);
 }
 
-static void rounded(const float exact[JOINT_COUNT], uint16_t counts[JOINT_COUNT])
-{
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
-        counts[i] = exact[i] > 0 ? (uint16_t)(exact[i] + 0.5f) : 0;
-}
-
 uint8_t play_has(uint8_t wanted)
 {
     bool is_there = false;
@@ -55,7 +48,7 @@ uint8_t play_has(uint8_t wanted)
     return is_there ? RESULT_OK : RESULT_NO_PROGRAM;
 }
 
-static bool first_counts(uint8_t wanted, float counts[JOINT_COUNT])
+static bool first_counts(uint8_t wanted, float *counts)
 {
     if (wanted == PROGRAM_CYCLE)
         return cycle_at(0, 0, counts); /* home: the way from it grows with the ramp */
@@ -63,23 +56,23 @@ static bool first_counts(uint8_t wanted, float counts[JOINT_COUNT])
     return true;
 }
 
-bool play_start_counts(uint8_t wanted, uint16_t counts[JOINT_COUNT])
+bool play_start_counts(uint8_t wanted, uint16_t *counts)
 {
-    float exact[JOINT_COUNT];
+    float exact[MAX_JOINTS] = {0};
     if (!first_counts(wanted, exact))
         return false;
-    rounded(exact, counts);
-    return servo_out_of_range(counts) == NO_JOINT;
+    counts_round(exact, counts);
+    return counts_out_of_range(counts) == NO_JOINT;
 }
 
 uint8_t play_begin(uint8_t wanted, bool wants_loop)
 {
-    uint16_t start[JOINT_COUNT];
+    uint16_t start[MAX_JOINTS] = {0};
     if (play_has(wanted) != RESULT_OK)
         return RESULT_NO_PROGRAM;
     if (!play_start_counts(wanted, start))
         return RESULT_OUT_OF_RANGE;
-    for (uint8_t i = 0; i < JOINT_COUNT; i++) {
+    for (uint8_t i = 0; i < MACHINE.joint_count; i++) {
         from[i] = motion_count(i);
         if (fabsf(from[i] - start[i]) > NEAR_COUNTS)
             return RESULT_NOT_AT_START;
@@ -103,10 +96,10 @@ void play_finish(void)
 }
 
 /* A servo could not do the way from the sample before within a period. */
-static bool is_too_fast(const float exact[JOINT_COUNT], float tolerance)
+static bool is_too_fast(const float *exact, float tolerance)
 {
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
-        if (fabsf(exact[i] - before[i]) > STEP[i] + tolerance)
+    for (uint8_t i = 0; i < MACHINE.joint_count; i++)
+        if (fabsf(exact[i] - before[i]) > MACHINE.step_counts[i] + tolerance)
             return true;
     return false;
 }
@@ -114,12 +107,12 @@ static bool is_too_fast(const float exact[JOINT_COUNT], float tolerance)
 /* One sample of the cycle a period: reach, pulse range, and speed from the sample before. */
 static uint8_t check_step(void)
 {
-    float exact[JOINT_COUNT];
-    uint16_t counts[JOINT_COUNT];
+    float exact[MAX_JOINTS] = {0};
+    uint16_t counts[MAX_JOINTS] = {0};
     if (!cycle_at(time, 1, exact))
         return PLAY_UNREACHABLE;
-    rounded(exact, counts);
-    if (servo_out_of_range(counts) != NO_JOINT)
+    counts_round(exact, counts);
+    if (counts_out_of_range(counts) != NO_JOINT)
         return PLAY_UNREACHABLE;
     if (time > 0 && is_too_fast(exact, 0))
         return PLAY_TOO_FAST;
@@ -134,11 +127,11 @@ static uint8_t check_step(void)
 
 /* Looked at again: a fast sine passes through other samples each time than those it was checked
  * by. `step` is what comes of it where it can be followed. */
-static uint8_t aim(const float exact[JOINT_COUNT], uint8_t step)
+static uint8_t aim(const float *exact, uint8_t step)
 {
-    uint16_t counts[JOINT_COUNT];
-    rounded(exact, counts);
-    if (servo_out_of_range(counts) != NO_JOINT)
+    uint16_t counts[MAX_JOINTS] = {0};
+    counts_round(exact, counts);
+    if (counts_out_of_range(counts) != NO_JOINT)
         return PLAY_UNREACHABLE;
     if (is_too_fast(exact, ROUNDING))
         return PLAY_TOO_FAST;
@@ -149,13 +142,13 @@ static uint8_t aim(const float exact[JOINT_COUNT], uint8_t step)
 
 static uint8_t approach_step(void)
 {
-    float start[JOINT_COUNT];
+    float start[MAX_JOINTS] = {0};
     if (is_finishing)
         return PLAY_DONE;
     approach = fminf(approach + PERIOD_S / APPROACH_S, 1);
     if (!first_counts(program, start))
         return PLAY_UNREACHABLE;
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
+    for (uint8_t i = 0; i < MACHINE.joint_count; i++)
         start[i] = from[i] + smooth(approach) * (start[i] - from[i]);
     return aim(start, PLAY_MOVING);
 }
@@ -169,7 +162,7 @@ static void change_ramp(void)
 /* A cycle grows out of home and shrinks back into it, at its own pace. */
 static uint8_t cycle_step(void)
 {
-    float exact[JOINT_COUNT];
+    float exact[MAX_JOINTS] = {0};
     time += PERIOD_S;
     if (time >= duration) {
         time -= duration;
@@ -184,7 +177,7 @@ static uint8_t cycle_step(void)
 /* A table keeps its way: its pace grows from nothing, and shrinks to nothing. */
 static uint8_t table_step(void)
 {
-    float exact[JOINT_COUNT];
+    float exact[MAX_JOINTS] = {0};
     change_ramp();
     float pace = smooth(ramp);
     if (!is_loop) /* slow enough to stand at the last row */
@@ -214,5 +207,6 @@ uint8_t play_step(void)
 
 uint16_t play_trouble_ms(void)
 {
-    return (uint16_t)(1000 * time);
+    float ms = 1000 * time;
+    return ms < UINT16_MAX ? (uint16_t)ms : UINT16_MAX;
 }

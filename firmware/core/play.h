@@ -8,15 +8,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "machine.h"
-
 enum PlayStep { PLAY_CHECKING, PLAY_MOVING, PLAY_DONE, PLAY_UNREACHABLE, PLAY_TOO_FAST };
 
 /* Whether there is such a program; an enum Result. */
 uint8_t play_has(uint8_t program);
 
 /* Where the program begins; false where that is out of reach. */
-bool play_start_counts(uint8_t program, uint16_t counts[JOINT_COUNT]);
+bool play_start_counts(uint8_t program, uint16_t *counts);
 
 /* Gets ready to check and play it from the present joints on; an enum Result. */
 uint8_t play_begin(uint8_t program, bool is_loop);

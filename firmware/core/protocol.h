@@ -1,4 +1,4 @@
-/* What host and board say to each other: docs/protocol.md holds the frame table. */
+/* The messages between host and board: docs/protocol.md holds the frame table. */
 #pragma once
 
 #define PROTOCOL_VERSION 1
@@ -38,7 +38,7 @@ enum Mode {
 
 enum Program { PROGRAM_CYCLE = 1, PROGRAM_TABLE = 2, PROGRAM_FLASH_TABLE = 3 };
 
-enum Known { KNOWN_UNKNOWN = 0, KNOWN_COMMANDED = 1 };
+enum Known { KNOWN_UNKNOWN = 0, KNOWN_COMMANDED = 1, KNOWN_MEASURED = 2 };
 
 enum Flag { FLAG_DEADLINE_PASSED = 1, FLAG_UNDERVOLTAGE = 2, FLAG_SLEWING = 4 };
 

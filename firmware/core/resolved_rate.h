@@ -1,7 +1,7 @@
 /* One resolved-rate step of a serial arm as Fadeev and Loginov compute it on a C167: joint rates
  * from the wanted velocity of the wrist centre, the tool's orientation held by three projections.
  *
- * No board of ours moves an arm by it; it is here to be measured. No hardware.
+ * No board of ours moves an arm by it; it is here to be measured.
  */
 #pragma once
 #include <stdbool.h>

@@ -2,22 +2,21 @@
 
 #include "arming.h"
 #include "buttons.h"
+#include "counts.h"
 #include "deadline.h"
-#include "machine.h"
 #include "motion.h"
 #include "play.h"
-#include "servo.h"
-#include "start.h"
 #include "supply.h"
+#include "target.h"
 
 static const Fault NO_FAULT = {FAULT_NONE, NO_JOINT, 0};
 
-static uint8_t mode = MODE_DISARMED;
-static uint8_t fault;
-static bool is_deadline_passed;
-static bool is_hosts;   /* a host was the last to command it, and its deadline has not passed */
-static bool is_cleared; /* by CLEAR, and no host has armed or driven it since */
-static uint8_t program_after_arming; /* 0: none; the start button asked for it */
+static STATE uint8_t mode = MODE_DISARMED;
+static STATE uint8_t fault;
+static STATE bool is_deadline_passed;
+static STATE bool is_hosts;   /* a host was the last to command it, and its deadline has not passed */
+static STATE bool is_cleared; /* by CLEAR, and no host has armed or driven it since */
+static STATE uint8_t program_after_arming; /* 0: none; the start button asked for it */
 
 static void expect_setpoint_within(uint16_t ms)
 {
@@ -69,11 +68,11 @@ Fault safety_follow(uint16_t deadline_ms, const uint16_t *counts, uint8_t joints
 {
     if (!is_following())
         return (Fault){FAULT_NOT_ARMED, NO_JOINT, mode};
-    if (joints != JOINT_COUNT)
+    if (joints != MACHINE.joint_count)
         return (Fault){FAULT_WRONG_JOINTS, NO_JOINT, joints};
     if (deadline_ms < MIN_DEADLINE_MS || deadline_ms > MAX_DEADLINE_MS)
         return (Fault){FAULT_BAD_DEADLINE, NO_JOINT, deadline_ms};
-    uint8_t joint = servo_out_of_range(counts);
+    uint8_t joint = counts_out_of_range(counts);
     if (joint != NO_JOINT)
         return (Fault){FAULT_OUT_OF_RANGE, joint, counts[joint]};
     motion_aim(counts);
@@ -90,9 +89,9 @@ uint8_t safety_arm(const uint16_t *park, uint8_t joints)
         return latched_result();
     if (supply_is_low())
         return RESULT_UNDERVOLTAGE;
-    if (joints != JOINT_COUNT)
+    if (joints != MACHINE.joint_count)
         return RESULT_WRONG_JOINTS;
-    if (servo_out_of_range(park) != NO_JOINT)
+    if (counts_out_of_range(park) != NO_JOINT)
         return RESULT_OUT_OF_RANGE;
     if (is_following() || safety_is_playing()) {
         hold(MODE_ARMED);
@@ -105,7 +104,7 @@ uint8_t safety_arm(const uint16_t *park, uint8_t joints)
 
 uint8_t safety_arm_to_play(const uint16_t *start, uint8_t program)
 {
-    uint8_t result = safety_arm(start, JOINT_COUNT);
+    uint8_t result = safety_arm(start, MACHINE.joint_count);
     if (result == RESULT_OK)
         program_after_arming = program;
     return result;
@@ -165,7 +164,7 @@ static void watch_deadline(void)
 {
     if (!deadline_has_passed())
         return;
-    bool is_released = RELEASE_ON_LINK_LOSS && !is_cleared;
+    bool is_released = MACHINE.releases_on_link_loss && !is_cleared;
     if (is_released)
         motion_release();
     hold(is_released ? MODE_DISARMED : MODE_HOLDING);
@@ -177,8 +176,6 @@ void safety_watch(void)
     buttons_read();
     if (buttons_is_stop() && mode != MODE_STOPPED)
         safety_stop();
-    if (buttons_take_start() && !buttons_is_stop())
-        start_press();
     watch_deadline();
 }
 
@@ -240,8 +237,9 @@ uint8_t safety_mode(void)
 
 uint8_t safety_flags(void)
 {
-    return (is_deadline_passed ? FLAG_DEADLINE_PASSED : 0) |
-           (supply_is_low() ? FLAG_UNDERVOLTAGE : 0) | (motion_is_slewing() ? FLAG_SLEWING : 0);
+    return (uint8_t)((is_deadline_passed ? FLAG_DEADLINE_PASSED : 0) |
+                     (supply_is_low() ? FLAG_UNDERVOLTAGE : 0) |
+                     (motion_is_slewing() ? FLAG_SLEWING : 0));
 }
 
 uint8_t safety_fault(void)

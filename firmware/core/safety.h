@@ -30,7 +30,7 @@ uint8_t safety_play(uint8_t program, bool is_loop);
  * after a claim the machine is the host's from then on, until its deadline passes. */
 void safety_note_host(bool is_claim);
 
-/* Deadline and buttons; call in every round of the loop. */
+/* Deadline and stop button; call in every round of the loop. */
 void safety_watch(void);
 
 /* Battery, arming and playing, once a period; the fault that begins now, if one does. */

@@ -1,6 +1,6 @@
 #include "start.h"
 
-#include "machine.h"
+#include "buttons.h"
 #include "play.h"
 #include "safety.h"
 
@@ -14,10 +14,10 @@ static uint8_t program_to_start(void)
     return 0;
 }
 
-void start_press(void)
+static void press(void)
 {
     uint8_t program = program_to_start();
-    uint16_t start[JOINT_COUNT];
+    uint16_t start[MAX_JOINTS] = {0};
     switch (safety_mode()) {
     case MODE_STOPPED:
     case MODE_FAULT:
@@ -37,4 +37,10 @@ void start_press(void)
             safety_arm_to_play(start, program);
         break;
     }
+}
+
+void start_watch(void)
+{
+    if (buttons_take_start() && !buttons_is_stop())
+        press();
 }

@@ -1,22 +1,19 @@
 #include "supply.h"
 
-#include "battery.h"
 #include "clock.h"
-#include "machine.h"
+#include "target.h"
 
 #define EXHAUSTED_AFTER_MS 500
 
-static const uint16_t MINIMUM_MV = MINIMUM_BATTERY_MV; /* 0 where no battery is watched */
-
-static uint16_t millivolts;
-static bool is_low;
-static uint32_t low_since_ms;
+static STATE uint16_t millivolts;
+static STATE bool is_low;
+static STATE uint32_t low_since_ms;
 
 void supply_watch(void)
 {
     bool was_low = is_low;
-    millivolts = battery_mv();
-    is_low = millivolts < MINIMUM_MV;
+    millivolts = hardware_battery_mv();
+    is_low = millivolts < MACHINE.minimum_battery_mv;
     if (!was_low)
         low_since_ms = clock_period_ms();
 }

@@ -6,8 +6,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "machine.h"
-
 /* Each is an enum Result. Rows come in order from 0; a row is checked as a setpoint is. */
 uint8_t table_begin(uint16_t rows, uint16_t step_ms);
 uint8_t table_row(uint16_t index, const uint16_t *counts, uint8_t joints);
@@ -23,4 +21,4 @@ bool table_is_slow_enough(uint8_t program, bool is_loop);
 float table_duration(uint8_t program, bool is_loop);
 
 /* The counts at `time` seconds within that duration, in a straight line between two rows. */
-void table_at(uint8_t program, float time, float counts[JOINT_COUNT]);
+void table_at(uint8_t program, float time, float *counts);

@@ -1,4 +1,4 @@
-/* Frames to bytes on the wire and back. No hardware: also compiled on the host, for the tests. */
+/* Frames to bytes on the wire and back. */
 #pragma once
 #include <stdbool.h>
 #include <stdint.h>

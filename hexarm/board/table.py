@@ -60,6 +60,7 @@ def flash_header(table: CountTable, name: str, calibration: Calibration) -> str:
     return (
         f'/* Made by `hexarm firmware-header --table` from {name}. */\n#pragma once\n\n'
         f'#define FLASH_TABLE_ROWS {len(table.rows)}\n'
+        f'#define FLASH_TABLE_JOINTS {len(table.rows[0])}\n'
         f'#define FLASH_TABLE_STEP_MS {table.step_ms}\n'
         f'#define FLASH_TABLE_LOOPS {int(loops)}\n'
         f'#define FLASH_TABLE {{ \\\n{rows}\n}}\n'

@@ -23,7 +23,7 @@ from bridge.protocol import (
 from bridge.servo_config import BoardConfig
 from firmware.simulator.host import SETTINGS, Host
 from hexarm import machines
-from hexarm.board.solver import board_solver
+from hexarm.board.header import settings_of
 from hexarm.board.table import flash_header, read_table
 from hexarm.cli.main import main
 from manipulator.errors import ConfigError
@@ -98,8 +98,7 @@ def test_a_table_in_flash_is_played_after_power_up(csv_file):
 
 
 def test_a_cycle_that_was_set_is_played(tools):
-    solve = board_solver(machines.load('robocake'), CALIBRATION)
-    host = Host(dataclasses.replace(SETTINGS, solve=solve))
+    host = Host(dataclasses.replace(SETTINGS, hexapod=settings_of('robocake').hexapod))
     host.run(0.1)
     host.ask(CycleAxis(2, 0.002, 1000, 0.0))
     press(host)

@@ -1,20 +1,20 @@
-#include "clock.h"
+#include "chip_clock.h"
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <util/atomic.h>
 
-#include "servo.h"
+#include "clock.h"
 
 /* So that the first period begins at once, and no timer counts through a pulse before. */
-enum { FIRST_COUNT = LATCH - 20 };
-enum { TIMER0_1KHZ = 250 - 1 };
+#define FIRST_COUNT (LATCH - 20)
+#define TIMER0_1KHZ (250 - 1)
 
 static volatile uint32_t periods;
 
-void clock_begin(void)
+void chip_clock_begin(void)
 {
-    /* Mode 14: fast PWM up to ICR; prescaler 8. servo.c connects the outputs A and B. */
+    /* Mode 14: fast PWM up to ICR; prescaler 8. pulses.c connects the outputs A and B. */
     ICR1 = PERIOD_COUNTS - 1;
     OCR1C = LATCH;
     TCCR1A = _BV(WGM11);
@@ -31,18 +31,22 @@ void clock_begin(void)
 
 EMPTY_INTERRUPT(TIMER0_COMPA_vect)
 
-ISR(TIMER1_COMPC_vect)
+void chip_clock_begin_period(void)
 {
-    servo_latch();
     periods++;
 }
 
-uint8_t clock_periods(void)
+uint32_t hardware_periods(void)
 {
-    return (uint8_t)periods; /* one byte is read in one piece */
+    uint32_t begun;
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
+    {
+        begun = periods;
+    }
+    return begun;
 }
 
-uint32_t clock_us(void)
+uint32_t hardware_us(void)
 {
     uint32_t begun;
     uint16_t count;
@@ -58,25 +62,4 @@ uint32_t clock_us(void)
         begun++;
     uint16_t since = count >= LATCH ? count - LATCH : count + (PERIOD_COUNTS - LATCH);
     return (begun - 1) * PERIOD_US + since / 2;
-}
-
-/* -1 before the first latch: what follows counts modulo 2^32, as after every later wrap. */
-static uint32_t periods_before(void)
-{
-    uint32_t begun;
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
-    {
-        begun = periods;
-    }
-    return begun - 1;
-}
-
-uint32_t clock_period_us(void)
-{
-    return periods_before() * PERIOD_US;
-}
-
-uint32_t clock_period_ms(void)
-{
-    return periods_before() * PERIOD_MS;
 }

@@ -1,10 +1,12 @@
-#include "servo.h"
+#include "pulses.h"
 
+#include <avr/interrupt.h>
 #include <avr/io.h>
 #include <util/atomic.h>
 
-#include "clock.h"
-#include "protocol.h"
+#include "chip_clock.h"
+#include "hardware.h"
+#include "target.h"
 
 typedef struct {
     volatile uint16_t *width;
@@ -25,17 +27,14 @@ static const Channel CHANNELS[] = {
     {&OCR1A, &TCCR1A, &DDRB, _BV(COM1A1), _BV(PB5)},
     {&OCR1B, &TCCR1A, &DDRB, _BV(COM1B1), _BV(PB6)},
 };
-_Static_assert(JOINT_COUNT <= sizeof CHANNELS / sizeof *CHANNELS, "more joints than channels");
+_Static_assert(MAX_JOINTS == sizeof CHANNELS / sizeof *CHANNELS, "a channel for each joint");
 
-static const uint16_t LOWEST[JOINT_COUNT] = LOWEST_COUNTS;
-static const uint16_t HIGHEST[JOINT_COUNT] = HIGHEST_COUNTS;
-
-static volatile uint16_t staged[JOINT_COUNT];
+static volatile uint16_t staged[MAX_JOINTS];
 static volatile uint8_t staged_on;
 
-void servo_begin(void)
+void pulses_begin(void)
 {
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
+    for (uint8_t i = 0; i < MACHINE.joint_count; i++)
         *CHANNELS[i].direction |= CHANNELS[i].pin;
     /* Mode 14 as timer 1, and in step with it: none has a pulse under way at LATCH. */
     ICR4 = PERIOD_COUNTS - 1;
@@ -48,39 +47,33 @@ void servo_begin(void)
     TCNT5 = TCNT1;
 }
 
-uint8_t servo_out_of_range(const uint16_t counts[JOINT_COUNT])
+/* A compare value of n makes a pulse of n + 1 counts. */
+bool hardware_stage_pulses(const uint16_t counts[MAX_JOINTS], uint8_t is_on, uint32_t periods)
 {
-    for (uint8_t i = 0; i < JOINT_COUNT; i++)
-        if (counts[i] < LOWEST[i] || counts[i] > HIGHEST[i])
-            return i;
-    return NO_JOINT;
-}
-
-bool servo_stage(const uint16_t counts[JOINT_COUNT], uint8_t is_on, uint8_t periods)
-{
-    uint16_t widths[JOINT_COUNT];
-    for (uint8_t i = 0; i < JOINT_COUNT; i++) {
-        uint16_t count = counts[i];
-        count = count < LOWEST[i] ? LOWEST[i] : count > HIGHEST[i] ? HIGHEST[i] : count;
-        widths[i] = count - 1; /* a compare value of n makes a pulse of n + 1 counts */
-    }
     bool is_in_time;
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
     {
-        is_in_time = clock_periods() == periods;
+        is_in_time = hardware_periods() == periods;
         if (is_in_time) {
-            for (uint8_t i = 0; i < JOINT_COUNT; i++)
-                staged[i] = widths[i];
+            for (uint8_t i = 0; i < MACHINE.joint_count; i++)
+                staged[i] = counts[i] - 1;
             staged_on = is_on;
         }
     }
     return is_in_time;
 }
 
-void servo_latch(void)
+/* The chip has no encoders. */
+bool hardware_read_positions(uint16_t counts[MAX_JOINTS])
+{
+    (void)counts;
+    return false;
+}
+
+static void latch(void)
 {
     uint8_t on = staged_on;
-    for (uint8_t i = 0; i < JOINT_COUNT; i++, on >>= 1) {
+    for (uint8_t i = 0; i < MACHINE.joint_count; i++, on >>= 1) {
         const Channel *channel = &CHANNELS[i];
         *channel->width = staged[i];
         if (on & 1)
@@ -88,4 +81,10 @@ void servo_latch(void)
         else
             *channel->control &= (uint8_t)~channel->connect;
     }
+}
+
+ISR(TIMER1_COMPC_vect)
+{
+    latch();
+    chip_clock_begin_period();
 }
