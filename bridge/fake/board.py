@@ -10,6 +10,7 @@ import ctypes
 from bridge.fake.board_settings import BoardSettings
 from bridge.fake.program import FlashTable, Wires, program
 from bridge.protocol import Mode, ResetCause
+from manipulator.errors import InvalidInput
 
 HIGHEST_U16 = 0xFFFF
 ROOM = 1024
@@ -88,6 +89,8 @@ class Board:
     @memory.setter
     def memory(self, value: bytes) -> None:
         cells = self._wires.memory
+        if len(value) > len(cells):
+            raise InvalidInput(f'memory: {len(value)} bytes, the board has {len(cells)}')
         cells[:] = value.ljust(len(cells), BLANK)
 
     @property

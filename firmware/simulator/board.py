@@ -1,7 +1,5 @@
 """The simulated chip behind the fake board's three methods: feed, step, take_output."""
 
-from pathlib import Path
-
 import numpy as np
 
 from bridge.fake.board_settings import BoardSettings
@@ -9,6 +7,7 @@ from bridge.protocol import ResetCause
 from firmware.simulator.chip import CLOCK_HZ, CYCLES_A_COUNT, Chip
 from hexarm.board import build as firmware_build
 from hexarm.board.header import header
+from hexarm.board.table import flash_text
 
 CHANNELS = 8
 OFF_AFTER = 21 * CLOCK_HZ // 1000
@@ -20,10 +19,8 @@ DIVIDER = 2
 class SimulatedBoard:
     """The firmware for these settings, on a chip, its boot loader's silence included."""
 
-    def __init__(
-        self, settings: BoardSettings, battery_mv: int = 7600, table: Path | None = None
-    ) -> None:
-        self.program = firmware_build.firmware(header(settings, 'a test'), table)
+    def __init__(self, settings: BoardSettings, battery_mv: int = 7600) -> None:
+        self.program = firmware_build.firmware(header(settings, 'a test'), _flash_table(settings))
         self.chip = Chip(firmware_build.simulator() / 'chip.so', self.program, settings.baud)
         self.settings = settings
         self.battery_mv = battery_mv
@@ -107,3 +104,9 @@ class SimulatedBoard:
                 self._risen[channel] = cycle
             else:
                 self._widths[channel] = cycle - self._risen[channel]
+
+
+def _flash_table(settings: BoardSettings) -> str:
+    if settings.table is None:
+        return ''
+    return flash_text(settings.table, 'a test', settings.can_loop)

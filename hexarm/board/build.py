@@ -51,16 +51,14 @@ def simulator() -> Path:
     return FIRMWARE / 'build' / 'simulator'
 
 
-def firmware(header: str, table: Path | None = None) -> Path:
-    """The program for a parameters.h, up to date; `table` is a CSV for robocake's flash."""
-    if table is None:
-        return _built(header, 'firmware.elf')
-    return _built(header + f'/* {table.read_text()} */\n', 'firmware.elf', f'TABLE={table}')
+def firmware(header: str, flash_table: str = '') -> Path:
+    """The program for a parameters.h, and a flash_table.h if it has one, up to date."""
+    return _built('firmware.elf', {'parameters.h': header, 'flash_table.h': flash_table})
 
 
 def bench(header: str) -> Path:
     """The program that marks how long the kinematics take."""
-    return _built(header, 'bench.elf')
+    return _built('bench.elf', {'parameters.h': header})
 
 
 def chip_process(machine: str, link: Path) -> tuple[str, ...]:
@@ -92,16 +90,19 @@ def sizes(program: Path) -> Sizes:
     return Sizes(size['.text'] + size['.data'], size['.data'] + variables)
 
 
-def _built(header: str, what: str, *words: str) -> Path:
-    """A file made with this header, in a folder of its own: machines never mix."""
-    out = f'build/{hashlib.sha256(header.encode()).hexdigest()[:12]}'
-    parameters = FIRMWARE / out / 'parameters.h'
+def _built(what: str, headers: dict[str, str]) -> Path:
+    """A file made with these headers, in a folder of its own: machines never mix."""
+    headers = {name: text for name, text in headers.items() if text}
+    out = f'build/{hashlib.sha256(repr(headers).encode()).hexdigest()[:12]}'
+    words = ['TABLE=given'] if 'flash_table.h' in headers else []
     with _alone():
-        if not parameters.exists():
-            parameters.parent.mkdir(parents=True, exist_ok=True)
-            parameters.write_text(header)
-        # -o: the header is as it shall be, whatever stands in config/.
-        _make(f'OUT={out}', '-o', f'{out}/parameters.h', *words, f'{out}/{what}')
+        for name, text in headers.items():
+            path = FIRMWARE / out / name
+            if not path.exists():
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text)
+            words += ['-o', f'{out}/{name}']  # as it shall be, whatever stands in config/
+        _make(f'OUT={out}', *words, f'{out}/{what}')
     return FIRMWARE / out / what
 
 
