@@ -9,7 +9,7 @@ from bridge.fake.board_thread import FakeMachine
 from bridge.fake.plant import Plant
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.board.solver import board_solver
+from hexarm.board.kinematics import crank_hexapod
 from hexarm.simulation.model import mechanism
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
@@ -32,9 +32,9 @@ def fake_machine(
     Hysteresis in rad (or m). Raises InvalidInput for another plant than PLANTS, ConfigError where
     the machine file has no masses for MuJoCo.
     """
-    solve = board_solver(machines.load(name), Calibration.from_config(config.servos))
+    hexapod = crank_hexapod(machines.load(name), Calibration.from_config(config.servos))
     return _with_plant(
-        plant, name, FakeMachine.from_config(config, boot_s, hysteresis, solve), tell
+        plant, name, FakeMachine.from_config(config, boot_s, hysteresis, hexapod), tell
     )
 
 

@@ -13,7 +13,7 @@ from bridge.fake.board_thread import BoardThread, FakeMachine
 from bridge.protocol import CycleAxis, Play, Stop, TableRow
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.board.solver import board_solver
+from hexarm.board.kinematics import crank_hexapod
 from hexarm.graph import Executable, Graph
 from hexarm.tapped_line import Tap, TappedLine
 from manipulator.nodes.qos import EVERY_WORD, LATCHED
@@ -73,8 +73,8 @@ def tap():
 def user(tap, tmp_path_factory):
     path = tmp_path_factory.mktemp('line') / 'board'
     config = BoardConfig.from_machine(machines.read('robocake'))
-    solve = board_solver(machines.load('robocake'), Calibration.from_config(config.servos))
-    machine = FakeMachine.from_config(config, boot_s=0.1, hysteresis=0.0, solve=solve)
+    hexapod = crank_hexapod(machines.load('robocake'), Calibration.from_config(config.servos))
+    machine = FakeMachine.from_config(config, boot_s=0.1, hysteresis=0.0, hexapod=hexapod)
     board = BoardThread(machine, BadLine(path, tap), lambda positions: None)
     board.start()
     parameters = {'machine': 'robocake', 'port': str(path)}

@@ -7,6 +7,7 @@ import signal
 import numpy as np
 import pytest
 
+from bridge.frames import encode
 from bridge.protocol import Arm, Mode
 from bridge.servo_config import BoardConfig
 from hexarm import machines
@@ -130,7 +131,13 @@ def test_without_consent_no_servo_gets_a_pulse(sit_down):
 
 def test_a_platform_that_the_board_holds_up_is_not_dropped_without_consent(sit_down):
     person, _ = sit_down({})
-    person.board.do(lambda: person.machine.board._modes.obey(Arm((3000,) * 6), 0))
+
+    def arm():
+        board = person.machine.board
+        board.step(0.1)  # its boot, in which it hears nothing
+        board.feed(encode(Arm((3000,) * 6), 1))
+
+    person.board.do(arm)
     person.await_words('ENTER energises')
     person.type('q')
     assert person.await_end() == 0
