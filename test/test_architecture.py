@@ -18,7 +18,6 @@ CLOCKED = {
     'link_thread.py',
     'board_thread.py',
     'fake_line.py',
-    'program_build.py',
     'stop_socket.py',
 }
 CORE = sorted(PACKAGES - {'hexarm'})

@@ -2,8 +2,9 @@
 
 import ctypes
 import functools
+from pathlib import Path
 
-from bridge.fake import program_build
+import bridge
 from bridge.protocol import MAX_JOINTS
 from manipulator.errors import ManipulatorError
 
@@ -105,20 +106,18 @@ class ProgramMissing(ManipulatorError):
 
 @functools.cache
 def program() -> ctypes.PyDLL:
-    """The library, opened once; in the source tree it is compiled first where a source is newer.
+    """The library, opened once; ProgramMissing where it is not there, or does not fit.
 
     Its calls hold Python's lock: the boards of a process share the program's variables.
-    Raises ProgramMissing.
     """
+    path = Path(bridge.__file__).with_name('_board.abi3.so')
     try:
-        if program_build.is_stale():
-            program_build.build()
-        library = ctypes.PyDLL(str(program_build.LIBRARY))
-    except (program_build.CannotCompile, OSError) as error:
-        raise ProgramMissing(f"the fake board's program: {error}") from error
+        library = ctypes.PyDLL(str(path))
+    except OSError as error:
+        raise ProgramMissing(f"the fake board's program: {error}: install hexarm anew") from error
     _declare(library)
     if library.host_size_of_wires() != ctypes.sizeof(Wires):
-        raise ProgramMissing(f'{program_build.LIBRARY} is of another version of hexarm')
+        raise ProgramMissing(f'{path} is of another version of hexarm: install hexarm anew')
     return library
 
 

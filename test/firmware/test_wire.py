@@ -10,13 +10,12 @@ from hypothesis import strategies as st
 
 from bridge import cobs, protocol
 from bridge.fake.program import program
-from bridge.fake.program_build import FIRMWARE
 from bridge.frames import MAX_WIRE_BYTES, checksum
 from bridge.protocol import Program
 from manipulator.errors import ProtocolError
 
 GOLDEN = Path(__file__).parents[1] / 'bridge' / 'golden_frames.txt'
-PROTOCOL_H = FIRMWARE / 'core' / 'protocol.h'
+PROTOCOL_H = Path(__file__).parents[2] / 'firmware' / 'core' / 'protocol.h'
 
 
 class Frame(ctypes.Structure):
