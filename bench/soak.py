@@ -21,10 +21,10 @@ from std_srvs.srv import SetBool
 from bridge.fake.faults import Faults
 from bridge.protocol import Arm, Disarm, ResetCause, Setpoint
 from hexarm import keep_to_this_computer, machines
-from hexarm.rig import Rig
 from manipulator.errors import ManipulatorError
 from manipulator.nodes.qos import COMMAND, EVERY_WORD
 from manipulator.pose import Pose
+from rig import Rig
 
 FAULTS_PER_MINUTE = 150.0
 BOOT = 2.0

@@ -15,8 +15,8 @@ from std_msgs.msg import Bool
 from bench.row import Row
 from bridge.protocol import Stop
 from hexarm import keep_to_this_computer
-from hexarm.rig import Rig
 from manipulator.nodes.qos import EVERY_WORD
+from rig import Rig
 
 RUNS, STOPS = 5, 20
 GOAL, STOP_GOAL_MS = 0.5, 50.0

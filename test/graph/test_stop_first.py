@@ -15,9 +15,9 @@ from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board.kinematics import crank_hexapod
 from hexarm.graph import Executable, Graph
-from hexarm.tapped_line import Tap, TappedLine
 from manipulator.nodes.qos import EVERY_WORD, LATCHED
 from patient_user import PatientUser
+from tapped_line import Tap, TappedLine
 
 pytestmark = pytest.mark.graph
 

@@ -11,8 +11,8 @@ import pytest
 from std_msgs.msg import Bool
 
 from bridge.protocol import Setpoint, Stop
-from hexarm.rig import Rig
 from manipulator.nodes.qos import EVERY_WORD
+from rig import Rig
 
 pytestmark = pytest.mark.graph
 

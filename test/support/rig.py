@@ -25,9 +25,9 @@ from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.client import ENABLING, Client, NotReady
 from hexarm.graph import Graph, machine_graph
-from hexarm.tapped_line import Tap, TappedLine
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.states import MotionMode
+from tapped_line import Tap, TappedLine
 
 Pulses = tuple[float | None, ...]
 
