@@ -79,10 +79,5 @@ def read_limits(machine: Machine, pose: Pose, near: Array | None = None) -> Read
 
 def readings_of(machine: Machine, pose: Pose, joints: Array) -> Readings:
     """All limits at poses (...) with their joints (..., n), NaN where they do not close."""
-    limits = machine.constraints.limits
-    return Readings(
-        tuple((limit.quantity, o, limit.unit) for limit in limits for o in limit.owners),
-        machine.constraints.values(pose, joints),
-        machine.constraints.low,
-        machine.constraints.high,
-    )
+    limits = machine.constraints
+    return Readings(limits.names, limits.values(pose, joints), limits.low, limits.high)
