@@ -29,7 +29,8 @@ def offset(machine: Machine, start: Pose, end: Pose) -> Array:
 
 def distance(machine: Machine, start: Pose, end: Pose) -> Array:
     """√(|Δp|² + L²·angle²) in metres (...), L the characteristic length."""
-    result: Array = np.linalg.norm(offset(machine, start, end), axis=-1)
+    step = offset(machine, start, end)
+    result: Array = np.sqrt((step * step).sum(axis=-1))
     return result
 
 
