@@ -116,9 +116,9 @@ def _null_space(columns: Array) -> Array:
     pivots = np.abs(np.diag(factors))
     is_small = pivots <= NO_PIVOT * pivots.max()
     rank = int(np.argmax(is_small)) if is_small.any() else len(pivots)
-    order = np.arange(len(columns))
-    for i, k in enumerate(swaps):
-        order[[i, k]] = order[[k, i]]
+    order = list(range(len(columns)))
+    for i, k in enumerate(swaps.tolist()):
+        order[i], order[k] = order[k], order[i]
     above, below = factors[:rank, :rank], factors[rank:, :rank]
     free = len(columns) - rank
     null = np.empty((len(columns), free))
@@ -144,8 +144,8 @@ def _solutions(null_space: Array) -> tuple[Complex, bool]:
     right = columns.conj().T @ np.tensordot(mixture, by_e, axes=1)
     _, vectors = np.linalg.eig(np.linalg.solve(triangle, right))
     # an eigenvector is the evaluation at a solution: read e off it
-    seen = denominator @ vectors
-    e = np.einsum('mk,jmk->kj', seen.conj(), by_e @ vectors)
+    seen = factor[..., None] * (null_space @ vectors)[index]
+    e = np.einsum('mk,jmk->kj', (denominator @ vectors).conj(), seen)
     return e / np.linalg.norm(e, axis=1)[:, None], bool(values[-1] > 1e-6 * values[0])
 
 
@@ -235,15 +235,12 @@ def _distinct(
     angle = np.linalg.norm(so3.log(poses.rotation), axis=-1)
     keys = np.column_stack([-poses.position[:, 2], -poses.position[:, 0], -poses.position[:, 1]])
     order = np.lexsort([angle, *np.round(keys.T[::-1] / (SAME * size))])
+    apart = np.abs(poses.position[:, None] - poses.position).max(axis=-1) / size
+    apart += np.abs(poses.rotation[:, None] - poses.rotation).max(axis=(-1, -2))
     chosen: list[int] = []
-    for k in order:
-        apart = [
-            np.abs(poses.position[k] - poses.position[c]).max() / size
-            + np.abs(poses.rotation[k] - poses.rotation[c]).max()
-            for c in chosen
-        ]
-        if all(a > SAME for a in apart):
-            chosen.append(int(k))
+    for k in order.tolist():
+        if (apart[k, chosen] > SAME).all():
+            chosen.append(k)
     kept = poses[chosen]
     sigma = smallest_singular_value(leg_jacobian(base, platform, kept), size)
     return tuple(kept[k] for k in range(len(chosen))), tuple(float(s) for s in sigma)

@@ -223,38 +223,46 @@ class LegEquations:
         i, j = np.triu_indices(4, 1)
         cubics = (q5[:, None] * u2 - beta * c, alpha * u2 - beta * u1)
         quartics = tuple(x[:, i] * u2[:, j] - x[:, j] * u2[:, i] for x in (c, u1))
-        both = [self._sextics(n, Q, u1, u2, c, part) for part in (slice(0, 3), slice(3, 6))]
+        products = _products(u1, u2, c)
+        both = [self._sextics(n, Q[:, part], products, part) for part in (_P, _W)]
         sextics = tuple(np.hstack(pair) for pair in zip(*both, strict=True))
         return [cubics, quartics, sextics]
 
     def _parts(self, e: Array) -> tuple[Array, Array, Array, Array, Array, Array]:
         """N, the fifth row q5 of (4), Q of (5), and u1, u2, c of (6), at the points e (m, 4)."""
         n = np.sum(e * e, axis=1)
-        q = n[:, None] * self.d - np.einsum('ni,mij,nj->mn', self.a, turned(e), self.b)
+        pairs = (self.a[:, :, None] * self.b[:, None, :]).reshape(-1, 9)
+        q = n[:, None] * self.d - turned(e).reshape(-1, 9) @ pairs.T
         y = q @ self.u
         Q = -(y[:, :4] / self.sigma[:4]) @ self.v[:4]
         u1, u2, c = (_closure(e, x) for x in (self.kappa1, self.kappa2, Q))
         return n, y[:, 4], Q, u1, u2, c
 
     def _sextics(
-        self, n: Array, Q: Array, u1: Array, u2: Array, c: Array, part: slice
+        self, n: Array, Q: Array, products: tuple[Array, ...], part: slice
     ) -> tuple[Array, Array, Array]:
         """|p|² = N²·L1² (or |w|²) times u2_i·u2_j, with t·u2 replaced by −(s·u1 + c): (9)."""
-        x1, x2, Qx = self.kappa1[part], self.kappa2[part], Q[:, part]
-        i, j = np.triu_indices(4)
-
-        def both(x: Array, y: Array) -> Array:
-            product: Array = (x[:, i] * y[:, j] + x[:, j] * y[:, i]) / 2
-            return product
-
-        q1, q2 = (Qx @ x1)[:, None], (Qx @ x2)[:, None]
-        rest = (np.sum(Qx * Qx, axis=1) - (self.length * n) ** 2)[:, None]
+        u1u1, u1u2, u2u2, cu1, cu2, cc = products
+        x1, x2 = self.kappa1[part], self.kappa2[part]
+        q1, q2 = (Q @ x1)[:, None], (Q @ x2)[:, None]
+        rest = (np.sum(Q * Q, axis=1) - (self.length * n) ** 2)[:, None]
         x12, x22 = x1 @ x2, x2 @ x2
         return (
-            rest * both(u2, u2) - 2 * q2 * both(c, u2) + x22 * both(c, c),
-            2 * (q1 * both(u2, u2) - q2 * both(u1, u2) - x12 * both(c, u2) + x22 * both(c, u1)),
-            x1 @ x1 * both(u2, u2) - 2 * x12 * both(u1, u2) + x22 * both(u1, u1),
+            rest * u2u2 - 2 * q2 * cu2 + x22 * cc,
+            2 * (q1 * u2u2 - q2 * u1u2 - x12 * cu2 + x22 * cu1),
+            x1 @ x1 * u2u2 - 2 * x12 * u1u2 + x22 * u1u1,
         )
+
+
+_P, _W = slice(0, 3), slice(3, 6)
+
+
+def _products(u1: Array, u2: Array, c: Array) -> tuple[Array, ...]:
+    """(x_i·y_j + x_j·y_i)/2 for i ≤ j (m, 10), of u1 u1, u1 u2, u2 u2, c u1, c u2 and c c."""
+    i, j = np.triu_indices(4)
+    x = np.stack([u1, u1, u2, c, c, c])
+    y = np.stack([u1, u2, u2, u1, u2, c])
+    return tuple((x[..., i] * y[..., j] + x[..., j] * y[..., i]) / 2)
 
 
 def turned(e: Array) -> Array:
