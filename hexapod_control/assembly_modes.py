@@ -22,8 +22,9 @@ from manipulator.errors import InvalidInput, NoSolution
 from manipulator.pose import Pose
 
 DEGREE = 8
-GROUPS = 252  # sums of equations; their rank is 244 unless solutions are infinitely many
-NO_PIVOT = 1e-9  # a pivot is zero below this part of the largest
+SOLUTIONS = 40  # of the general problem, with their multiplicities: Z has as many columns
+GROUPS, LEADING = 252, 228  # sums of equations, of rank 244; those that are safely independent
+NO_PIVOT = 1e-9  # a pivot or a singular value is zero below this part of the largest pivot
 INFINITE = 1e-5  # |e·e| of a solution without a finite rotation, |e| being 1
 REAL = 1e-9  # imaginary part of e, |e| being 1, that is rounding alone
 NEARLY_REAL = 1e-4  # and that can come of two real solutions which almost meet
@@ -72,7 +73,7 @@ def assembly_modes(
     base, platform, legs = _checked(base_points, platform_points, lengths)
     equations = LegEquations.of(base, platform, legs)
     rows = multiples(DEGREE, GENERATORS).mixed(equations.coefficients(), GROUPS)
-    null_space = _null_space(rows)
+    null_space = _null_space(rows, LEADING)
     e, is_whole = _solutions(null_space)
     quaternions, is_real = _nearly_real(e)
     starts, has_place = _placed(equations, quaternions)
@@ -85,7 +86,9 @@ def assembly_modes(
         sigma,
         null_space.shape[1],
         int(np.sum(np.abs(np.sum(e * e, axis=1)) < INFINITE)),
-        is_whole and bool(np.all(found, where=is_real & has_place)),
+        is_whole
+        and null_space.shape[1] >= SOLUTIONS
+        and bool(np.all(found, where=is_real & has_place)),
     )
 
 
@@ -103,29 +106,32 @@ def _checked(
     return arrays[0], arrays[1], arrays[2]
 
 
-def _null_space(columns: Array) -> Array:
+def _null_space(columns: Array, leading: int) -> Array:
     """A basis (n, count) of the functionals that vanish on all `columns` (n, m).
 
-    Gauss's elimination with row pivots, columns = P L U: where pivots end, L has the rows [A; B],
-    A triangular, and functionals are P [−A⁻ᵀBᵀ; 1]. No entry of L is above 1, so that they are
-    found about as exactly as they are determined.
+    Gauss's elimination with row pivots for the `leading` ones, P L U: with the rows [A; B] of L, A
+    triangular, functionals are P [−A⁻ᵀBᵀ; 1] N, where N vanishes on what is left of the other
+    columns, which are more than their rank, so that it is told without doubt. No entry of L is
+    above 1. Raises NoSolution where the leading columns are dependent.
     """
     from scipy.linalg import lu_factor, solve_triangular  # noqa: PLC0415 (50 MB: for who asks)
 
-    factors, swaps = lu_factor(columns, check_finite=False)
+    factors, swaps = lu_factor(columns[:, :leading], check_finite=False)
     pivots = np.abs(np.diag(factors))
-    is_small = pivots <= NO_PIVOT * pivots.max()
-    rank = int(np.argmax(is_small)) if is_small.any() else len(pivots)
+    if not pivots.min() > NO_PIVOT * pivots.max():
+        raise NoSolution('the leg lengths do not fix finitely many poses')
     order = list(range(len(columns)))
     for i, k in enumerate(swaps.tolist()):
         order[i], order[k] = order[k], order[i]
-    above, below = factors[:rank, :rank], factors[rank:, :rank]
-    free = len(columns) - rank
-    null = np.empty((len(columns), free))
-    null[order[rank:]] = np.eye(free)
-    null[order[:rank]] = -solve_triangular(
+    above, below = factors[:leading], factors[leading:]
+    lower = solve_triangular(
         above, below.T, trans=1, lower=True, unit_diagonal=True, check_finite=False
     )
+    rest = columns[order][:, leading:]
+    left, values, _ = np.linalg.svd(rest[leading:] - lower.T @ rest[:leading])
+    free = left[:, int((values > NO_PIVOT * pivots.max()).sum()) :]
+    null = np.empty((len(columns), free.shape[1]))
+    null[order] = np.vstack([-lower @ free, free])
     return np.linalg.qr(null)[0]
 
 
