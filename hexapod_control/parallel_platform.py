@@ -152,7 +152,7 @@ class ParallelPlatform(ABC):
 
     def base_points(self, joints: Array) -> Array:
         """Where the rods begin, (..., 6, 3), base frame, metres; NaN for NaN joints."""
-        given = stretched(joints, np.shape(joints))
+        given = stretched(joints, (*np.shape(joints)[:-1], LEGS))
         points = np.empty((*given.shape, 3))
         _kernel.base_points(self.legs, given, points)
         return points
@@ -277,8 +277,8 @@ def _together(pose: Pose, joints: Array) -> tuple[Array, Array, Array]:
         leading = np.broadcast_shapes(shape[:-1], position.shape[:-1])
         position = stretched(position, (*leading, 3))
         rotation = stretched(rotation, (*leading, 3, 3))
-        shape = (*leading, *shape[-1:])
-    return position, rotation, stretched(joints, shape)
+        shape = (*leading, LEGS)
+    return position, rotation, stretched(joints, (*shape[:-1], LEGS))
 
 
 def checked_joints(joints: Array) -> Array:
@@ -288,4 +288,4 @@ def checked_joints(joints: Array) -> Array:
         raise NoSolution(f'joints have shape {checked.shape}, a pose needs ({LEGS},)')
     if not all(map(math.isfinite, checked.tolist())):
         raise NoSolution(f'joints are not finite: {checked.tolist()}')
-    return checked
+    return stretched(checked, (LEGS,))
