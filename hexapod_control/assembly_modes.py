@@ -15,6 +15,7 @@ from hexapod_control import forward_ideal as monomials
 from hexapod_control.forward import rules
 from hexapod_control.forward_ideal import GENERATORS, LegEquations, multiples, turned
 from hexapod_control.leg_jacobian import leg_jacobian, rods, smallest_singular_value
+from hexapod_control.parallel_platform import ParallelPlatform, checked_joints
 from manipulator import _kernel
 from manipulator import rotation as so3
 from manipulator.arrays import Array, Mask, frozen, stretched
@@ -90,6 +91,13 @@ def assembly_modes(
         and null_space.shape[1] >= SOLUTIONS
         and bool(np.all(found, where=is_real & has_place)),
     )
+
+
+def modes_of(platform: ParallelPlatform, joints: Array) -> AssemblyModes:
+    """Every pose that a platform's joints (6,) allow; NoSolution as its `forward`."""
+    checked = checked_joints(joints)
+    points = platform.geometry.platform_points
+    return assembly_modes(platform.base_points(checked), points, platform.rod_lengths(checked))
 
 
 def _checked(

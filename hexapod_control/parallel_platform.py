@@ -8,7 +8,6 @@ from typing import Protocol
 
 import numpy as np
 
-from hexapod_control.assembly_modes import AssemblyModes, assembly_modes
 from hexapod_control.forward import rules, solution
 from hexapod_control.geometry import LEGS
 from hexapod_control.leg_jacobian import (
@@ -193,12 +192,6 @@ class ParallelPlatform(ABC):
             position, rotation, report,
         )  # fmt: skip
         return solution(position, rotation, report, margin)
-
-    def forward_all(self, joints: Array) -> AssemblyModes:
-        """Every pose that joints (6,) allow: docs/forward-modes.md. NoSolution as `forward`."""
-        checked = checked_joints(joints)
-        points = self.geometry.platform_points
-        return assembly_modes(self.base_points(checked), points, self.rod_lengths(checked))
 
     def is_as_at_home(self, pose: Pose, joints: Array) -> Mask:
         """Which configurations (...) are on home's side of every singularity, of both types."""
