@@ -29,7 +29,8 @@ def offset(machine: Machine, start: Pose, end: Pose) -> Array:
 
 def distance(machine: Machine, start: Pose, end: Pose) -> Array:
     """√(|Δp|² + L²·angle²) in metres (...), L the characteristic length."""
-    result: Array = np.linalg.norm(offset(machine, start, end), axis=-1)
+    step = offset(machine, start, end)
+    result: Array = np.sqrt((step * step).sum(axis=-1))
     return result
 
 
@@ -79,10 +80,5 @@ def read_limits(machine: Machine, pose: Pose, near: Array | None = None) -> Read
 
 def readings_of(machine: Machine, pose: Pose, joints: Array) -> Readings:
     """All limits at poses (...) with their joints (..., n), NaN where they do not close."""
-    limits = machine.constraints.limits
-    return Readings(
-        tuple((limit.quantity, o, limit.unit) for limit in limits for o in limit.owners),
-        machine.constraints.values(pose, joints),
-        machine.constraints.low,
-        machine.constraints.high,
-    )
+    limits = machine.constraints
+    return Readings(limits.names, limits.values(pose, joints), limits.low, limits.high)
