@@ -68,6 +68,8 @@ setup(
             'ikpy>=3.4',
             'mink>=1.0',
             'daqp>=0.5',
+            'EAIK>=1.2',
+            'pytracik>=0.0.3',
         ],
         'test': [
             'pytest>=8.2',

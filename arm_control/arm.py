@@ -8,7 +8,7 @@ from arm_control.chain import JOINTS, Chain, aligned
 from arm_control.closed_forms import BRANCHES
 from arm_control.geometry import JOINT_NAMES, JointLimits
 from arm_control.inverse_method import InverseMethod, fitting_method
-from arm_control.numerical import MOST_BRANCHES, arm_numbers
+from arm_control.numerical import MOST_BRANCHES
 from manipulator import _kernel
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
@@ -50,7 +50,7 @@ class SerialArm:
         object.__setattr__(self, 'home', self.chain.forward(rest))
         length, low, high = self.characteristic_length, self.limits.low, self.limits.high
         method = fitting_method(self.chain, self.limits, length)
-        numbers = arm_numbers(self.chain, method.form, length, low, high)
+        numbers = method.arm_numbers(length, low, high)
         object.__setattr__(self, 'method', method)
         object.__setattr__(self, '_numbers', numbers)
 
@@ -80,7 +80,10 @@ class SerialArm:
         NaN rows are branches that do not close. k is 8 where there is a closed form; without one
         it is 16, and a branch may be missing.
         """
-        position, rotation, start = aligned(pose, self._near(near))
+        position, rotation = pose.position, pose.rotation
+        start = self.rest if near is None else self._checked(near, finite=False)
+        if start.shape[:-1] != position.shape[:-1]:
+            position, rotation, start = aligned(pose, start)
         found = np.empty((*start.shape[:-1], MOST_BRANCHES, JOINTS))
         if _kernel.arm_branches(self._numbers, position, rotation, start, found):
             self._checked(start)
@@ -104,8 +107,11 @@ class SerialArm:
         return self._nearest(pose, near)[0]
 
     def _nearest(self, pose: Pose, near: Array | None) -> tuple[Array, int]:
-        """Joints (..., 6), and how many of them are NaN."""
-        position, rotation, start = aligned(pose, self._near(near))
+        """Joints (..., 6), and how many of them are NaN: as all are near what is not finite."""
+        position, rotation = pose.position, pose.rotation
+        start = self.rest if near is None else self._checked(near, finite=False)
+        if start.shape[:-1] != position.shape[:-1]:
+            position, rotation, start = aligned(pose, start)
         joints = np.empty(start.shape)
         lost = _kernel.arm_inverse(self._numbers, position, rotation, start, joints)
         if lost:
@@ -162,12 +168,8 @@ class SerialArm:
             self._checked(joints, finite=False), self.characteristic_length
         )
 
-    def _near(self, near: Array | None) -> Array:
-        """Six numbers; the kernel finds no branch near what is not finite."""
-        return self.rest if near is None else self._checked(near, finite=False)
-
     def _checked(self, joints: Array, finite: bool = True) -> Array:
-        array = np.asarray(joints, dtype=np.float64)
+        array = np.ascontiguousarray(joints, np.float64)
         if array.shape[-1:] != (JOINTS,):
             raise InvalidInput(f'joints have shape {array.shape}, needs (..., 6)')
         if finite and not np.isfinite(array).all():

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy import ascontiguousarray, empty, float64
 
 from manipulator import _kernel
 from manipulator.arrays import Array, frozen, stretched
@@ -37,24 +38,27 @@ class Chain:
 
         Entry i is E_1·…·E_i.
         """
-        angles = np.ascontiguousarray(joints, np.float64)
-        moved = np.empty((*angles.shape[:-1], JOINTS + 1, 4, 4))
+        angles = ascontiguousarray(joints, float64)
+        moved = empty((*angles.shape[:-1], JOINTS + 1, 4, 4))
         _kernel.chain_displacements(self.numbers, angles, moved)
         return moved
 
     def forward(self, joints: Array) -> Pose:
         """The tool's pose in the base frame for joints (..., 6)."""
-        angles = np.ascontiguousarray(joints, np.float64)
-        lead = angles.shape[:-1]
-        position, rotation = np.empty((*lead, 3)), np.empty((*lead, 3, 3))
+        angles = ascontiguousarray(joints, float64)
+        if angles.ndim == 1:  # asked for at every tick: no shapes are put together
+            position, rotation = empty(3), empty((3, 3))
+        else:
+            lead = angles.shape[:-1]
+            position, rotation = empty((*lead, 3)), empty((*lead, 3, 3))
         if _kernel.chain_forward(self.numbers, angles, position, rotation):
             return Pose(position, rotation)  # says what is not finite
         return Pose.unchecked(position, rotation)
 
     def jacobian(self, joints: Array) -> Array:
         """The tool point's twist in base axes (v, ω) of unit joint rates: (..., 6, 6)."""
-        angles = np.ascontiguousarray(joints, np.float64)
-        jacobian = np.empty((*angles.shape[:-1], 6, JOINTS))
+        angles = ascontiguousarray(joints, float64)
+        jacobian = empty((6, 6) if angles.ndim == 1 else (*angles.shape[:-1], 6, 6))
         _kernel.chain_jacobian(self.numbers, angles, jacobian)
         return jacobian
 
@@ -63,8 +67,8 @@ class Chain:
 
         NaN for joints that are not finite.
         """
-        angles = np.ascontiguousarray(joints, np.float64)
-        sigma = np.empty(angles.shape[:-1])
+        angles = ascontiguousarray(joints, float64)
+        sigma = empty(angles.shape[:-1])
         _kernel.chain_sigma_min(self.numbers, np.array([length]), angles, sigma)
         return sigma
 

@@ -6,6 +6,7 @@ joints 2, 3 and 4 parallel and axes 5 and 6 meeting. Their formulas are in kerne
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
+from enum import IntEnum
 
 import numpy as np
 
@@ -56,6 +57,10 @@ class ClosedForm(ABC):
         """See `InverseMethod`."""
         return self
 
+    def arm_numbers(self, length: float, low: Array, high: Array) -> Array:
+        """See `InverseMethod`."""
+        return arm_numbers(self.chain, self, length, low, high)
+
     def branches(self, pose: Pose, near: Array) -> Array:
         """All eight (..., 8, 6): two of joint 1, times two elbows, times two wrists."""
         position, rotation, start = aligned(pose, near)
@@ -87,6 +92,35 @@ class ParallelAxes(ClosedForm):
 
     has_parallel_axes = True
     tip = "joint 4's axis"
+
+
+NO_LOOP = -1
+"""Instead of the joint after which a loop for elimination begins."""
+
+
+class Closes(IntEnum):
+    """Which closed form an arm has, as kernel/arm.h says it."""
+
+    NO_FORM = 0
+    ALMOST = 1
+    CLOSED = 2
+
+
+def arm_numbers(
+    chain: Chain,
+    form: ClosedForm | None,
+    length: float,
+    low: Array,
+    high: Array,
+    first: int = NO_LOOP,
+) -> Array:
+    """An arm in the order of `struct arm`: its chain, the closed form that it has, or almost."""
+    closes = Closes.NO_FORM
+    if form is not None:
+        closes = Closes.CLOSED if form.chain is chain else Closes.ALMOST
+    without = np.zeros(len(chain.numbers) + 4)
+    numbers = without if form is None else form.numbers
+    return frozen(np.concatenate([chain.numbers, numbers, [closes, length], low, high, [first]]))
 
 
 def closed_form(chain: Chain) -> ClosedForm | None:

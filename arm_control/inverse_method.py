@@ -23,6 +23,10 @@ class InverseMethod(Protocol):
         """The closed form that the arm has, or almost."""
         ...
 
+    def arm_numbers(self, length: float, low: Array, high: Array) -> Array:
+        """The arm with its inverse and joint ranges, as `struct arm` (kernel/arm.h) has them."""
+        ...
+
     def branches(self, pose: Pose, near: Array) -> Array:
         """Joints (..., k, 6), by any whole turns; NaN rows for branches that do not close.
 

@@ -6,39 +6,18 @@ steps are in kernel/numerical.c, where they start in kernel/arm.c.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from enum import IntEnum
 
 import numpy as np
 
 from arm_control.chain import JOINTS, Chain, aligned
-from arm_control.closed_forms import ClosedForm
+from arm_control.closed_forms import NO_LOOP, ClosedForm, arm_numbers
 from manipulator import _kernel
-from manipulator.arrays import Array, frozen
+from manipulator.arrays import Array
 from manipulator.pose import Pose
 
 STARTS = 33
 MOST_BRANCHES = 16
 """Of any arm with six joints."""
-
-
-class Closes(IntEnum):
-    """Which closed form an arm has, as kernel/arm.h says it."""
-
-    NO_FORM = 0
-    ALMOST = 1
-    CLOSED = 2
-
-
-def arm_numbers(
-    chain: Chain, form: ClosedForm | None, length: float, low: Array, high: Array
-) -> Array:
-    """An arm in the order of `struct arm`: its chain, the closed form that it has, or almost."""
-    closes = Closes.NO_FORM
-    if form is not None:
-        closes = Closes.CLOSED if form.chain is chain else Closes.ALMOST
-    without = np.zeros(len(chain.numbers) + 4)
-    numbers = without if form is None else form.numbers
-    return frozen(np.concatenate([chain.numbers, numbers, [closes, length], low, high]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,11 +31,14 @@ class Numerical:
     length: float
     low: Array
     high: Array
+    first: int = field(init=False)
     numbers: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Prepares what the kernel is given."""
-        numbers = arm_numbers(self.chain, None, self.length, self.low, self.high)
+        first = best_loop(self.chain, self.length)
+        numbers = arm_numbers(self.chain, None, self.length, self.low, self.high, first)
+        object.__setattr__(self, 'first', first)
         object.__setattr__(self, 'numbers', numbers)
 
     @property
@@ -68,6 +50,10 @@ class Numerical:
     def form(self) -> None:
         """See `InverseMethod`."""
         return None
+
+    def arm_numbers(self, length: float, low: Array, high: Array) -> Array:
+        """See `InverseMethod`."""
+        return self.numbers
 
     def branches(self, pose: Pose, near: Array) -> Array:
         """What was found from `near`, which comes first, and from the cold starts: (..., 16, 6).
@@ -97,7 +83,7 @@ class AlmostClosed:
     def __post_init__(self) -> None:
         """Prepares what the kernel is given."""
         own = self.numerical
-        numbers = arm_numbers(own.chain, self.ideal, own.length, own.low, own.high)
+        numbers = arm_numbers(own.chain, self.ideal, own.length, own.low, own.high, own.first)
         object.__setattr__(self, 'numbers', numbers)
 
     @property
@@ -109,6 +95,10 @@ class AlmostClosed:
     def form(self) -> ClosedForm:
         """See `InverseMethod`."""
         return self.ideal
+
+    def arm_numbers(self, length: float, low: Array, high: Array) -> Array:
+        """See `InverseMethod`."""
+        return self.numbers
 
     def branches(self, pose: Pose, near: Array) -> Array:
         """All of them and NaN (..., 16, 6); for a pose that has none, what `Numerical` finds."""
@@ -126,6 +116,33 @@ def arm_branches(numbers: Array, pose: Pose, near: Array) -> Array:
     found = np.empty((*start.shape[:-1], MOST_BRANCHES, JOINTS))
     _kernel.arm_branches(numbers, position, rotation, start, found)
     return found
+
+
+TRIED = 12
+"""Postures on which the ways to begin the loop of an elimination are tried."""
+ORDER = (5, 2, 4, 0, 1, 3)
+"""Most arms have axes that are parallel, or that meet, where the first of these have a use."""
+GOOD, USEFUL = 1e-9, 1e-3
+"""Radians from a posture at which three quarters of its eliminations have a candidate."""
+
+
+def best_loop(chain: Chain, length: float) -> int:
+    """After which joint a loop begins that has its candidates near; NO_LOOP where none has a use.
+
+    Which determinant tells an arm's branches depends on which of its axes are parallel or meet.
+    """
+    joints = np.random.default_rng(0).uniform(-np.pi, np.pi, (TRIED, JOINTS))
+    poses, missed = chain.forward(joints), {}
+    for first in ORDER:
+        found, how = np.empty((TRIED, MOST_BRANCHES, JOINTS)), np.array([length, first])
+        _kernel.general_candidates(chain.numbers, how, poses.position, poses.rotation, found)
+        apart = np.abs(np.exp(1j * found) - np.exp(1j * joints)[:, None]).max(axis=-1)
+        nearest = np.sort(np.nan_to_num(apart, nan=np.inf).min(axis=-1))
+        missed[first] = float(nearest[3 * TRIED // 4])
+        if missed[first] < GOOD:
+            return first
+    best = min(missed, key=lambda first: missed[first])
+    return best if missed[best] < USEFUL else NO_LOOP
 
 
 ALMOST_PARALLEL, ALMOST_MEETING = np.radians(5.0), 0.005

@@ -1,10 +1,11 @@
 #include "arm.h"
 
+#include "general.h"
 #include "numerical.h"
 #include "vector.h"
 
 /* Of descent: from anywhere, and from the branches of the ideal arm. */
-enum { STARTS = 32, STEPS = 60, FEW_STEPS = 20 };
+enum { STARTS = 32, FEW_STARTS = 4, STEPS = 60, FEW_STEPS = 20 };
 /* Poses along one row at which all branches are searched for because Newton's method gave up. */
 enum { MOST_SEARCHES = 50 };
 /* What is left of the error of a solution, metres divided by the length. */
@@ -69,18 +70,32 @@ static void cold_start(const struct ranges *ranges, int k, real start[JOINTS])
     }
 }
 
-static int from_anywhere(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
-                         real branches[MOST_BRANCHES][JOINTS])
+static int from_spread_starts(const struct arm *arm, const struct frame *pose, int starts,
+                              real branches[MOST_BRANCHES][JOINTS], int count)
 {
-    if (!is_within_reach(&arm->chain, pose->position))
-        return 0;
-    int count = found_from(arm, pose, near, STEPS, branches, 0);
-    for (int k = 0; k < STARTS; k++) {
+    for (int k = 0; k < starts; k++) {
         real start[JOINTS];
         cold_start(&arm->ranges, k, start);
         count = found_from(arm, pose, start, STEPS, branches, count);
     }
     return count;
+}
+
+/* From near, from where elimination has the branches, and where it has none from anywhere. */
+static int from_anywhere(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
+                         real branches[MOST_BRANCHES][JOINTS])
+{
+    real candidates[MOST_CANDIDATES][JOINTS];
+    int first = (int)arm->first, known = 0;
+    if (!is_within_reach(&arm->chain, pose->position))
+        return 0;
+    if (first >= 0)
+        known = general_candidates(&arm->chain, arm->length, first, pose, candidates);
+    int count = found_from(arm, pose, near, STEPS, branches, 0);
+    for (int k = 0; k < known; k++)
+        count = found_from(arm, pose, candidates[k], STEPS, branches, count);
+    int starts = first < 0 || count == 0 ? STARTS : FEW_STARTS;
+    return from_spread_starts(arm, pose, starts, branches, count);
 }
 
 /* Of the ideal arm, each branch of the pose, or of one a little aside where the pose lacks it: at

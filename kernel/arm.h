@@ -16,6 +16,7 @@ struct arm {
     real closes;             /* NO_FORM, ALMOST_CLOSED or CLOSED */
     real length;             /* divides metres beside radians */
     struct ranges ranges;
+    real first; /* where the loop of `general_candidates` begins, -1 where that has no use */
 };
 
 /* The branches of a pose, in the first rows; how many rows, some of which may be NaN. `near` gives

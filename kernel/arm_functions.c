@@ -1,5 +1,6 @@
 /* What Python calls of the arms' mathematics. */
 #include "arm.h"
+#include "general.h"
 #include "line_keeping.h"
 #include "matrix6.h"
 #include "rate_scaling.h"
@@ -139,6 +140,21 @@ static Py_ssize_t call_arm_inverse(real *const *a, Py_ssize_t items)
 FUNCTION(arm_inverse, {WHOLE, NUMBERS(struct arm)}, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, JOINTS},
          {WRITTEN, JOINTS})
 
+/* Each row's candidates, and NaN; a[1] is the length and where the loop begins. */
+static Py_ssize_t call_general_candidates(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        struct frame pose = pose_of(a[2], a[3], i);
+        real(*rows)[JOINTS] = (real(*)[JOINTS])a[4] + MOST_CANDIDATES * i;
+        int count = general_candidates((const struct chain *)a[0], a[1][0], (int)a[1][1], &pose, rows);
+        for (real *rest = rows[count]; rest < rows[MOST_CANDIDATES]; rest++)
+            *rest = (real)NAN;
+    }
+    return 0;
+}
+FUNCTION(general_candidates, {WHOLE, NUMBERS(struct chain)}, {WHOLE, 2}, {ITEMS, 3}, {ITEMS, 9},
+         {WRITTEN, MOST_CANDIDATES * JOINTS})
+
 static Py_ssize_t call_arm_miss(real *const *a, Py_ssize_t items)
 {
     for (Py_ssize_t i = 0; i < items; i++) {
@@ -249,6 +265,7 @@ PyMethodDef ARM_FUNCTIONS[] = {
     METHOD(arm_branches),
     METHOD(arm_inverse),
     METHOD(arm_miss),
+    METHOD(general_candidates),
     METHOD(arm_along),
     METHOD(decompose),
     METHOD(turning),

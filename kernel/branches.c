@@ -1,5 +1,7 @@
 #include "branches.h"
 
+#include "trigonometry.h"
+
 /* What a radian outside the range costs against a squared radian of distance. */
 #define OUTSIDE_COST REAL(1e6)
 /* So much beyond its range, in rad, an angle counts as at its end. */
@@ -7,7 +9,7 @@
 
 real nearest_turn(real angle, real near)
 {
-    return angle - REAL_TURN * real_rint((angle - near) / REAL_TURN);
+    return angle - REAL_TURN * nearest_integer((angle - near) * (1 / REAL_TURN));
 }
 
 static real outside(real angle, real low, real high)
@@ -21,9 +23,9 @@ void unwrap(const struct ranges *ranges, const real near[JOINTS], real joints[JO
         real low = ranges->low[i], high = ranges->high[i];
         real nearest = nearest_turn(joints[i], near[i]), moved = nearest;
         if (nearest < low - ROUNDING)
-            moved += REAL_TURN * real_ceil((low - nearest - ROUNDING) / REAL_TURN);
+            moved = nearest_turn(nearest, low - ROUNDING + REAL_PI);
         else if (nearest > high + ROUNDING)
-            moved -= REAL_TURN * real_ceil((nearest - high - ROUNDING) / REAL_TURN);
+            moved = nearest_turn(nearest, high + ROUNDING - REAL_PI);
         joints[i] = outside(moved, low, high) < outside(nearest, low, high) ? moved : nearest;
     }
 }
@@ -40,14 +42,16 @@ int nearest_branch(const struct ranges *ranges, const real near[JOINTS],
                    real (*branches)[JOINTS], int count)
 {
     int best = -1;
-    real least = (real)INFINITY;
+    real least = (real)INFINITY, low[JOINTS], high[JOINTS];
+    for (int i = 0; i < JOINTS; i++) {
+        low[i] = near[i] < ranges->low[i] ? near[i] : ranges->low[i];
+        high[i] = near[i] > ranges->high[i] ? near[i] : ranges->high[i];
+    }
     for (int k = 0; k < count; k++) {
         real cost = 0;
         for (int i = 0; i < JOINTS; i++) {
             real away = branches[k][i] - near[i];
-            real low = near[i] < ranges->low[i] ? near[i] : ranges->low[i];
-            real high = near[i] > ranges->high[i] ? near[i] : ranges->high[i];
-            cost += away * away + OUTSIDE_COST * outside(branches[k][i], low, high);
+            cost += away * away + OUTSIDE_COST * outside(branches[k][i], low[i], high[i]);
         }
         if (cost < least) { /* NaN never is */
             least = cost;

@@ -1,4 +1,5 @@
-/* Choosing among the branches of an inverse, by whole turns, joint ranges and nearness. */
+/* Choosing among the branches of an inverse, by whole turns, joint ranges and nearness:
+   docs/arm-kinematics.md, 4 to 6. */
 #ifndef KERNEL_BRANCHES_H
 #define KERNEL_BRANCHES_H
 

@@ -189,17 +189,18 @@ static void elbow_branches(const struct closed_form *form, const struct frame *m
     struct turn all = inner_target(form, moved, outer[0], outer[1], outer[2], free[3], target);
     if (!shoulder_and_elbow(chain, chain->point[3], target, free, q2, q3))
         return;
-    int is_same_3 = dot3(chain->axis[1], chain->axis[2]) > 0;
-    int is_same_4 = dot3(chain->axis[1], chain->axis[3]) > 0;
+    real sense_3 = dot3(chain->axis[1], chain->axis[2]) > 0 ? 1 : -1;
+    real sense_4 = dot3(chain->axis[1], chain->axis[3]) > 0 ? 1 : -1;
+    real angle = turn_angle(all), q1 = turn_angle(outer[0]);
+    real q5 = turn_angle(outer[1]), q6 = turn_angle(outer[2]);
     for (int elbow = 0; elbow < 2; elbow++) {
-        struct turn back_3 = is_same_3 ? turn_back(q3[elbow]) : q3[elbow];
-        struct turn q4 = turn_on(turn_on(all, turn_back(q2[elbow])), back_3);
-        branches[elbow][0] = turn_angle(outer[0]);
-        branches[elbow][1] = turn_angle(q2[elbow]);
-        branches[elbow][2] = turn_angle(q3[elbow]);
-        branches[elbow][3] = turn_angle(is_same_4 ? q4 : turn_back(q4));
-        branches[elbow][4] = turn_angle(outer[1]);
-        branches[elbow][5] = turn_angle(outer[2]);
+        real *q = branches[elbow];
+        q[0] = q1;
+        q[1] = turn_angle(q2[elbow]);
+        q[2] = turn_angle(q3[elbow]);
+        q[3] = sense_4 * (angle - q[1] - sense_3 * q[2]);
+        q[4] = q5;
+        q[5] = q6;
     }
 }
 

@@ -1,4 +1,4 @@
-/* Six equations that are damped, and singular vectors. */
+/* Six damped equations, and singular vectors: docs/arm-kinematics.md, 6 and 8. */
 #ifndef KERNEL_LINEAR6_H
 #define KERNEL_LINEAR6_H
 

@@ -17,7 +17,6 @@ typedef float real;
 #define real_asin asinf
 #define real_atan2 atan2f
 #define real_rint rintf
-#define real_ceil ceilf
 #define real_floor floorf
 #else
 typedef double real;
@@ -31,7 +30,6 @@ typedef double real;
 #define real_asin asin
 #define real_atan2 atan2
 #define real_rint rint
-#define real_ceil ceil
 #define real_floor floor
 #endif
 

@@ -5,18 +5,10 @@
 /* Product of the sines of two vectors' angles to an axis, below which they lie on it. */
 #define ON_AXIS REAL(1e-15)
 
-void rotate_about(const real k[3], struct turn turn, const real vector[3], real turned[3])
-{
-    real across[3], along = (1 - turn.cosine) * dot3(k, vector);
-    cross3(k, vector, across);
-    for (int i = 0; i < 3; i++)
-        turned[i] = along * k[i] + turn.cosine * vector[i] + turn.sine * across[i];
-}
-
 static struct turn direction(real cosine, real sine)
 {
-    real size = real_sqrt(cosine * cosine + sine * sine);
-    return size > 0 ? (struct turn){cosine / size, sine / size} : (struct turn){1, 0};
+    real square = cosine * cosine + sine * sine, inverse = 1 / real_sqrt(square);
+    return square > 0 ? (struct turn){cosine * inverse, sine * inverse} : (struct turn){1, 0};
 }
 
 struct turn facing(const real k[3], const real vector[3], const real target[3], struct turn free)

@@ -4,7 +4,6 @@
 #ifndef KERNEL_SUBPROBLEMS_H
 #define KERNEL_SUBPROBLEMS_H
 
-#include "trigonometry.h"
 #include "vector.h"
 
 /* An angle by its cosine and sine: whole turns do not matter until it is a joint's. */
@@ -19,7 +18,7 @@ static inline struct turn turn_by(real angle)
 
 static inline real turn_angle(struct turn turn)
 {
-    return angle_of(turn.sine, turn.cosine);
+    return real_atan2(turn.sine, turn.cosine);
 }
 
 static inline struct turn turn_back(struct turn turn)
@@ -34,7 +33,14 @@ static inline struct turn turn_on(struct turn a, struct turn b)
 }
 
 /* `vector` turned about k. */
-void rotate_about(const real k[3], struct turn turn, const real vector[3], real turned[3]);
+static inline void rotate_about(const real k[3], struct turn turn, const real vector[3],
+                                real turned[3])
+{
+    real across[3], along = (1 - turn.cosine) * dot3(k, vector);
+    cross3(k, vector, across);
+    for (int i = 0; i < 3; i++)
+        turned[i] = along * k[i] + turn.cosine * vector[i] + turn.sine * across[i];
+}
 
 /* Turns `vector` about k into the half-plane of `target` (Paden and Kahan's first). */
 struct turn facing(const real k[3], const real vector[3], const real target[3], struct turn free);

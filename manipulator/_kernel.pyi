@@ -117,6 +117,11 @@ def arm_branches(
 def arm_inverse(arm: Array, position: Array, rotation: Array, near: Array, joints: Array) -> int:
     """How many poses have no branch; `joints` is written."""
 
+def general_candidates(
+    chain: Array, length_and_first: Array, position: Array, rotation: Array, candidates: Array
+) -> int:
+    """Writes sixteen rows an item: see kernel/general.h."""
+
 def arm_miss(arm: Array, position: Array, rotation: Array, miss: Array) -> int:
     """Writes the twist that is left after the best attempt."""
 
