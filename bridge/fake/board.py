@@ -6,6 +6,8 @@ timers, pins and serial line. No port and no clock. The simulated chip has the s
 
 import contextlib
 import ctypes
+from collections.abc import Callable
+from typing import Protocol, TypeAlias
 
 from bridge.fake.board_settings import BoardSettings
 from bridge.fake.program import FlashTable, Wires, program
@@ -15,6 +17,40 @@ from manipulator.errors import InvalidInput
 HIGHEST_U16 = 0xFFFF
 ROOM = 1024
 BLANK = b'\xff'
+
+
+class AnyBoard(Protocol):
+    """The board's program in this process (`Board`), or on a simulated chip.
+
+    battery_mv: what its divider measures now. is_stop_open: the stop button's contact.
+    """
+
+    settings: BoardSettings
+    battery_mv: int
+    is_stop_open: bool
+
+    @property
+    def pulses(self) -> tuple[float | None, ...]:
+        """Pulse width in counts by channel, None where no pulse goes out."""
+
+    def reset(self, cause: ResetCause) -> None:
+        """Starts again: silent for the boot, then disarmed and knowing nothing."""
+
+    def measure(self, counts: tuple[int, ...]) -> None:
+        """What its encoders read from now on, by channel."""
+
+    def feed(self, received: bytes) -> None:
+        """Bytes from the host."""
+
+    def step(self, dt: float) -> None:
+        """Lets `dt` seconds pass."""
+
+    def take_output(self) -> bytes:
+        """The bytes for the host since the last call."""
+
+
+MakeBoard: TypeAlias = Callable[[BoardSettings, int], AnyBoard]
+"""Of settings and the battery's voltage in mV."""
 
 
 class Board:

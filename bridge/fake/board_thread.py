@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from bridge.calibration import COUNTS_PER_US, Calibration
-from bridge.fake.board import Board
+from bridge.fake.board import AnyBoard, Board, MakeBoard
 from bridge.fake.board_faults import BoardFaults
 from bridge.fake.board_settings import BoardSettings
 from bridge.fake.fake_line import FakeLine
@@ -34,7 +34,7 @@ class BoardMachine(Protocol):
     """What the thread steps: a FakeMachine, or what watches one."""
 
     @property
-    def board(self) -> Board:
+    def board(self) -> AnyBoard:
         """Its brain."""
 
     @property
@@ -52,7 +52,7 @@ class FakeMachine:
     is_measured: the board has encoders and tells what they read.
     """
 
-    board: Board
+    board: AnyBoard
     servos: Plant
     calibration: Calibration
     is_measured: bool = False
@@ -64,6 +64,7 @@ class FakeMachine:
         boot_s: float,
         hysteresis: float,
         hexapod: CrankHexapod | None = None,
+        make_board: MakeBoard = Board,
     ) -> 'FakeMachine':
         """Unpowered at park; hysteresis in rad (or m); `hexapod` is what cycles are played by."""
         calibration = Calibration.from_config(config.servos)
@@ -71,7 +72,7 @@ class FakeMachine:
         drives = DRIVES[config.simulation.drives]
         servos = drives.at_rest(calibration.park, calibration.speed, dead_band, hysteresis)
         settings = BoardSettings.from_config(config, boot_s, hexapod)
-        board = Board(settings, round(1000 * config.simulation.battery_v))
+        board = make_board(settings, round(1000 * config.simulation.battery_v))
         return cls(board, servos, calibration, config.simulation.joints == 'measured')
 
     def step(self, dt: float, stuck_channel: int | None = None) -> None:

@@ -47,7 +47,7 @@ int main(void)
     chip_clock_begin();
     pulses_begin();
     board_begin(reset_cause);
-    set_sleep_mode(SLEEP_MODE_IDLE);
+    SMCR = 0; /* sleep is idle: the timers go on */
     wdt_enable(WDTO_250MS);
     sei();
     for (;;) {

@@ -7,7 +7,9 @@ static inline uint16_t counts_nearest(float exact)
 {
     if (!(exact > 0))
         return 0;
-    return exact < UINT16_MAX ? (uint16_t)(exact + 0.5f) : UINT16_MAX;
+    if (exact >= UINT16_MAX)
+        return UINT16_MAX;
+    return (uint16_t)(exact + 0.5f);
 }
 
 /* The nearest counts of all joints of the machine. */

@@ -56,7 +56,7 @@ static bool read_copy(uint8_t which, Kept *it)
 
 void cycle_begin(void)
 {
-    Kept other;
+    Kept other = {0};
     bool is_whole = read_copy(0, &kept);
     if (read_copy(1, &other) && (!is_whole || (int16_t)(uint16_t)(other.number - kept.number) > 0)) {
         kept = other;

@@ -70,7 +70,7 @@ void motion_halt(void)
 
 void motion_energise(uint8_t channel, uint16_t count)
 {
-    on |= (uint8_t)(1 << channel);
+    on = (uint8_t)(on | 1 << channel);
     do {
         account_for_latch();
         now[channel] = target[channel] = count;

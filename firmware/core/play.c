@@ -207,6 +207,7 @@ uint8_t play_step(void)
 
 uint16_t play_trouble_ms(void)
 {
-    float ms = 1000 * time;
-    return ms < UINT16_MAX ? (uint16_t)ms : UINT16_MAX;
+    if (time >= UINT16_MAX / 1000.0f)
+        return UINT16_MAX;
+    return (uint16_t)(1000 * time);
 }

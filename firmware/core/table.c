@@ -123,7 +123,9 @@ void table_at(uint8_t program, float time, float *counts)
 {
     uint16_t rows = rows_of(program);
     float place = fmaxf(time, 0) * 1000.0f / step_ms_of(program);
-    uint16_t row = place < rows ? (uint16_t)place : (uint16_t)(rows - 1);
+    uint16_t row = (uint16_t)(rows - 1);
+    if (place < rows)
+        row = (uint16_t)place;
     float part = place - row;
     uint16_t after = row + 1 == rows ? 0 : (uint16_t)(row + 1);
     for (uint8_t i = 0; i < MACHINE.joint_count; i++) {

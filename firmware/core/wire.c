@@ -5,8 +5,8 @@
 /* As avr-libc's _crc_xmodem_update, in portable C (Perez, "Byte-wise CRC calculations", 1983). */
 uint16_t wire_crc(uint16_t crc, uint8_t byte)
 {
-    uint8_t mixed = (uint8_t)(crc >> 8) ^ byte;
-    mixed ^= (uint8_t)(mixed >> 4);
+    uint8_t mixed = (uint8_t)(crc >> 8 ^ byte);
+    mixed = (uint8_t)(mixed ^ mixed >> 4);
     return (uint16_t)((uint16_t)(crc << 8) ^ (uint16_t)((uint16_t)mixed << 12) ^
                       (uint16_t)((uint16_t)mixed << 5) ^ mixed);
 }

@@ -20,9 +20,8 @@ class SimulatedBoard:
     """The firmware for these settings, on a chip, its boot loader's silence included."""
 
     def __init__(self, settings: BoardSettings, battery_mv: int = 7600) -> None:
-        self.program = firmware_build.firmware(header(settings, 'a test'), _flash_table(settings))
-        self.chip = Chip(firmware_build.simulator() / 'chip.so', self.program, settings.baud)
         self.settings = settings
+        self._flash()
         self.battery_mv = battery_mv
         self.is_stop_open = self.is_start_closed = False
         self.reset(ResetCause.POWER_ON)
@@ -75,11 +74,16 @@ class SimulatedBoard:
 
     def reset(self, cause: ResetCause) -> None:
         """Starts again, after the boot loader's silence."""
+        if self.settings is not self._flashed:
+            self._flash()
         self._boot_left = self.settings.boot_us * CLOCK_HZ // 1_000_000
         self._cause = cause
         self._widths = np.zeros(len(self.settings.count_ranges), np.int64)
         self._risen = self._widths.copy()
         self.chip.reset(cause)
+
+    def measure(self, counts: tuple[int, ...]) -> None:
+        """Nothing: the chip has no encoders, and reports what it puts out."""
 
     def feed(self, received: bytes) -> None:
         """Bytes from the host; during the boot they are lost."""
@@ -97,6 +101,14 @@ class SimulatedBoard:
     def take_output(self) -> bytes:
         """The bytes for the host since the last call."""
         return self.chip.take()
+
+    def _flash(self) -> None:
+        """Another program for other settings, on a chip that was never used."""
+        table = _flash_table(self.settings)
+        self.program = firmware_build.firmware(header(self.settings), table)
+        library = firmware_build.simulator() / 'chip.so'
+        self.chip = Chip(library, self.program, self.settings.baud)
+        self._flashed = self.settings
 
     def _read_edges(self) -> None:
         for cycle, channel, level in self.chip.edges().tolist():

@@ -12,9 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from bridge.servo_config import BoardConfig
-from hexarm import machines
-from hexarm.board.header import header_of
+from hexarm.board.header import header, settings_of
 from manipulator.errors import ManipulatorError
 
 FIRMWARE = Path(__file__).resolve().parents[2] / 'firmware'
@@ -45,7 +43,7 @@ def missing_tools() -> list[str]:
 
 
 def simulator() -> Path:
-    """The folder of chip.so and pty_chip, up to date."""
+    """The folder of chip.so, up to date."""
     with _alone():
         _make('simulator')
     return FIRMWARE / 'build' / 'simulator'
@@ -61,12 +59,11 @@ def bench(header: str) -> Path:
     return _built('bench.elf', {'parameters.h': header})
 
 
-def chip_process(machine: str, link: Path) -> tuple[str, ...]:
-    """The command that runs a machine's board in real time, its port at `link`."""
-    config = BoardConfig.from_machine(machines.read(machine), str(machines.find(machine)))
-    battery_mv = round(1000 * config.simulation.battery_v)
-    program, pty_chip = firmware(header_of(machine)), simulator() / 'pty_chip'
-    return str(pty_chip), str(program), str(config.link.baud), str(link), str(battery_mv)
+def chip_command(machine: str) -> tuple[str, ...]:
+    """What runs fake_hardware with a machine's board on a simulated chip; builds both first."""
+    firmware(header(settings_of(machine)))
+    simulator()
+    return sys.executable, '-m', 'firmware.simulator.node'
 
 
 def step_times() -> dict[str, float]:

@@ -18,6 +18,7 @@ BAUD_STEP, WORST_BAUD = 2_000_000, 0.025
 """Bits per second at the chip's fastest; 115200 is 2.1 % off, and still understood."""
 HIGHEST_BATTERY_MV = 9_990
 BOOT_S = 0.0
+A_MACHINE = "a machine's settings"
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -56,7 +57,7 @@ def _board_config(machine: str) -> BoardConfig:
     return BoardConfig.from_machine(machines.read(machine), str(machines.find(machine)))
 
 
-def header(settings: BoardSettings, name: str) -> str:
+def header(settings: BoardSettings, name: str = A_MACHINE) -> str:
     """parameters.h: the program's structure of its machine (firmware/core/machine.h)."""
     _refuse_wide_pulses(settings)
     _refuse_baud(settings.baud)
