@@ -8,6 +8,7 @@ import bridge
 from bridge.protocol import MAX_JOINTS
 from manipulator.errors import ManipulatorError
 
+LIBRARY = Path(bridge.__file__).with_name('_board.abi3.so')
 LEGS = 6
 MEMORY_BYTES = 160
 
@@ -110,14 +111,13 @@ def program() -> ctypes.PyDLL:
 
     Its calls hold Python's lock: the boards of a process share the program's variables.
     """
-    path = Path(bridge.__file__).with_name('_board.abi3.so')
     try:
-        library = ctypes.PyDLL(str(path))
+        library = ctypes.PyDLL(str(LIBRARY))
     except OSError as error:
         raise ProgramMissing(f"the fake board's program: {error}: install hexarm anew") from error
     _declare(library)
     if library.host_size_of_wires() != ctypes.sizeof(Wires):
-        raise ProgramMissing(f'{path} is of another version of hexarm: install hexarm anew')
+        raise ProgramMissing(f'{LIBRARY} is of another version of hexarm: install hexarm anew')
     return library
 
 

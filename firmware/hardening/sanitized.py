@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bridge.fake import program_build
+from bridge.fake import program
 
 ROOT = Path(__file__).resolve().parents[2]
 TESTS = (
@@ -21,15 +21,9 @@ OPTIONS = ('-q', '-s', '-p', 'no:xdist', '-p', 'no:cacheprovider')
 
 def main() -> int:
     """Runs them on the library that the command line names."""
-    program_build.LIBRARY = Path(sys.argv[1]).resolve()
-    program_build.is_stale = _never
+    program.LIBRARY = Path(sys.argv[1]).resolve()
     tests = [str(ROOT / 'test' / test) for test in TESTS]
     return int(pytest.main([*tests, *OPTIONS, '-k', OURS]))
-
-
-def _never(output: Path = program_build.LIBRARY, firmware: Path = program_build.FIRMWARE) -> bool:
-    """It is up to date: make has built it."""
-    return not (output.exists() and firmware.exists())
 
 
 if __name__ == '__main__':

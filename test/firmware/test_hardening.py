@@ -4,11 +4,11 @@ import os
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-from bridge.fake.program_build import FIRMWARE
-
+FIRMWARE = Path(__file__).parents[2] / 'firmware'
 FUZZING_S = 60
 pytestmark = pytest.mark.processes
 
