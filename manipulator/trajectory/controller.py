@@ -19,10 +19,9 @@ from manipulator.pose import Pose
 from manipulator.states import MotionResult
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.early_command import EarlyCommand
-from manipulator.trajectory.executor import STOPPED
 from manipulator.trajectory.following_error import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.motion_status import MotionNews, MotionStatus
+from manipulator.trajectory.motion_status import STOPPED, MotionNews, MotionStatus
 from manipulator.trajectory.path_planning import PathGoal, PathPlanning
 from manipulator.trajectory.supervisor import MotionSupervisor
 from manipulator.trajectory.teleop import Teleop
