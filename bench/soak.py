@@ -106,7 +106,7 @@ def bad_frames(rig):
     """How many frames are out of range, or far from the one before."""
     ranges = np.array(rig.calibration.count_ranges)
     speeds = np.array(rig.calibration.count_speeds)
-    frames = rig.tap.heard((Setpoint, Arm, Disarm))
+    frames = rig.tap.frames((Setpoint, Arm, Disarm))
     setpoints = [(t, np.array(m.counts)) for t, m in frames if isinstance(m, Setpoint)]
     bad = sum(bool((c < ranges[:, 0]).any() or (c > ranges[:, 1]).any()) for _, c in setpoints)
     for (before, a), (now, b) in itertools.pairwise(setpoints):

@@ -104,7 +104,7 @@ def command_time(rig):
     subprocess.run(
         [sys.executable, '-m', 'hexarm', 'stop', SPACE], capture_output=True, check=True
     )
-    seconds = rig.tap.heard(Stop, before)[0][0] - before
+    seconds = rig.tap.frames(Stop, before)[0][0] - before
     clear(rig)
     return seconds
 
@@ -123,7 +123,7 @@ def emergency_stops(rig):
         rig.circle(random.uniform(0.1, 0.3))
         before = time.monotonic()
         publisher.publish(Bool(data=True))
-        rig.user.wait('STOP', lambda t=before: rig.tap.heard(Stop, t), 5.0)
-        times.append(rig.tap.heard(Stop, before)[0][0] - before)
+        rig.user.wait('STOP', lambda t=before: rig.tap.frames(Stop, t), 5.0)
+        times.append(rig.tap.frames(Stop, before)[0][0] - before)
         clear(rig)
     return times

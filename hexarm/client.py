@@ -23,8 +23,6 @@ from manipulator.nodes.qos import COMMAND, LATCHED
 from manipulator.pose import Pose
 from manipulator.states import UNKNOWN, MachineState, MotionMode, MotionResult
 
-"""The state of a machine that has said none."""
-
 MOST_REQUESTS, ANSWERED_WITHIN = 4, 4.0
 DRIVEN_WITHIN = 15.0
 """Seconds until a machine whose servos are on takes goals: its nodes may still be starting."""
@@ -101,7 +99,9 @@ class Client:
         end, before = time.monotonic() + seconds, progress()
         while not is_so():
             if time.monotonic() > end:
-                raise NotReady(f'waited {seconds:g} s in vain for {what} ({self.summary})')
+                raise NotReady(
+                    f'timed out after {seconds:g} s, waiting for {what} ({self.summary})'
+                )
             self.spin(0.005)
             if (now := progress()) != before:
                 end, before = time.monotonic() + seconds, now

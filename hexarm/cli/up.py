@@ -224,7 +224,7 @@ def enable(client: 'Client', namespace: str) -> None:
 
 
 def park(client: 'Client', stop: StopSignal) -> None:
-    """Goes to park and switches the servos off; where it cannot, asks before it releases.
+    """Goes to park and switches the servos off; where it cannot, the user confirms the release.
 
     In a terminal the answer is another Ctrl-C. Without one the servos stay on: what the board then
     does is set by `on_link_loss` of the machine file.

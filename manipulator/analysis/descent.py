@@ -24,7 +24,7 @@ LEAST_CURVATURE = 0.2
 class Linearised:
     """The limits about one pose: normals (m, 6)·step + slack (m,) ≥ 0, all in metres.
 
-    goal (6,) is the step to the target. rows (2k,) says which margins the m rows are.
+    goal (6,) is the step to the target. rows (2k,): which margins the m rows are.
     """
 
     pose: Pose

@@ -29,7 +29,7 @@ class DeviceFrames:
 
     @classmethod
     def known(cls) -> 'DeviceFrames':
-        """The device tells the platform's pose in the base frame."""
+        """The device reports the platform's pose in the base frame."""
         return cls(Pose.identity(), Pose.identity())
 
     @classmethod
@@ -56,7 +56,7 @@ class DeviceFrames:
 
     @staticmethod
     def parameters() -> tuple[Parameter, ...]:
-        """Nobody can say beforehand how the device stands: the tolerances are infinite."""
+        """The device's pose is not known beforehand: the tolerances are infinite."""
         return tuple(
             Parameter(f'{frame} {turn}{axis}', group, unit, np.inf)
             for frame, group in (('device frame', 'device'), ('marker frame', 'marker'))

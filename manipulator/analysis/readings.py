@@ -44,7 +44,7 @@ class LimitReading(Violation):
     """One limited value at one pose.
 
     distance is about how far the pose is from the limit, in metres (rotations scaled by the
-    characteristic length): margin by slope, negative outside, ∞ where the value stands still.
+    characteristic length): margin by slope, negative outside, ∞ where the value does not change.
     """
 
     distance: float

@@ -23,7 +23,7 @@ class Tap:
             now = time.monotonic()
             self._heard += [(now, frame.message) for frame in self._reader.feed(received)]
 
-    def heard(
+    def frames(
         self, kind: type | tuple[type, ...] = object, since: float = float('-inf')
     ) -> list[tuple[float, Message]]:
         """(time, message) of each message of a kind."""
