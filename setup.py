@@ -5,18 +5,18 @@ from pathlib import Path
 from setuptools import Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
 
-from kernel.build import build
+from build_backend import LIBRARIES, build
 
 NAME = 'hexarm'
 PACKAGES = ['manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm']
 
 
-class BuildKernel(build_ext):
-    """Builds the C library by its own command: setuptools' needs Python's headers."""
+class BuildLibraries(build_ext):
+    """Builds the C libraries by their own commands: setuptools' need Python's headers."""
 
     def build_extension(self, ext: Extension) -> None:
-        """Compiles it to where setuptools wants it."""
-        build(Path(self.get_ext_fullpath(ext.name)))
+        """Compiles one to where setuptools wants it."""
+        build(ext.name, Path(self.get_ext_fullpath(ext.name)))
 
 
 setup(
@@ -27,16 +27,12 @@ setup(
     python_requires='>=3.10',
     packages=find_packages(include=[pattern for r in PACKAGES for pattern in (r, f'{r}.*')]),
     ext_modules=[
-        Extension(
-            'manipulator._kernel',
-            sorted(str(f) for f in Path('kernel').glob('*.c')),
-            depends=sorted(str(f) for f in Path('kernel').glob('*.h')),
-            py_limited_api=True,
-        )
+        Extension(name, library.files('*.c'), depends=library.files('*.h'), py_limited_api=True)
+        for name, library in LIBRARIES.items()
     ],
-    cmdclass={'build_ext': BuildKernel},
+    cmdclass={'build_ext': BuildLibraries},
     options={'bdist_wheel': {'py_limited_api': 'cp310'}},
-    package_data={'hexarm': ['fastdds.xml', 'panel/joystick.html']},
+    package_data={'hexarm': ['*.xml', 'panel/joystick.html']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),

@@ -1,13 +1,13 @@
-"""Draws a level circle by streaming goals, and says how far off the platform was.
+"""Draws a level circle by streaming goals, and prints how far off the platform was.
 
     hexarm up hexapod                                    # in another terminal
     python3 examples/draw_circle.py --radius 0.008 --period 4 --turns 2
 
 A stream of goals needs no answers: each replaces the one before, at any time, and the machine
 follows within its limits of speed, acceleration and jerk. The deviation is that of the measured
-`pose` from the circle's radius; how far it lags behind along the circle is not asked. Half of the
-poses say how well the machine follows; the worst one also shows whether the computer was busy with
-something else for a while, so that the machine caught up straight across the circle.
+`pose` from the circle's radius; its lag along the circle does not count. Half of the poses show
+how well the machine follows; the worst one also shows whether the computer was busy for a while,
+so that the machine caught up straight across the circle.
 """
 
 import argparse
@@ -59,7 +59,9 @@ def main():
     if radii:
         off = sorted(1e3 * abs(radius - arguments.radius) for radius in radii)
         half, worst = off[len(off) // 2], off[-1]
-        print(f'{len(off)} poses heard, half of them within {half:.2f} mm, all within {worst:.2f}')
+        print(
+            f'{len(off)} poses received, half of them within {half:.2f} mm, all within {worst:.2f}'
+        )
     rclpy.shutdown()
 
 

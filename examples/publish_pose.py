@@ -1,14 +1,14 @@
-"""Sends a machine to one pose, and waits until it is there or says why not.
+"""Sends a machine to one pose, and waits until it is there, or prints the reason.
 
     hexarm up hexapod                                    # in another terminal
     python3 examples/publish_pose.py 0.004 0 0.045
     python3 examples/publish_pose.py 0 0 0.045 --rpy 0 0 0.1
 
 `goal_pose` is a geometry_msgs/PoseStamped: metres, a unit quaternion, an empty frame_id means the
-machine's base. `motion_status` says what became of a goal, which it names by its stamp; it is
-latched, so that it is heard whenever one begins to listen. The exit status is 0 for reached, 1 for
-refused, stopped or no answer. A slow move takes as long as it takes: only where nothing moves, or
-nothing is heard, for `--patience` seconds, the wait is given up.
+machine's base. `motion_status` reports the result of a goal, which it names by its stamp; it is
+latched, so that late subscribers receive it. The exit status is 0 for reached, 1 for refused,
+stopped or no answer. A slow move may take any time: the wait ends if nothing moves, or nothing
+is received, for `--patience` seconds.
 """
 
 import argparse
@@ -32,7 +32,7 @@ LEVEL = (0.0, 0.0, 0.0, 1.0)
 
 
 class Mover:
-    """Sends goals to one machine and hears what became of them."""
+    """Sends goals to one machine and receives their results."""
 
     def __init__(self, node, namespace, patience=10.0):
         self.node = node
@@ -68,21 +68,23 @@ class Mover:
 
     def go_to(self, xyz, quaternion=LEVEL):
         """Publishes a goal and waits for its end; exits with the reason when it is not reached."""
-        self.wait(self.is_heard, f'no machine hears {self.goals.topic_name}', JOINS_WITHIN)
+        self.wait(
+            self.has_subscribers, f'no machine subscribes to {self.goals.topic_name}', JOINS_WITHIN
+        )
         stamp = self.publish(xyz, quaternion)
         self.wait(lambda: self.result(stamp), 'not there, and nothing has moved', self.patience)
         if self.result(stamp) != 'reached':
             sys.exit(self.status.message)
 
-    def is_heard(self):
-        """Whether all who can hear goals are connected, the machine among them; others watch."""
-        listeners = [
-            listener
-            for listener in self.node.get_subscriptions_info_by_topic(self.goals.topic_name)
-            if listener.qos_profile.durability == DurabilityPolicy.VOLATILE
+    def has_subscribers(self):
+        """Whether all subscribers of goals are connected, the machine among them."""
+        subscribers = [
+            subscriber
+            for subscriber in self.node.get_subscriptions_info_by_topic(self.goals.topic_name)
+            if subscriber.qos_profile.durability == DurabilityPolicy.VOLATILE
         ]
-        is_there = 'trajectory' in [listener.node_name for listener in listeners]
-        return is_there and self.goals.get_subscription_count() >= len(listeners)
+        is_there = 'trajectory' in [subscriber.node_name for subscriber in subscribers]
+        return is_there and self.goals.get_subscription_count() >= len(subscribers)
 
     def result(self, stamp):
         """'reached', 'refused' or 'stopped' once the goal of that stamp has ended."""
@@ -92,7 +94,7 @@ class Mover:
         return values['result'] if values['result'] != 'moving' else None
 
     def wait(self, is_so, otherwise, patience):
-        """Hears messages until `is_so` says yes; gives up when nothing happens for so long."""
+        """Receives messages until `is_so`; exits when nothing happens for `patience` seconds."""
         begin = time.monotonic()
         while not is_so():
             if time.monotonic() - max(begin, self.progress_at) > patience:

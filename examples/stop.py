@@ -1,13 +1,13 @@
-"""Stops a machine: along its way, or at once with --emergency.
+"""Stops a machine: along its path, or at once with --emergency.
 
     python3 examples/stop.py
     python3 examples/stop.py --emergency
 
 The service `trajectory/stop` brakes along the path within the limits of acceleration and jerk,
-then holds; the next goal moves on. `emergency_stop` (std_msgs/Bool) goes to the bridge and from
-there to the board, past every planner: the servos hold where they are, and nothing moves them
+then holds; the next goal is accepted. `emergency_stop` (std_msgs/Bool) goes to the bridge and from
+there to the board, bypassing every planner: the servos hold where they are, and nothing moves them
 until the service `serial_bridge/clear_fault` ends the stop. Publishing false does nothing.
-`hexarm stop` and `hexarm clear` ask the same of the board. None of them replaces a switch in the
+`hexarm stop` and `hexarm clear` have the same effect. None of them replaces a switch in the
 servos' supply.
 """
 
@@ -25,10 +25,10 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def stop(node, namespace):
-    """Calls the service and returns what it answers."""
+    """Calls the service and returns its answer."""
     client = node.create_client(Trigger, f'{namespace}/trajectory/stop')
     if not client.wait_for_service(timeout_sec=10.0):
-        sys.exit(f'nobody offers {client.srv_name}')
+        sys.exit(f'{client.srv_name} is not available')
     future = client.call_async(Trigger.Request())
     rclpy.spin_until_future_complete(node, future, timeout_sec=5.0)
     answer = future.result()
@@ -38,9 +38,9 @@ def stop(node, namespace):
 
 
 def emergency_stop(node, namespace):
-    """Publishes true until the bridge says that the machine is stopped, and returns its words.
+    """Publishes true until the bridge reports the machine as stopped, and returns the state.
 
-    Publishing once, as soon as anybody listens, is not enough: it may be a recorder.
+    Publishing once, for the first subscriber, is not enough: that may be a recorder.
     """
     states = []
     topic = f'{namespace}/machine_state'
@@ -49,7 +49,7 @@ def emergency_stop(node, namespace):
     end = time.monotonic() + 10.0
     while not states or states[-1].message != 'stopped':
         if time.monotonic() > end:
-            state = states[-1].message if states else 'nobody answers'
+            state = states[-1].message if states else 'unknown'
             sys.exit(f'not confirmed within 10 s: {state}')
         publisher.publish(Bool(data=True))
         rclpy.spin_once(node, timeout_sec=0.02)

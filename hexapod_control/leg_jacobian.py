@@ -42,7 +42,7 @@ def units_and_jacobian(
 
 def smallest_singular_value(jacobian: Array, characteristic_length: float) -> Array:
     """σmin (...) of a leg Jacobian whose rotations are scaled by a length; NaN for NaN."""
-    sigma = np.empty(jacobian.shape[:-2])
-    length = np.array([characteristic_length])
-    _kernel.smallest_singular_value(length, stretched(jacobian, jacobian.shape), sigma)
+    sigma, length = np.empty(jacobian.shape[:-2]), np.array([characteristic_length])
+    rows = stretched(jacobian, (*sigma.shape, 6, 6))
+    _kernel.smallest_singular_value(length, rows, sigma)
     return sigma

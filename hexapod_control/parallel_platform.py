@@ -8,7 +8,6 @@ from typing import Protocol
 
 import numpy as np
 
-from hexapod_control.assembly_modes import AssemblyModes, assembly_modes
 from hexapod_control.forward import rules, solution
 from hexapod_control.geometry import LEGS
 from hexapod_control.leg_jacobian import (
@@ -152,7 +151,7 @@ class ParallelPlatform(ABC):
 
     def base_points(self, joints: Array) -> Array:
         """Where the rods begin, (..., 6, 3), base frame, metres; NaN for NaN joints."""
-        given = stretched(joints, np.shape(joints))
+        given = stretched(joints, (*np.shape(joints)[:-1], LEGS))
         points = np.empty((*given.shape, 3))
         _kernel.base_points(self.legs, given, points)
         return points
@@ -193,12 +192,6 @@ class ParallelPlatform(ABC):
             position, rotation, report,
         )  # fmt: skip
         return solution(position, rotation, report, margin)
-
-    def forward_all(self, joints: Array) -> AssemblyModes:
-        """Every pose that joints (6,) allow: docs/forward-modes.md. NoSolution as `forward`."""
-        checked = checked_joints(joints)
-        points = self.geometry.platform_points
-        return assembly_modes(self.base_points(checked), points, self.rod_lengths(checked))
 
     def is_as_at_home(self, pose: Pose, joints: Array) -> Mask:
         """Which configurations (...) are on home's side of every singularity, of both types."""
@@ -277,8 +270,8 @@ def _together(pose: Pose, joints: Array) -> tuple[Array, Array, Array]:
         leading = np.broadcast_shapes(shape[:-1], position.shape[:-1])
         position = stretched(position, (*leading, 3))
         rotation = stretched(rotation, (*leading, 3, 3))
-        shape = (*leading, *shape[-1:])
-    return position, rotation, stretched(joints, shape)
+        shape = (*leading, LEGS)
+    return position, rotation, stretched(joints, (*shape[:-1], LEGS))
 
 
 def checked_joints(joints: Array) -> Array:
@@ -288,4 +281,4 @@ def checked_joints(joints: Array) -> Array:
         raise NoSolution(f'joints have shape {checked.shape}, a pose needs ({LEGS},)')
     if not all(map(math.isfinite, checked.tolist())):
         raise NoSolution(f'joints are not finite: {checked.tolist()}')
-    return checked
+    return stretched(checked, (LEGS,))

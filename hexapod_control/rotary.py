@@ -7,7 +7,7 @@ import numpy as np
 
 from hexapod_control.geometry import LEGS, RotaryGeometry
 from hexapod_control.parallel_platform import SHORTFALL, SURPLUS, VALUES, ParallelPlatform
-from manipulator import _kernel
+from manipulator._kernel import crank_elbows, crank_gains, crank_inverse
 from manipulator.arrays import Array, stretched
 from manipulator.errors import InvalidInput, Unreachable
 from manipulator.formatting import length
@@ -38,21 +38,22 @@ class RotaryHexapod(ParallelPlatform):
 
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """Crank angles (..., 6); see `Kinematics`. Elbow out unless `near` is nearer elbow in."""
-        joints, is_open = self._solved(pose, near)
-        if is_open:
+        position = pose.position
+        joints = np.empty(LEGS if position.ndim == 1 else (*position.shape[:-1], LEGS))
+        if near is not None:
+            near = stretched(near, joints.shape)
+        if crank_inverse(self.legs, position, pose.rotation, near, joints):
             self._explain(pose, joints, near)
         return joints
 
     def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
         """As `inverse`, with NaN for each crank whose leg does not close."""
-        return self._solved(pose, near)[0]
-
-    def _solved(self, pose: Pose, near: Array | None) -> tuple[Array, int]:
         position = pose.position
         joints = np.empty((*position.shape[:-1], LEGS))
-        near = None if near is None else stretched(near, joints.shape)
-        is_open = _kernel.crank_inverse(self.legs, position, pose.rotation, near, joints)
-        return joints, is_open
+        if near is not None:
+            near = stretched(near, joints.shape)
+        crank_inverse(self.legs, position, pose.rotation, near, joints)
+        return joints
 
     def inverse_all(self, pose: Pose) -> Array:
         """Every way to bend the legs (64, 6) for one pose, each elbow out or in; elbows out first.
@@ -60,7 +61,7 @@ class RotaryHexapod(ParallelPlatform):
         Within half a turn of crank_centre. Raises Unreachable where a leg does not close.
         """
         out, inside = self.inverse(pose), np.empty(LEGS)
-        _kernel.crank_elbows(self.legs, pose.position, pose.rotation, out, inside)
+        crank_elbows(self.legs, pose.position, pose.rotation, out, inside)
         is_out = np.array(list(product((True, False), repeat=LEGS)))
         return np.where(is_out, out, inside)
 
@@ -86,7 +87,7 @@ class RotaryHexapod(ParallelPlatform):
         """
         units = self.unit_rods(pose, joints)
         gains = np.empty(units.shape[:-1])
-        _kernel.crank_gains(self.legs, stretched(joints, gains.shape), units, gains)
+        crank_gains(self.legs, stretched(joints, gains.shape), units, gains)
         return gains
 
     def leverage(self, pose: Pose, joints: Array) -> Array:

@@ -1,4 +1,4 @@
-"""A user of one machine's graph: enables it, asks for poses, hears what became of them."""
+"""A client of one machine's graph: enables it, sends goals, receives their results."""
 
 import contextlib
 import time
@@ -21,11 +21,9 @@ from manipulator.nodes.messages import pose_message, seconds
 from manipulator.nodes.path_goals import path_message
 from manipulator.nodes.qos import COMMAND, LATCHED
 from manipulator.pose import Pose
+from manipulator.states import UNKNOWN, MachineState, MotionMode, MotionResult
 
-UNHEARD = 'not heard of'
-"""The state of a machine that has said none."""
-
-ASKED_AT_MOST, ANSWERED_WITHIN = 4, 4.0
+MOST_REQUESTS, ANSWERED_WITHIN = 4, 4.0
 DRIVEN_WITHIN = 15.0
 """Seconds until a machine whose servos are on takes goals: its nodes may still be starting."""
 
@@ -35,7 +33,7 @@ class NotReady(ManipulatorError, TimeoutError):
 
 
 class Stopped(ManipulatorError):
-    """The machine stopped on its way to a goal: somebody's wish, or a lost link."""
+    """The machine stopped before its goal: by a stop, or by a lost link."""
 
 
 class Client:
@@ -49,10 +47,10 @@ class Client:
         if self._owns_context:
             rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         self.node = Node('hexarm', namespace=namespace)
-        self.machine_state = DiagnosticStatus(message=UNHEARD)
+        self.machine_state = DiagnosticStatus(message=UNKNOWN)
         self.motion_status = DiagnosticStatus()
         self.diagnostics: dict[str, DiagnosticStatus] = {}
-        self._states_heard = 0
+        self._states_received = 0
         self._setpoints: Any = None
         self._commanded: Any = None
         self._interrupt = interrupt
@@ -71,14 +69,14 @@ class Client:
 
     def __exit__(self, *exception: object) -> None:
         """Leaves the graph."""
-        # Shutting down lets go of the node's handles: without it the node stays in the graph.
+        # Shutting down releases the node's handles: without it the node stays in the graph.
         self._executor.shutdown()
         self.node.destroy_node()
         if self._owns_context:
             try_shutdown()
 
     def spin(self, seconds: float) -> None:
-        """Hears messages for a while."""
+        """Receives messages for a while."""
         end = time.monotonic() + seconds
         while True:
             self._interrupt()
@@ -94,14 +92,16 @@ class Client:
         seconds: float,
         progress: Callable[[], object] = lambda: None,
     ) -> None:
-        """Hears messages until `is_so`; NotReady says what did not come.
+        """Receives messages until `is_so`; NotReady names what did not come.
 
-        The seconds begin anew whenever `progress` changes.
+        The seconds begin again whenever `progress` changes.
         """
         end, before = time.monotonic() + seconds, progress()
         while not is_so():
             if time.monotonic() > end:
-                raise NotReady(f'waited {seconds:g} s in vain for {what} ({self.summary})')
+                raise NotReady(
+                    f'timed out after {seconds:g} s, waiting for {what} ({self.summary})'
+                )
             self.spin(0.005)
             if (now := progress()) != before:
                 end, before = time.monotonic() + seconds, now
@@ -116,7 +116,7 @@ class Client:
 
     @property
     def topics(self) -> list[str]:
-        """Every topic that somebody publishes."""
+        """Every topic that has a publisher."""
         names = [name for name, _ in self.node.get_topic_names_and_types()]
         return [name for name in names if self.node.count_publishers(name)]
 
@@ -130,27 +130,27 @@ class Client:
         return str({v.key: v.value for v in self.motion_status.values}.get(key, ''))
 
     def enable(self) -> None:
-        """Energises the servos and waits until the machine can take goals; Refused says why not.
+        """Energises the servos and waits until the machine takes goals; Refused with the reason.
 
-        However long the servos take: the patience begins anew with each *arming* of the bridge.
+        However long the servos take: the patience begins again with each *arming* of the bridge.
         """
         self.wait(
             'the board', lambda: self.machine_state.message not in WITHOUT_BOARD, seconds=15.0
         )
         self._call(SetBool, 'serial_bridge/enable', SetBool.Request(data=True))
-        before = self._states_heard
+        before = self._states_received
         self.wait(
             'enabling',
-            lambda: self.motion('mode') not in ('', 'disabled') or self._is_lost(before),
+            lambda: self.motion('mode') not in ('', MotionMode.DISABLED) or self._is_lost(before),
             DRIVEN_WITHIN,
-            lambda: self.machine_state.message == 'arming' and self._states_heard,
+            lambda: self.machine_state.message == MachineState.ARMING and self._states_received,
         )
         if self._is_lost(before):
             raise Refused(f'not enabled: {self.summary}')
 
     def _is_lost(self, before: int) -> bool:
-        """Whether a state later than the `before`-th says that the servos do not go on."""
-        return self._states_heard > before and self.machine_state.message not in ENABLING
+        """Whether a state later than the `before`-th shows that the servos do not go on."""
+        return self._states_received > before and self.machine_state.message not in ENABLING
 
     def disable(self) -> None:
         """Switches the servos off."""
@@ -169,9 +169,9 @@ class Client:
     def go_to(self, pose: Pose, seconds: float = 10.0) -> None:
         """Publishes a goal and waits until it is reached; Refused or Stopped with the reason.
 
-        However long the way takes: NotReady after `seconds` in which nothing moves or is heard.
+        However long that takes: NotReady after `seconds` in which nothing moves or is received.
         """
-        self.wait('a listener for goals', lambda: self._reaches(self._goals), 10.0)
+        self.wait('a subscriber on goal_pose', lambda: self._reaches(self._goals), 10.0)
         stamp = f'{self.publish_goal(pose):.9f}'
         self._await_result(lambda: self.motion('goal_stamp') == stamp, seconds)
 
@@ -180,7 +180,7 @@ class Client:
 
         `seconds` as for go_to: they must also do for working the path out.
         """
-        self.wait('a listener for paths', lambda: self._reaches(self._paths), 10.0)
+        self.wait('a subscriber on goal_path', lambda: self._reaches(self._paths), 10.0)
         stamp = self.node.get_clock().now().to_msg()
         self._paths.publish(path_message(poses, stamp))
         name = f'{stamp.sec + 1e-9 * stamp.nanosec:.9f}'
@@ -213,7 +213,11 @@ class Client:
         return is_there and bool(publisher.get_subscription_count() >= len(found))
 
     def _await_result(self, is_ours: Callable[[], bool], seconds: float) -> None:
-        ends = {'reached': None, 'refused': Refused, 'stopped': Stopped}
+        ends: dict[str, type[ManipulatorError] | None] = {
+            MotionResult.REACHED: None,
+            MotionResult.REFUSED: Refused,
+            MotionResult.STOPPED: Stopped,
+        }
         if self._setpoints is None:
             self._setpoints = self.node.create_subscription(
                 PoseStamped, 'setpoint', self._on_setpoint, COMMAND
@@ -240,17 +244,17 @@ class Client:
         return str(response.message)
 
     def answer_of(self, client: Any, request: Any, what: str) -> Any:
-        """The service's response; asked again where it is lost, as just after discovery."""
-        for _ in range(ASKED_AT_MOST):
+        """The service's response; requested again where it is lost, as just after discovery."""
+        for _ in range(MOST_REQUESTS):
             future = client.call_async(request)
             with contextlib.suppress(NotReady):
                 self.wait(what, future.done, ANSWERED_WITHIN)
                 return future.result()
-        raise NotReady(f'no answer: {what} was asked for {ASKED_AT_MOST} times ({self.summary})')
+        raise NotReady(f'no answer: {what} was requested {MOST_REQUESTS} times ({self.summary})')
 
     def _on_machine_state(self, message: DiagnosticStatus) -> None:
         self.machine_state = message
-        self._states_heard += 1
+        self._states_received += 1
 
     def _on_motion_status(self, message: DiagnosticStatus) -> None:
         self.motion_status = message
@@ -263,6 +267,6 @@ class Client:
             self.diagnostics[entry.name] = entry
 
 
-WITHOUT_BOARD = (UNHEARD, 'disconnected', 'booting')
-ENABLING = ('arming', 'enabled', 'holding')
-"""States of a machine whose servos were asked for, until it can take goals."""
+WITHOUT_BOARD = (UNKNOWN, MachineState.DISCONNECTED, MachineState.BOOTING)
+ENABLING = (MachineState.ARMING, MachineState.ENABLED, MachineState.HOLDING)
+"""States of a machine that is being enabled, until it can take goals."""

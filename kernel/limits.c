@@ -25,17 +25,18 @@ struct products {
 static struct products products_of(const struct platform *platform, const struct rods *rods,
                                    const real rotation[9])
 {
-    struct products p = {0};
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < LEGS; i++) {
-            real unit = rods->unit[k][i];
-            real turned = rotation[3 * k] * platform->home_rod[0][i] +
-                          rotation[3 * k + 1] * platform->home_rod[1][i] +
-                          rotation[3 * k + 2] * platform->home_rod[2][i];
-            p.tilt_sine[i] += unit * platform->legs.normal[k][i];
-            p.swing_cosine[i] += unit * turned;
-            p.leaning_cosine[i] += unit * platform->home_rod[k][i];
-        }
+    struct products p;
+    const real(*home)[LEGS] = platform->home_rod, (*normal)[LEGS] = platform->legs.normal;
+    const real *r = rotation;
+    for (int i = 0; i < LEGS; i++) {
+        real x = rods->unit[0][i], y = rods->unit[1][i], z = rods->unit[2][i];
+        real a = home[0][i], b = home[1][i], c = home[2][i];
+        p.tilt_sine[i] = x * normal[0][i] + y * normal[1][i] + z * normal[2][i];
+        p.leaning_cosine[i] = x * a + y * b + z * c;
+        p.swing_cosine[i] = x * (r[0] * a + r[1] * b + r[2] * c) +
+                            y * (r[3] * a + r[4] * b + r[5] * c) +
+                            z * (r[6] * a + r[7] * b + r[8] * c);
+    }
     return p;
 }
 

@@ -19,8 +19,8 @@ void base_points(const struct crank_legs *legs, const real joints[LEGS], real ba
 {
     real sine[LEGS], cosine[LEGS];
     turned(joints, sine, cosine);
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < LEGS; i++)
+    for (int i = 0; i < LEGS; i++)
+        for (int k = 0; k < 3; k++)
             base[k][i] = legs->centre[k][i] + legs->crank[i] * (cosine[i] * legs->tangent[k][i] +
                                                                 sine[i] * legs->up[k][i]);
 }
@@ -29,14 +29,14 @@ struct rods rods_of(real base[3][LEGS], const real end[3][LEGS], const real posi
                     const real rotation[9])
 {
     struct rods rods;
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < LEGS; i++) {
+    for (int i = 0; i < LEGS; i++)
+        for (int k = 0; k < 3; k++)
             rods.arm[k][i] = rotation[3 * k] * end[0][i] + rotation[3 * k + 1] * end[1][i] +
                              rotation[3 * k + 2] * end[2][i];
-            rods.unit[k][i] = rods.arm[k][i] + (position[k] - base[k][i]);
-        }
     for (int i = 0; i < LEGS; i++) {
-        real x = rods.unit[0][i], y = rods.unit[1][i], z = rods.unit[2][i];
+        real x = rods.arm[0][i] + (position[0] - base[0][i]);
+        real y = rods.arm[1][i] + (position[1] - base[1][i]);
+        real z = rods.arm[2][i] + (position[2] - base[2][i]);
         rods.length[i] = real_sqrt(x * x + y * y + z * z);
         real inverse = 1 / rods.length[i];
         rods.unit[0][i] = x * inverse;

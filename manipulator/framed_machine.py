@@ -13,7 +13,7 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array, Mask
 from manipulator.frames import Frames
 from manipulator.kinematics import ForwardSolution, Kinematics
-from manipulator.limits.constraints import Constraints, group_of
+from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import Bounds, LimitGroup, LimitOf
 from manipulator.links import Link
 from manipulator.machine import Machine
@@ -27,8 +27,8 @@ def in_frames(machine: Machine, frames: Frames) -> Machine:
         return machine
     kinematics = FramedKinematics(machine.kinematics, frames)
     limits, framed = [], dict[LimitGroup, FramedGroup]()
-    for limit in machine.constraints.limits:
-        group = group_of(limit)
+    constraints = machine.constraints
+    for limit, (group, _) in zip(constraints.limits, constraints.places, strict=True):
         if group is not None:
             framed.setdefault(group, FramedGroup(group, frames))
         limits.append(FramedLimit(limit, frames, None if group is None else framed[group]))
@@ -134,7 +134,7 @@ class FramedGroup:
 
 @dataclass(frozen=True, eq=False)
 class FramedLimit(LimitOf):
-    """A limit of the machine, asked with poses of the pivot in the work frame."""
+    """A limit of the machine, for poses of the pivot in the work frame."""
 
     frames: Frames
     framed_group: FramedGroup | None = None

@@ -16,7 +16,7 @@ def test_example_explains_itself(example, monkeypatch, capsys):
     monkeypatch.syspath_prepend(example.parent)
     with pytest.raises(SystemExit, match='0'):
         runpy.run_path(str(example), run_name='__main__')
-    said = capsys.readouterr().out
+    text = capsys.readouterr().out
     first_line = example.read_text().splitlines()[0].strip('"')
-    assert first_line in ' '.join(said.split())
-    assert '--namespace' in said
+    assert first_line in ' '.join(text.split())
+    assert '--namespace' in text

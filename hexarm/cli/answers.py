@@ -44,12 +44,12 @@ def pose_asked(arguments: argparse.Namespace) -> Pose:
     return Pose.from_xyz_rpy(arguments.xyz, arguments.rpy)
 
 
-def picture_file(word: str) -> Path:
+def picture_file(name: str) -> Path:
     """A path that matplotlib can save to: a picture's ending, or none for a folder."""
-    path = Path(word)
+    path = Path(name)
     if path.suffix.lower() not in ('', *PICTURES):
         known = ', '.join(PICTURES)
-        raise argparse.ArgumentTypeError(f'{word}: a picture ends in one of {known}')
+        raise argparse.ArgumentTypeError(f'{name}: a picture ends in one of {known}')
     return path
 
 

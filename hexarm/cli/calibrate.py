@@ -1,4 +1,4 @@
-"""`hexarm calibrate`: what a machine file says, set right by looking at the machine."""
+"""`hexarm calibrate`: the values of a machine file, corrected by measurements of the machine."""
 
 import argparse
 

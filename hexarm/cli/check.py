@@ -17,7 +17,7 @@ from manipulator.machine import Machine
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('check', help='say everything that is wrong with a machine file')
+    parser = commands.add_parser('check', help='print all problems of a machine file')
     parser.add_argument('file', metavar='FILE', help='the path of a file, or a shipped name')
     parser.add_argument('--json', action='store_true', help='answer for programs')
     parser.set_defaults(run=run)
@@ -42,10 +42,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _in_words(file: str, report: Report) -> list[str]:
     problems, warnings = len(report.problems), len(report.warnings)
-    said = counted(problems, 'problem') if problems else 'no problems'
+    summary = counted(problems, 'problem') if problems else 'no problems'
     if warnings:
-        said += f', {counted(warnings, "warning")}'
-    lines = [f'{file}: {said}', *report.problems, *(f'warning: {w}' for w in report.warnings)]
+        summary += f', {counted(warnings, "warning")}'
+    lines = [f'{file}: {summary}', *report.problems, *(f'warning: {w}' for w in report.warnings)]
     return lines if report.machine is None else [*lines, _home_in_words(report.machine)]
 
 

@@ -48,7 +48,7 @@ def from_home(machine: Machine, joints: Array) -> Answer:
     solution = machine.kinematics.forward(joints)
     pose = solution.pose
     violations = [str(v) for v in machine.constraints.violations(pose, joints)]
-    counts, said = other_modes(machine, joints, pose)
+    counts, text = other_modes(machine, joints, pose)
     for_programs = {
         'pose': for_program(pose),
         'iterations': solution.iterations,
@@ -64,7 +64,7 @@ def from_home(machine: Machine, joints: Array) -> Answer:
         f'found in {counted(solution.iterations, "iteration")}, '
         f'residual {solution.residual:.2g} m, '
         f'singularity margin {solution.sigma_min:.3f}',
-        said,
+        text,
         *(f'beyond a limit: {v}' for v in violations),
     ]
     return for_programs, lines
@@ -78,12 +78,12 @@ def other_modes(machine: Machine, joints: Array, pose: Pose) -> tuple[dict[str, 
     except NoSolution as error:
         return dict.fromkeys(keys), f'other assembly modes are not known: {error}'
     fitting = sum(mode.is_reachable for mode in others)
-    said = f'other assembly modes: {len(others)}'
+    text = f'other assembly modes: {len(others)}'
     if fitting:
-        said += (
-            f', {fitting} of them reachable as well: these joints alone do not tell which it is'
+        text += (
+            f', {fitting} of them reachable as well: which it is does not follow from these joints'
         )
-    return dict(zip(keys, (len(others), fitting), strict=True)), said
+    return dict(zip(keys, (len(others), fitting), strict=True)), text
 
 
 def every_mode(machine: Machine, joints: Array) -> Answer:
@@ -104,7 +104,7 @@ def every_mode(machine: Machine, joints: Array) -> Answer:
         f'{counted(len(modes), "mode")}, {len(found.that_fit)} reachable within all limits'
     )
     if not found.is_complete:
-        lines.append('there may be more: close to a singularity not all can be told apart')
+        lines.append('there may be more: close to a singularity not all can be distinguished')
     return {'modes': modes, 'is_complete': found.is_complete}, lines
 
 

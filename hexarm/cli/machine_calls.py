@@ -9,22 +9,23 @@ from typing import TYPE_CHECKING
 
 from hexarm.cli.statuses import INTERRUPTED, REFUSED
 from hexarm.cli.up import Interrupted, StopSignal
-from hexarm.namespaces import NobodyThere, namespace_of, nobody_in
+from hexarm.namespaces import NoMachine, namespace_of, no_machine_in
 from manipulator.errors import Refused
+from manipulator.states import UNKNOWN, MachineState
 
 if TYPE_CHECKING:
     from hexarm.client import Client
 
-HEARD_WITHIN = 8.0
-"""Seconds in which the bridge of a machine that is there says its state."""
+RECEIVED_WITHIN = 8.0
+"""Seconds in which the bridge of a running machine publishes its state."""
 
 SETTLES = 0.5
-"""Seconds in which the new state is heard, too."""
+"""Seconds in which the new state is received, too."""
 
 
 @dataclass(frozen=True)
 class Call:
-    """One subcommand: what it asks of the machine, and gets for an answer, if any."""
+    """One subcommand: its request to the machine, and the answer, if any."""
 
     name: str
     help: str
@@ -61,40 +62,40 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 
 
 def run(call: Call, arguments: argparse.Namespace) -> int:
-    """Asks, and prints the machine's state; status 1 when nobody answers, 2 for a refusal."""
+    """Calls, and prints the machine's state; status 1 without a machine, 2 for a refusal."""
     from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
 
     stop = StopSignal()
     try:
         with Client(arguments.namespace, stop.check) as client:
             await_machine(client)
-            said = call.act(client)
+            answer = call.act(client)
             client.spin(SETTLES)
-            words = f' ({said})' if said else ''
+            words = f' ({answer})' if answer else ''
             space = arguments.namespace
-            print(f'/{space}: {client.summary}{words}{way_out(client, space)}')
+            print(f'/{space}: {client.summary}{words}{remedy(client, space)}')
     except Refused as error:
-        print(f'hexarm: {error}{way_out(client, arguments.namespace)}', file=sys.stderr)
+        print(f'hexarm: {error}{remedy(client, arguments.namespace)}', file=sys.stderr)
         return REFUSED
     except Interrupted:
         return INTERRUPTED
     return 0
 
 
-def way_out(client: 'Client', namespace: str) -> str:
+def remedy(client: 'Client', namespace: str) -> str:
     """What ends a stop or a fault, where the machine has one."""
-    if client.machine_state.message not in ('stopped', 'fault'):
+    if client.machine_state.message not in (MachineState.STOPPED, MachineState.FAULT):
         return ''
-    return f'. Look at the machine, then: hexarm clear {namespace}'
+    return f'. Inspect the machine, then: hexarm clear {namespace}'
 
 
 def await_machine(client: 'Client') -> None:
-    """Waits until the machine has said its state; NobodyThere tells where it was looked for."""
-    from hexarm.client import UNHEARD, NotReady  # noqa: PLC0415 (needs ROS)
+    """Waits for the machine's state; NoMachine names the namespace and domain."""
+    from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
 
     try:
-        client.wait('a machine', lambda: client.machine_state.message != UNHEARD, HEARD_WITHIN)
+        client.wait('a machine', lambda: client.machine_state.message != UNKNOWN, RECEIVED_WITHIN)
     except NotReady as error:
-        raise NobodyThere(
-            nobody_in(client.node.get_namespace(), client.topics, client.domain)
+        raise NoMachine(
+            no_machine_in(client.node.get_namespace(), client.topics, client.domain)
         ) from error

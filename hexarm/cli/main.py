@@ -24,8 +24,8 @@ examples:
   hexarm calibrate servos robocake --output mine.yaml  signs and centres, on a fake board
 
 MACHINE is a shipped name (hexarm machines) or the path of a YAML file. Exit status: 0 good,
-1 failed, 2 refused or not understood, 3 out of reach (hexarm reach), 130 Ctrl-C, 141 nobody
-reads the output any more. `hexarm COMMAND --help` tells more of a command.
+1 failed, 2 refused or not understood, 3 out of reach (hexarm reach), 130 Ctrl-C, 141 output
+closed by its reader. `hexarm COMMAND --help` describes a command.
 """
 
 

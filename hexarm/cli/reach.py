@@ -17,9 +17,8 @@ from hexarm.cli.answers import (
 )
 from hexarm.cli.statuses import OUT_OF_REACH
 from hexarm.machines import load
-from manipulator.analysis.explain import pose_in_words
 from manipulator.analysis.nearest import nearest_reachable
-from manipulator.analysis.reach import Reach, reach
+from manipulator.analysis.reach import Reach, pose_in_words, reach
 from manipulator.analysis.readings import LimitReading
 from manipulator.analysis.travel import Travel, travel
 from manipulator.formatting import length
@@ -69,7 +68,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
             'end': _pose(left.pose),
             'reason': left.reason,
         }
-        lines.append(_way_in_words(left))
+        lines.append(_travel_in_words(left))
     return for_programs, lines
 
 
@@ -118,6 +117,6 @@ def _bound(value: float) -> str:
     return f'{value:.4g}' if math.isfinite(value) else ''
 
 
-def _way_in_words(left: Travel) -> str:
+def _travel_in_words(left: Travel) -> str:
     reason = f', then {left.reason}' if left.reason else ', and no limit was met'
     return f'goes on for {left.seconds:.3f} s, {length(left.metres)}{reason}'

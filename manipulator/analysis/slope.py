@@ -1,4 +1,4 @@
-"""How every limit's margin changes with the pose, by differences."""
+"""How every limit's margin changes with the pose, and the nearest point within linear limits."""
 
 from dataclasses import dataclass, replace
 
@@ -9,8 +9,35 @@ from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
+TOLERANCE = 1e-12
+
+
+def nearest_point(target: Array, normals: Array, slack: Array) -> tuple[Array, Array]:
+    """The y nearest to `target` (n,) with normals·y + slack ≥ 0, and its multipliers (m,).
+
+    target − y = −normalsᵀ·multipliers. Least distance programming, chapter 23. Where no y does,
+    or none is found, y is `target` and the multipliers are NaN.
+    """
+    from scipy.optimize import nnls  # noqa: PLC0415 (50 MB: only needed here)
+
+    lacking = -(slack + normals @ target)
+    matrix = np.vstack([normals.T, lacking])
+    right = np.zeros(len(matrix))
+    right[-1] = 1.0
+    nowhere = target, np.full(len(slack), np.nan)
+    try:
+        weights = nnls(matrix, right)[0]
+    except RuntimeError:  # too many iterations
+        return nowhere
+    residual = matrix @ weights - right
+    if residual[-1] > -TOLERANCE:
+        return nowhere
+    return target - residual[:-1] / residual[-1], -weights / residual[-1]
+
+
 STEP = 1e-6
 """Of the differences, as part of the characteristic length."""
+AROUND = STEP * np.concatenate([np.zeros((1, 6)), np.eye(6), -np.eye(6)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,17 +55,16 @@ class Slopes:
 
 def slopes(machine: Machine, pose: Pose, near: Array | None = None) -> Slopes:
     """By differences in all six directions, to one side where the other does not close."""
-    step = STEP * machine.kinematics.characteristic_length
-    around = np.concatenate([np.zeros((1, 6)), step * np.eye(6), -step * np.eye(6)])
-    readings = read_limits(machine, displaced(machine, pose, around), near)
-    margins = np.where(np.isfinite(readings.margins), readings.margins, np.nan)
-    ahead = (margins[1:7] - margins[0]) / step
-    behind = (margins[0] - margins[7:]) / step
-    either = np.where(np.isnan(ahead), behind, ahead)
-    gradients = np.where(np.isnan(ahead + behind), either, (ahead + behind) / 2)
-    steeper = np.fmax(np.abs(ahead), np.abs(behind))
+    length = machine.kinematics.characteristic_length
+    readings = read_limits(machine, displaced(machine, pose, length * AROUND), near)
+    margins = readings.margins
+    with np.errstate(invalid='ignore'):  # without a bound, the difference of two infinities
+        sides = np.stack([margins[1:7] - margins[0], margins[0] - margins[7:]]) / (STEP * length)
+    sides = np.where(np.isfinite(sides), sides, sides[::-1])
+    sides[~np.isfinite(sides)] = 0.0
+    steeper = np.abs(sides).max(axis=0)
     return Slopes(
         replace(readings, values=readings.values[0]),
-        np.nan_to_num(gradients).T,
-        np.linalg.norm(np.nan_to_num(steeper), axis=0),
+        ((sides[0] + sides[1]) / 2).T,
+        np.sqrt((steeper * steeper).sum(axis=0)),
     )

@@ -1,6 +1,6 @@
 """The one constraint check that ik, trajectories, teleop and workspace maps share.
 
-A limit that a machine stands beyond is stretched for the way back.
+A limit that a machine is beyond is stretched for the way back.
 """
 
 from dataclasses import dataclass, field
@@ -21,33 +21,41 @@ class Constraints:
     """
 
     limits: tuple[Limit, ...]
+    names: tuple[tuple[str, str, str], ...] = field(init=False, compare=False, repr=False)
     low: Array = field(init=False, compare=False, repr=False)
     high: Array = field(init=False, compare=False, repr=False)
+    places: tuple[tuple[LimitGroup | None, slice], ...] = field(
+        init=False, compare=False, repr=False
+    )
     checks: tuple[tuple[LimitGroup, Array], ...] = field(init=False, compare=False, repr=False)
-    others: tuple[Limit, ...] = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Puts all bounds in a row, and each group's into the ranges that it checks."""
-        low, high = ([getattr(limit, end) for limit in self.limits] for end in ('low', 'high'))
+        """Puts all values in a row: names (quantity, owner, unit), bounds, who computes them."""
+        limits = self.limits
+        places = tuple(_place(limit) for limit in limits)
         parts: dict[LimitGroup, list[Bounds]] = {}
-        for limit in self.limits:
-            group = group_of(limit)
-            if group is not None and isinstance(limit, Grouped):
-                parts.setdefault(group, []).append((limit.columns, limit.low, limit.high))
-        checks = tuple((group, group.ranges(bounds)) for group, bounds in parts.items())
-        others = tuple(limit for limit in self.limits if group_of(limit) is None)
-        object.__setattr__(self, 'low', frozen(np.concatenate([[], *low])))
-        object.__setattr__(self, 'high', frozen(np.concatenate([[], *high])))
-        object.__setattr__(self, 'checks', checks)
-        object.__setattr__(self, 'others', others)
+        for (group, columns), limit in zip(places, limits, strict=True):
+            if group is not None:
+                parts.setdefault(group, []).append((columns, limit.low, limit.high))
+        for name, value in {
+            'names': tuple(
+                (limit.quantity, o, limit.unit) for limit in limits for o in limit.owners
+            ),
+            'low': frozen(np.concatenate([[], *(limit.low for limit in limits)])),
+            'high': frozen(np.concatenate([[], *(limit.high for limit in limits)])),
+            'places': places,
+            'checks': tuple((group, group.ranges(bounds)) for group, bounds in parts.items()),
+        }.items():
+            object.__setattr__(self, name, value)
 
     def admits(self, pose: Pose, joints: Array) -> Mask:
         """Which of the configurations (...) keep every limit."""
         masks = [group.keeps(ranges, pose, joints) for group, ranges in self.checks]
-        for limit in self.others:
-            values = limit.values(pose, joints)
-            inside = (values >= limit.low) & (values <= limit.high)
-            masks.append(np.asarray(inside.all(axis=-1)))
+        for (group, _), limit in zip(self.places, self.limits, strict=True):
+            if group is None:
+                values = limit.values(pose, joints)
+                inside = (values >= limit.low) & (values <= limit.high)
+                masks.append(np.asarray(inside.all(axis=-1)))
         if len(masks) == 1:
             return masks[0]
         everything: Mask = np.ones(np.shape(joints)[:-1], dtype=np.bool_)
@@ -56,17 +64,16 @@ class Constraints:
     def values(self, pose: Pose, joints: Array) -> Array:
         """The values of all limits at configurations (...), one after the other: (..., k)."""
         tables = {group: group.limited_values(pose, joints) for group, _ in self.checks}
-        parts = []
-        for limit in self.limits:
-            group = group_of(limit)
-            if group is not None and isinstance(limit, Grouped):
-                parts.append(tables[group][..., limit.columns])
-            else:
-                parts.append(limit.values(pose, joints))
-        return np.concatenate(parts, axis=-1)
+        return np.concatenate(
+            [
+                limit.values(pose, joints) if group is None else tables[group][..., columns]
+                for (group, columns), limit in zip(self.places, self.limits, strict=True)
+            ],
+            axis=-1,
+        )
 
     def stretched_to(self, pose: Pose, joints: Array) -> 'Constraints':
-        """These limits for a machine that stands beyond some of them: it may not go further out.
+        """These limits for a machine that is beyond some of them: it may not go further out.
 
         The same ones where one configuration keeps them all.
         """
@@ -79,13 +86,11 @@ class Constraints:
     def violations(self, pose: Pose, joints: Array) -> list[Violation]:
         """Everything that one configuration violates, in the order of the limits."""
         values = self.values(pose, joints)
-        beyond = np.flatnonzero(~((values >= self.low) & (values <= self.high)))
-        owners = [(limit, owner) for limit in self.limits for owner in limit.owners]
         found = []
-        for k in beyond:
-            limit, owner = owners[k]
+        for k in np.flatnonzero(~((values >= self.low) & (values <= self.high))):
+            quantity, owner, unit = self.names[k]
             value, low, high = float(values[k]), float(self.low[k]), float(self.high[k])
-            found.append(Violation(limit.quantity, limit.unit, owner, value, low, high))
+            found.append(Violation(quantity, unit, owner, value, low, high))
         return found
 
     def check(self, pose: Pose, joints: Array) -> None:
@@ -106,18 +111,18 @@ class Constraints:
         )
 
 
-def group_of(limit: Limit) -> LimitGroup | None:
-    """Where its values are computed together with others."""
-    return limit.group if isinstance(limit, Grouped) else None
+def _place(limit: Limit) -> tuple[LimitGroup | None, slice]:
+    """Where its values are computed together with others, and which columns they are there."""
+    return (limit.group, limit.columns) if isinstance(limit, Grouped) else (None, slice(0))
 
 
 ROUNDING = 1e-9
-"""rad, m or a ratio by which values may differ when the same place is worked out again."""
+"""rad, m or a ratio by which values may differ when the same pose is computed again."""
 
 
 @dataclass(frozen=True, eq=False)
 class StretchedLimit(LimitOf):
-    """`inner` with bounds [low, high] (k,) that take in where the machine stands."""
+    """`inner` with bounds [low, high] (k,) that include the present values."""
 
     low: Array
     high: Array

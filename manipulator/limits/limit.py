@@ -109,7 +109,7 @@ class Violation:
 
     @property
     def _digits(self) -> int:
-        """Four, or as many as tell the value from the bounds that it is beyond."""
+        """Four, or as many as distinguish the value from the bound that it is beyond."""
         for digits in range(FEWEST_DIGITS, MOST_DIGITS):
             value, low, high = (f'{x:.{digits}g}' for x in (self.value, self.low, self.high))
             if value not in (low, high):

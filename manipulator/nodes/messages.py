@@ -36,7 +36,7 @@ def pose_of(message: PoseStamped, frames: tuple[str, ...] = (BASE_FRAME,)) -> Po
 
 
 def goal_of(message: PoseStamped, frames: Frames) -> Pose:
-    """The pivot's pose in the work frame; a message in the base frame tells the platform's."""
+    """The pivot's pose in the work frame; a message in the base frame holds the platform's."""
     pose = pose_of(message, (BASE_FRAME, WORK_FRAME))
     return pose if message.header.frame_id == WORK_FRAME else frames.pivot(pose)
 

@@ -45,8 +45,8 @@ def checked(name: str, value: Any, default: Any, bounds: tuple[float, float] | N
     if isinstance(default, float) and isinstance(value, int) and not isinstance(value, bool):
         value = float(value)
     if type(value) is not type(default):
-        wanted = type(default).__name__
-        raise InvalidInput(f'parameter {name}: {shown(value)} is not a {wanted}')
+        expected = type(default).__name__
+        raise InvalidInput(f'parameter {name}: {shown(value)} is not a {expected}')
     if bounds is not None and not bounds[0] <= value <= bounds[1]:
         raise InvalidInput(f'parameter {name}: {value} outside [{bounds[0]}, {bounds[1]}]')
     return value
@@ -71,7 +71,7 @@ class CycleParameters:
             declare(node, f'cycle.{name}', default, description, is_read_only=False)
 
     def read(self, centre: Pose) -> Cycle:
-        """The cycle about `centre`; InvalidInput says what does not fit."""
+        """The cycle about `centre`; InvalidInput names the wrong parameter."""
         amplitude, frequency, phase = map(self._terms, ('amplitude', 'frequency', 'phase'))
         return Cycle(centre, amplitude, frequency, phase)
 

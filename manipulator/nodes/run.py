@@ -29,7 +29,7 @@ Makers = Sequence[Callable[[], Node]]
 def run_nodes(makers: Makers, describe: Callable[[str], str] | None = None) -> int:
     """Spins nodes on one executor until SIGINT or SIGTERM; a start-up error is status 1.
 
-    With `describe` the log begins with what that says of the first node's parameter `machine`.
+    With `describe` the log begins with its text for the first node's parameter `machine`.
 
     rclpy's own signal handlers would invalidate the context before the last message is out, so
     ours only set a flag.
@@ -65,7 +65,7 @@ def context(arguments: Sequence[str]) -> Iterator[None]:
 
 @contextmanager
 def spinning(makers: Makers) -> Iterator[Callable[[], bool]]:
-    """Nodes in a thread of this process, in a context that is there; says whether it still runs.
+    """Nodes in a thread of this process, in an existing context; knows whether it still runs.
 
     An exception in a callback ends the thread, after its traceback.
     """

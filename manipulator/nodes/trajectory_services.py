@@ -16,16 +16,16 @@ from manipulator.machine import Machine
 from manipulator.nodes.late_answers import Call, create_late_service
 from manipulator.nodes.messages import goal_of, pose_message, seconds
 from manipulator.nodes.parameters import CycleParameters
+from manipulator.trajectory.controller import MotionController
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.planner import Start, plan_goal
-from manipulator.trajectory.supervisor import Supervisor
 from manipulator.trajectory.worker import Job, Worker
 
 
 @dataclass(frozen=True, eq=False)
 class _PlanCall:
-    """A request for a plan that is being worked out."""
+    """A request for a plan that is being made."""
 
     call: Call
     machine: Machine
@@ -35,9 +35,11 @@ class _PlanCall:
 class TrajectoryServices:
     """Answers with what will happen, or with why it will not; `poll` is called at every tick."""
 
-    def __init__(self, node: Node, supervisor: Supervisor, dt: float, worker: Worker) -> None:
+    def __init__(
+        self, node: Node, controller: MotionController, dt: float, worker: Worker
+    ) -> None:
         self._node = node
-        self._supervisor = supervisor
+        self._controller = controller
         self._dt = dt
         self._worker = worker
         self._cycle = CycleParameters(node)
@@ -53,7 +55,7 @@ class TrajectoryServices:
     def poll(self) -> None:
         """Answers what can be answered by now."""
         for call, stamp in tuple(self._cycles):
-            answer = self._supervisor.cycle_answer(stamp)
+            answer = self._controller.cycle_answer(stamp)
             if answer is not None:
                 self._cycles.remove((call, stamp))
                 call.response.success, call.response.message = answer.is_obeyed, answer.text
@@ -65,20 +67,20 @@ class TrajectoryServices:
             self._begin_plan(self._waiting.popleft())
 
     def _stop(self) -> str:
-        self._supervisor.stop()
-        return 'braking along the way, then holding'
+        self._controller.stop()
+        return 'braking along the path, then holding'
 
     def _home(self) -> str:
-        self._supervisor.home(self._now(), time.monotonic())
+        self._controller.home(self._now(), time.monotonic())
         return 'going home'
 
     def _park(self) -> str:
-        self._supervisor.park(self._now(), time.monotonic())
+        self._controller.park(self._now(), time.monotonic())
         return 'going to park'
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:
-            self._supervisor.pilot.pause(request.data)
+            self._controller.supervisor.pause(request.data)
             response.success, response.message = True, 'paused' if request.data else 'going on'
         except ManipulatorError as error:
             response.message = str(error)
@@ -87,7 +89,7 @@ class TrajectoryServices:
     def _on_start_cycle(self, call: Call) -> None:
         stamp = self._now()
         try:
-            self._supervisor.start_cycle(self._cycle.read, stamp)
+            self._controller.start_cycle(self._cycle.read, stamp)
         except ManipulatorError as error:
             call.response.message = str(error)
             call.send()
@@ -99,7 +101,7 @@ class TrajectoryServices:
 
         One at a time: goals to drive to wait for no more than one such question.
         """
-        machine = self._supervisor.pilot.machine
+        machine = self._controller.supervisor.machine
         try:
             goal = goal_of(call.request.goal, machine.frames)
             start = self._start_of(call.request)
@@ -125,10 +127,10 @@ class TrajectoryServices:
         plan.call.send()
 
     def _start_of(self, request: GetPlan.Request) -> Start:
-        machine = self._supervisor.pilot.machine
+        machine = self._controller.supervisor.machine
         if request.start == PoseStamped():
-            player = self._supervisor.pilot.player
-            pose, joints = player.state.pose, player.joints
+            executor = self._controller.supervisor.executor
+            pose, joints = executor.state.pose, executor.joints
         else:
             pose = goal_of(request.start, machine.frames)
             joints = machine.kinematics.inverse(pose)

@@ -1,8 +1,8 @@
-"""Jogging any machine by its inverse kinematics, with the way to brake checked at every tick.
+"""Jogging any machine by its inverse kinematics, with the braking path checked at every tick.
 
 A platform's limits (reach, rod ends, singularity margin) cannot be turned into joint ranges. So
-each tick drives only such a twist from which braking straight ahead keeps all of them: that way
-is there to be taken when no other twist is allowed. It ends at the edge, where everything that
+each tick drives only a twist from which braking straight ahead keeps all of them: braking
+remains available when no other twist is allowed. It ends at the edge, where everything that
 led there is open for the way back.
 """
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from manipulator.machine import Machine
 
 SCALES = 0.75 ** np.arange(17)
-"""Parts of the wanted twist that are tried, from all of it down to 1 %."""
+"""Parts of the target twist that are tried, from all of it down to 1 %."""
 ROUNDING = 1e-9
 
 
@@ -34,23 +34,23 @@ class PlatformJogger:
     def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
         """See `Jogger`; the largest of SCALES that can be driven and braked, else it brakes."""
         constraints = self.machine.constraints
-        wanted = SCALES[:, None] * twist
-        aims = towards(motion.twist, wanted, self.machine.motion, dt)
+        target = SCALES[:, None] * twist
+        aims = towards(motion.twist, target, self.machine.motion, dt)
         held_by = ''
         for first, last in ((0, 1), (1, len(SCALES))):
-            ways = self._ways(motion, aims[first:last], dt)
-            inside = constraints.admits(ways.poses, ways.joints)
-            if first == 0 and not ways.fit(inside)[0]:
-                # Stretched limits let more through: they matter where something is in the way.
+            paths = self._paths(motion, aims[first:last], dt)
+            inside = constraints.admits(paths.poses, paths.joints)
+            if first == 0 and not paths.fit(inside)[0]:
+                # Stretched limits let more through: they matter where a limit is broken.
                 constraints = constraints.stretched_to(motion.pose, motion.joints)
                 if constraints is not self.machine.constraints:
-                    inside = constraints.admits(ways.poses, ways.joints)
-            is_fit = ways.fit(inside)
+                    inside = constraints.admits(paths.poses, paths.joints)
+            is_fit = paths.fit(inside)
             if is_fit.any():
                 chosen = int(np.argmax(is_fit))
                 scale = float(SCALES[first + chosen])
                 return self._moved(motion, aims[first + chosen], dt, scale, held_by)
-            held_by = held_by or ways.obstacle(self.machine, constraints, inside[0])
+            held_by = held_by or paths.obstacle(self.machine, constraints, inside[0])
         ticks = _braking_ticks(motion.twist, self.machine, dt)
         return self._moved(motion, motion.twist * (1.0 - 1.0 / ticks), dt, 0.0, held_by)
 
@@ -65,7 +65,7 @@ class PlatformJogger:
         rates = frozen((joints - motion.joints) / dt)
         return JogMotion(pose, frozen(joints), frozen(twist), rates, scale, held_by)
 
-    def _ways(self, motion: JogMotion, twists: Array, dt: float) -> '_Ways':
+    def _paths(self, motion: JogMotion, twists: Array, dt: float) -> '_Ways':
         """One tick at each of the twists (k, 6), then braking straight ahead to rest."""
         ticks = _braking_ticks(twists, self.machine, dt)
         steps = np.arange(int(ticks.max()) + 1)
@@ -91,7 +91,7 @@ class PlatformJogger:
 
 @dataclass(frozen=True, eq=False)
 class _Ways:
-    """Poses (k, ticks) of k ways to rest, and their joints (k, ticks, n).
+    """Poses (k, ticks) of k braking paths, and their joints (k, ticks, n).
 
     speeds and accelerations are those of the joints, as parts of what is allowed.
     """
@@ -102,13 +102,13 @@ class _Ways:
     accelerations: Array
 
     def fit(self, inside: Mask) -> Mask:
-        """Which of the k ways keep the joints' limits, and the constraints that `inside` tells."""
+        """Which of the k paths keep the joints' limits and the constraints (`inside`)."""
         slow_enough = (self.speeds <= 1.0).all(axis=-1) & (self.accelerations <= 1.0).all(axis=-1)
         result: Mask = np.asarray((inside & slow_enough).all(axis=-1), dtype=np.bool_)
         return result
 
     def obstacle(self, machine: 'Machine', constraints: Constraints, inside: Mask) -> str:
-        """What holds the first of the ways back, in words; inside: which ticks of it are."""
+        """What limits the first of the paths, in words; inside: which ticks of it are."""
         if not inside.all():
             first = int(np.argmin(inside))
             found = constraints.violations(self.poses[0][first], self.joints[0, first])[0]
@@ -124,7 +124,7 @@ class _Ways:
 def _braking_ticks(twist: Array, machine: 'Machine', dt: float) -> Array:
     """In how many ticks (...) a twist (..., 6) comes to rest, at least 1.
 
-    One tick of braking from n takes to exactly n − 1, so that a way once checked stays the same.
+    One tick of braking from n takes to exactly n − 1, so that a path once checked stays the same.
     """
     result: Array = np.ceil(np.maximum(ticks_for(twist, machine.motion, dt) - ROUNDING, 1.0))
     return result

@@ -1,4 +1,4 @@
-"""What somebody asks for: a pose, how to get there, and perhaps what to begin there."""
+"""A goal: a pose, how to get there, and the path or cycle to begin there."""
 
 from dataclasses import dataclass
 from enum import Enum

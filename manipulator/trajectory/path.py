@@ -70,7 +70,7 @@ class Path:
         return state_of(x, rate, curvature, self.poses.rotation[corner])
 
     def metres(self, s: float) -> float:
-        """The length of the way to s, from pose to pose."""
+        """The path length to s, from pose to pose."""
         return float(np.interp(s, self.marks, self._metres))
 
     def where(self, s: float) -> str:
@@ -91,8 +91,8 @@ def path_along(poses: Pose, tolerance: Tolerance, turn_length: float) -> Path | 
     if len(kept) == 1:
         return poses[kept[0]]
     distinct = poses[kept]
-    way = distinct[:-1].twist_to(distinct[1:])
-    shifts, turns = np.linalg.norm(way[:, :3], axis=1), np.linalg.norm(way[:, 3:], axis=1)
+    steps = distinct[:-1].twist_to(distinct[1:])
+    shifts, turns = np.linalg.norm(steps[:, :3], axis=1), np.linalg.norm(steps[:, 3:], axis=1)
     spans = np.maximum(shifts, turn_length * turns)
     marks = np.concatenate([[0.0], np.cumsum(spans)])
     share = 1.0 - REPEATED_SHARE
@@ -145,7 +145,7 @@ MOST_POSES = 2000
 
 
 def line(start: Pose, goal: Pose) -> Pose:
-    """The two ends of a straight way, (2,)."""
+    """The two ends of a segment, (2,)."""
     return Pose(
         np.stack([start.position, goal.position]), np.stack([start.rotation, goal.rotation])
     )

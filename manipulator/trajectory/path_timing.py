@@ -1,4 +1,4 @@
-"""A path with its timing: a plan like any other, worked out and checked before it begins.
+"""A path with its timing: a plan like any other, made and checked before it begins.
 
 Speed and acceleration of joints and platform are limited; jerk is not, except by the corners'
 width and by the drives themselves.
@@ -64,9 +64,9 @@ class TimedPath(PosePlan):
     def at(self, times: Array | float) -> MotionState:
         """The state at each of the times (...)."""
         s, rate, pull = (value[..., None] for value in self._progress(times))
-        way = self.path.at(s[..., 0])
-        acceleration = way.acceleration * rate**2 + way.twist * pull
-        return MotionState(way.pose, way.twist * rate, acceleration)
+        point = self.path.at(s[..., 0])
+        acceleration = point.acceleration * rate**2 + point.twist * pull
+        return MotionState(point.pose, point.twist * rate, acceleration)
 
     def where(self, time: float) -> str:
         """See `Plan`: by the poses' numbers and the length, whatever the timing is."""
@@ -118,15 +118,15 @@ def plan_path(
             _check_stamped(path, limits)
         timed = timed_path(path, limits, speed)
         _check_length(timed, dt)
-        demand = check_plan(timed, machine, near, dt, effort)
-        if demand.fits:
+        peak = check_plan(timed, machine, near, dt, effort)
+        if peak.fits:
             return timed
     if request.stamps is None:
-        slower = replace(timed, squares=timed.squares / (1.01 * demand.slowness) ** 2)
+        slower = replace(timed, squares=timed.squares / (1.01 * peak.factor) ** 2)
         if check_plan(slower, machine, near, dt, effort).fits:
             return slower
     raise Refused(
-        f'{demand.quantity} stays {demand.slowness:.3f} times too high {timed.where(demand.time)}'
+        f'{peak.quantity} stays {peak.factor:.3f} times too high {timed.where(peak.time)}'
     )
 
 
@@ -153,17 +153,17 @@ def nodes_of(path: Path, refinement: int, length: float) -> Array:
 
 
 def timed_path(path: Path, limits: PathLimits, speed: float) -> TimedPath:
-    """The fastest way along a path at `speed` (per second, in the path's parameter) at most."""
+    """The fastest timing of a path at `speed` (per second, in the path's parameter) at most."""
     highest = np.minimum(limits.highest.min(axis=1), speed**2)
     return TimedPath(path, limits.nodes, fastest(limits.rows, highest), limits.joints[0])
 
 
 def _check_stamped(path: Path, limits: PathLimits) -> None:
-    slowness, quantity, s = limits.most_at(1.0)
-    if slowness > CHECK_TOLERANCE:
+    utilisation, quantity, s = limits.most_at(1.0)
+    if utilisation > CHECK_TOLERANCE:
         raise Refused(
             f'{path.where(s)}: by the stamps of the poses {quantity} would be '
-            f'{slowness:.3g} times too fast'
+            f'{utilisation:.3g} times too fast'
         )
 
 

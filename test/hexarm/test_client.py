@@ -57,7 +57,7 @@ def enabling(monkeypatch):
         one.__exit__(None, None, None)
 
 
-def test_enabling_goes_on_for_as_long_as_the_bridge_says_that_it_arms(enabling):
+def test_enabling_goes_on_for_as_long_as_the_bridge_reports_that_it_arms(enabling):
     long = 4 * DRIVEN_WITHIN
 
     def bridge(seconds):
@@ -77,11 +77,11 @@ def test_enabling_ends_with_the_reason_where_the_machine_is_stopped_meanwhile(en
 
 
 def test_a_machine_that_is_enabled_but_not_driven_is_not_waited_for_for_ever(enabling):
-    with pytest.raises(NotReady, match='waited 15 s in vain for enabling'):
+    with pytest.raises(NotReady, match='timed out after 15 s, waiting for enabling'):
         enabling(lambda seconds: ('enabled', '', 'disabled')).enable()
 
 
 def test_a_board_that_is_not_there_is_named(enabling):
     gone = ('disconnected', '/dev/ttyUSB7 does not exist', '')
-    with pytest.raises(NotReady, match=r'in vain for the board .*/dev/ttyUSB7 does not exist'):
+    with pytest.raises(NotReady, match=r'waiting for the board .*/dev/ttyUSB7 does not exist'):
         enabling(lambda seconds: gone).enable()

@@ -28,12 +28,12 @@ def client(enabled):
 @pytest.fixture
 def poses(client):
     """The measured poses since the test began, as far as the client was spun."""
-    heard = []
+    received = []
     subscription = client.node.create_subscription(
-        PoseStamped, 'pose', lambda message: heard.append(pose_of(message)), 1000
+        PoseStamped, 'pose', lambda message: received.append(pose_of(message)), 1000
     )
-    client.wait('a pose', lambda: heard)
-    yield heard
+    client.wait('a pose', lambda: received)
+    yield received
     client.node.destroy_subscription(subscription)
 
 
@@ -43,11 +43,11 @@ def measured_now(client):
 
     def measured_now():
         client.spin(0.3)
-        heard = []
-        subscription = client.node.create_subscription(PoseStamped, 'pose', heard.append, 1)
-        client.wait('a pose', lambda: len(heard) > 3)
+        received = []
+        subscription = client.node.create_subscription(PoseStamped, 'pose', received.append, 1)
+        client.wait('a pose', lambda: len(received) > 3)
         client.node.destroy_subscription(subscription)
-        return pose_of(heard[-1])
+        return pose_of(received[-1])
 
     return measured_now
 
@@ -97,7 +97,7 @@ def test_publish_pose_ends_when_the_platform_is_there(reaches, measured_now):
     assert pose.rpy == pytest.approx([0.03, 0.0, 0.05], abs=0.01)
 
 
-def test_publish_pose_says_which_leg_cannot(start, client, end):
+def test_publish_pose_reports_which_leg_cannot(start, client, end):
     status, said = end(start('publish_pose', 0.04, 0, 0.045))
     assert status == 1
     assert re.fullmatch(r'refused: leg \d: rod too short by [\d.]+ mm .*\n', said)
@@ -187,16 +187,18 @@ def test_slow_moves_are_waited_for_and_what_stands_still_is_given_up(
     status, said = end(start('publish_pose', 0, 0, 0.043, '--patience', 1.5))
     assert (status, said) == (1, 'not there, and nothing has moved for 1.5 s\n')
     monkeypatch.setattr(client, 'patience', 0.0)
-    with pytest.raises(NotReady, match=r'waited 1.5 s in vain for reaching the goal .*moving'):
+    with pytest.raises(
+        NotReady, match=r'timed out after 1.5 s, waiting for reaching the goal .*moving'
+    ):
         client.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.042)), seconds=1.5)
     assert end(start('stop'))[0] == 0
 
 
-def test_stop_ends_a_move_and_the_tour_says_so(start, client, slowly, end):
+def test_stop_ends_a_move_and_the_tour_reports_that(start, client, slowly, end):
     def stop_on_tour():
         tour = start('axis_tour', '--pause', 0)
         assert tour.stdout.readline().startswith('x ±')
-        assert end(start('stop')) == (0, 'braking along the way, then holding\n')
+        assert end(start('stop')) == (0, 'braking along the path, then holding\n')
         status, said = end(tour)
         assert status == 1
         assert 'stopped' in said

@@ -23,8 +23,8 @@ def ask(capsys):
     return ask
 
 
-def as_pose(told):
-    return Pose.from_xyz_quaternion(told['xyz'], told['quaternion_xyzw'])
+def as_pose(reported):
+    return Pose.from_xyz_quaternion(reported['xyz'], reported['quaternion_xyzw'])
 
 
 def test_cold_start_counts_the_modes_that_all_lists(ask):
@@ -48,7 +48,7 @@ def test_every_mode_listed_has_the_joints_asked_for(ask):
         np.testing.assert_allclose(legs, [float(leg) for leg in LEGS], atol=1e-10)
 
 
-def test_table_of_modes_tells_which_the_machine_can_be_in(capsys):
+def test_table_of_modes_reports_which_the_machine_can_be_in(capsys):
     assert main(['fk', 'robocake', *['2.09'] * 6, '--all']) == 0
     header, *rows, last = capsys.readouterr().out.splitlines()
     assert 'margin' in header
@@ -115,7 +115,7 @@ def test_ik_asks_whether_millimetres_or_degrees_were_meant(capsys):
 
 
 @pytest.mark.parametrize('machine', ['robocake', 'ur5'])
-def test_degrees_are_told_from_radians(machine, capsys):
+def test_degrees_are_distinguished_from_radians(machine, capsys):
     assert main(['fk', machine, '0', '0', '90', '0', '0', '0']) == 2
     assert '90 rad is more than a turn' in capsys.readouterr().err
     assert main(['fk', 'ur5', '0', '-6.28', '0', '0', '0', '0']) == 0

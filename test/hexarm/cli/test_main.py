@@ -43,7 +43,7 @@ def test_version_is_that_of_the_package(capsys):
     assert number[0].isdigit()
 
 
-def test_command_without_ros_says_what_it_needs(tmp_path):
+def test_command_without_ros_reports_what_it_needs(tmp_path):
     (tmp_path / 'rclpy.py').write_text('raise ModuleNotFoundError("gone", name="rclpy")\n')
     script = f'import sys; sys.path.insert(0, {str(tmp_path)!r}); import hexarm.cli.main as m; '
     script += "sys.exit(m.main(['up', 'hexapod']))"

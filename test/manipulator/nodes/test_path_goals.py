@@ -99,11 +99,11 @@ def test_too_few_or_too_many_poses_are_refused_by_their_number(count):
 
 
 class Driver:
-    """In place of a supervisor: keeps what is asked for."""
+    """In place of a controller: keeps what is asked for."""
 
     def __init__(self):
         motion = SimpleNamespace(linear=SimpleNamespace(speed=0.02))
-        self.pilot = SimpleNamespace(machine=SimpleNamespace(motion=motion))
+        self.supervisor = SimpleNamespace(machine=SimpleNamespace(motion=motion))
         self.asked, self.refused = [], []
 
     def follow(self, path, refuse, now):
