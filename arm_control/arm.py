@@ -4,11 +4,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from arm_control.chain import JOINTS, Chain, aligned
+from arm_control.chain import JOINTS, Chain, aligned, in_parts
 from arm_control.closed_forms import BRANCHES
 from arm_control.geometry import JOINT_NAMES, JointLimits
 from arm_control.inverse_method import InverseMethod, fitting_method
-from arm_control.numerical import MOST_BRANCHES
+from arm_control.numerical import arm_branches
 from manipulator import _kernel
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
@@ -80,12 +80,9 @@ class SerialArm:
         NaN rows are branches that do not close. k is 8 where there is a closed form; without one
         it is 16, and a branch may be missing.
         """
-        position, rotation = pose.position, pose.rotation
         start = self.rest if near is None else self._checked(near, finite=False)
-        if start.shape[:-1] != position.shape[:-1]:
-            position, rotation, start = aligned(pose, start)
-        found = np.empty((*start.shape[:-1], MOST_BRANCHES, JOINTS))
-        if _kernel.arm_branches(self._numbers, position, rotation, start, found):
+        found, unknown = arm_branches(self._numbers, pose, start)
+        if unknown:
             self._checked(start)
         return found[..., :BRANCHES, :] if self.is_explicit else found
 
@@ -113,7 +110,12 @@ class SerialArm:
         if start.shape[:-1] != position.shape[:-1]:
             position, rotation, start = aligned(pose, start)
         joints = np.empty(start.shape)
-        lost = _kernel.arm_inverse(self._numbers, position, rotation, start, joints)
+        if start.ndim == 1:
+            lost = _kernel.arm_inverse(self._numbers, position, rotation, start, joints)
+        else:
+            flat = (array.reshape(-1, JOINTS) for array in (start, joints))
+            poses = position.reshape(-1, 3), rotation.reshape(-1, 3, 3)
+            lost = in_parts(_kernel.arm_inverse, self._numbers, *poses, *flat)
         if lost:
             self._checked(start)
         return joints, lost

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from arm_control.chain import JOINTS, Chain, aligned
+from arm_control.chain import JOINTS, Chain, aligned, in_parts
 from arm_control.closed_forms import NO_LOOP, ClosedForm, arm_numbers
 from manipulator import _kernel
 from manipulator.arrays import Array
@@ -60,7 +60,7 @@ class Numerical:
 
         A branch may be missed.
         """
-        return arm_branches(self.numbers, pose, near)
+        return arm_branches(self.numbers, pose, near)[0]
 
     def refusal(self, pose: Pose) -> str:
         """How near the best attempt came."""
@@ -102,7 +102,7 @@ class AlmostClosed:
 
     def branches(self, pose: Pose, near: Array) -> Array:
         """All of them and NaN (..., 16, 6); for a pose that has none, what `Numerical` finds."""
-        return arm_branches(self.numbers, pose, near)
+        return arm_branches(self.numbers, pose, near)[0]
 
     def refusal(self, pose: Pose) -> str:
         """Which triangle of the ideal arm does not close, or how near the real one comes."""
@@ -110,12 +110,21 @@ class AlmostClosed:
         return (self.ideal if is_out_of_reach else self.numerical).refusal(pose)
 
 
-def arm_branches(numbers: Array, pose: Pose, near: Array) -> Array:
-    """All branches (..., 16, 6) of an arm, by whole turns nearest to `near` within its ranges."""
-    position, rotation, start = aligned(pose, near)
+def arm_branches(numbers: Array, pose: Pose, near: Array) -> tuple[Array, int]:
+    """All branches (..., 16, 6) of an arm, by whole turns nearest to `near` within its ranges.
+
+    And how many of the joints to be near to are not finite.
+    """
+    position, rotation = pose.position, pose.rotation
+    start = np.ascontiguousarray(near, np.float64)
+    if start.shape[:-1] != position.shape[:-1]:
+        position, rotation, start = aligned(pose, start)
     found = np.empty((*start.shape[:-1], MOST_BRANCHES, JOINTS))
-    _kernel.arm_branches(numbers, position, rotation, start, found)
-    return found
+    if start.ndim == 1:
+        return found, _kernel.arm_branches(numbers, position, rotation, start, found)
+    rows = found.reshape(-1, MOST_BRANCHES, JOINTS)
+    flat = position.reshape(-1, 3), rotation.reshape(-1, 3, 3), start.reshape(-1, JOINTS)
+    return found, in_parts(_kernel.arm_branches, numbers, *flat, rows)
 
 
 TRIED = 12
