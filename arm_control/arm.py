@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from arm_control.chain import JOINTS, Chain, aligned, in_parts
+from arm_control.chain import JOINTS, Chain, aligned, flat, in_parts
 from arm_control.closed_forms import BRANCHES
 from arm_control.geometry import JOINT_NAMES, JointLimits
 from arm_control.inverse_method import InverseMethod, fitting_method
@@ -105,17 +105,14 @@ class SerialArm:
 
     def _nearest(self, pose: Pose, near: Array | None) -> tuple[Array, int]:
         """Joints (..., 6), and how many of them are NaN: as all are near what is not finite."""
-        position, rotation = pose.position, pose.rotation
         start = self.rest if near is None else self._checked(near, finite=False)
-        if start.shape[:-1] != position.shape[:-1]:
-            position, rotation, start = aligned(pose, start)
-        joints = np.empty(start.shape)
-        if start.ndim == 1:
-            lost = _kernel.arm_inverse(self._numbers, position, rotation, start, joints)
+        if start.ndim == 1 and pose.position.ndim == 1:
+            joints = np.empty(JOINTS)
+            lost = _kernel.arm_inverse(self._numbers, pose.position, pose.rotation, start, joints)
         else:
-            flat = (array.reshape(-1, JOINTS) for array in (start, joints))
-            poses = position.reshape(-1, 3), rotation.reshape(-1, 3, 3)
-            lost = in_parts(_kernel.arm_inverse, self._numbers, *poses, *flat)
+            poses = aligned(pose, start)
+            joints = np.empty(poses[-1].shape)
+            lost = in_parts(_kernel.arm_inverse, self._numbers, *flat(poses), *flat((joints,)))
         if lost:
             self._checked(start)
         return joints, lost

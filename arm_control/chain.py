@@ -87,6 +87,12 @@ def aligned(pose: Pose, joints: Array) -> tuple[Array, Array, Array]:
     )
 
 
+def flat(arrays: tuple[Array, ...]) -> list[Array]:
+    """Positions, rotations and joints (..., 3; 3, 3; 6) in one row each."""
+    positions = arrays[0].shape[:-1]
+    return [array.reshape(-1, *array.shape[len(positions) :]) for array in arrays]
+
+
 PART = 512
 """Poses of one call: 50 ms where an arm has no closed form, and then Ctrl-C is received."""
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from arm_control.chain import JOINTS, Chain, aligned, in_parts
+from arm_control.chain import JOINTS, Chain, aligned, flat, in_parts
 from arm_control.closed_forms import NO_LOOP, ClosedForm, arm_numbers
 from manipulator import _kernel
 from manipulator.arrays import Array
@@ -115,16 +115,14 @@ def arm_branches(numbers: Array, pose: Pose, near: Array) -> tuple[Array, int]:
 
     And how many of the joints to be near to are not finite.
     """
-    position, rotation = pose.position, pose.rotation
     start = np.ascontiguousarray(near, np.float64)
-    if start.shape[:-1] != position.shape[:-1]:
-        position, rotation, start = aligned(pose, start)
-    found = np.empty((*start.shape[:-1], MOST_BRANCHES, JOINTS))
-    if start.ndim == 1:
-        return found, _kernel.arm_branches(numbers, position, rotation, start, found)
+    if start.ndim == 1 and pose.position.ndim == 1:
+        found = np.empty((MOST_BRANCHES, JOINTS))
+        return found, _kernel.arm_branches(numbers, pose.position, pose.rotation, start, found)
+    poses = aligned(pose, start)
+    found = np.empty((*poses[-1].shape[:-1], MOST_BRANCHES, JOINTS))
     rows = found.reshape(-1, MOST_BRANCHES, JOINTS)
-    flat = position.reshape(-1, 3), rotation.reshape(-1, 3, 3), start.reshape(-1, JOINTS)
-    return found, in_parts(_kernel.arm_branches, numbers, *flat, rows)
+    return found, in_parts(_kernel.arm_branches, numbers, *flat(poses), rows)
 
 
 TRIED = 12
