@@ -2,6 +2,7 @@
    leg by leg. */
 #include <string.h>
 
+#include "least_distance.h"
 #include "limits.h"
 #include "matrix6.h"
 #include "newton.h"
@@ -222,6 +223,12 @@ static Py_ssize_t call_twist_between(real *const *a, Py_ssize_t items)
 }
 FUNCTION(twist_between, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, 6})
 
+static Py_ssize_t call_least_distance(real *const *a, Py_ssize_t items)
+{
+    return least_distance(a[0], (const real(*)[6])a[1], a[2], items, a[3]);
+}
+FUNCTION(least_distance, {WHOLE, 6}, {ITEMS, 6}, {ITEMS, 1}, {WRITTEN, 1})
+
 PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(crank_inverse),
     METHOD(crank_elbows),
@@ -239,5 +246,6 @@ PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(rotation_log),
     METHOD(moved),
     METHOD(twist_between),
+    METHOD(least_distance),
     {NULL, NULL, 0, NULL},
 };

@@ -88,3 +88,6 @@ def twist_between(
     position: Array, rotation: Array, to_position: Array, to_rotation: Array, twist: Array
 ) -> int:
     """0; `twist` is written: kernel/se3.h."""
+
+def least_distance(target: Array, normals: Array, slack: Array, multipliers: Array) -> int:
+    """1 where a point is found, else 0; `multipliers` are written: kernel/least_distance.h."""

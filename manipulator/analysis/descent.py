@@ -18,6 +18,7 @@ WIDE = 30.0  # times that at first, since next to where a leg just closes slopes
 SETTLED = 1e-7  # a step that changes nothing, likewise
 SHARES = 0.5 ** np.arange(10)
 RESTORATIONS = 2
+TINY = 1e-12
 LEAST_CURVATURE = 0.2
 
 
@@ -111,7 +112,9 @@ class Descent:
         active = weights > 0.0
         if active.any():
             rows = np.flatnonzero(here.rows)[active]
-            inverse = np.linalg.pinv(here.normals[active]).T
+            # Active normals are independent: else some would have no weight.
+            normals = here.normals[active]
+            inverse = np.linalg.solve(normals @ normals.T + TINY * np.eye(len(normals)), normals)
             for _ in range(RESTORATIONS):
                 margins = read_limits(self.machine, trials).margins[:, rows]
                 lack = self.clearance - margins / here.steepness[active]
