@@ -1,18 +1,20 @@
 """The reachable pose nearest to one that is out of reach: docs/workspace.md, section 2."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from manipulator.analysis.descent import descended
 from manipulator.analysis.joint_descent import nearest_by_joints
 from manipulator.analysis.readings import displaced, distance
 from manipulator.analysis.way import admits, are_linked, is_connected, is_joint_box, way_home_share
 from manipulator.arrays import Array
+from manipulator.limits.limit import Search
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
 MOST_STEPS = 60
+CLEARANCE = 1e-6  # how far inside each limit an answer stays, by the characteristic length
+WIDE = 30.0  # times that at first, since next to where a leg just closes slopes have no end
 KICKS, KICK_POSES, KICK_RADII, KICK_GAIN = 12, 1500, (3e-2, 1e-2, 1e-3, 1e-4, 1e-5), 1e-5
 
 
@@ -35,7 +37,7 @@ def nearest_reachable(machine: Machine, target: Pose, most_steps: int = MOST_STE
         pose = nearest_by_joints(machine, target)
         return Nearest(pose, float(distance(machine, pose, target)))
     starts = _starts(machine, target)
-    near = [descended(machine, target, start, most_steps) for start in starts]
+    near = [_descended(machine, target, start, most_steps) for start in starts]
     found = [(float(distance(machine, pose, target)), k) for k, pose in enumerate(near)]
     for _, k in sorted(found):
         end = _settled(machine, target, near[k], most_steps)
@@ -58,8 +60,16 @@ def _settled(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Po
         if not nearer.any():
             break
         best = int(np.argmin(np.where(nearer, distances, np.inf)))
-        pose = descended(machine, target, trials[best], most_steps)
+        pose = _descended(machine, target, trials[best], most_steps)
     return pose
+
+
+def _descended(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Pose:
+    """An admitted pose at a local minimum of the distance, from the admitted `start`."""
+    clearance = CLEARANCE * machine.kinematics.characteristic_length
+    wide = Search(target, WIDE * clearance, most_steps)
+    pose = machine.constraints.descended(wide, start)
+    return machine.constraints.descended(replace(wide, clearance=clearance), pose)
 
 
 def _starts(machine: Machine, target: Pose) -> list[Pose]:
