@@ -35,10 +35,11 @@ from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
 from manipulator.states import MotionResult
 from manipulator.teleop.arbiter import PEOPLE
-from manipulator.trajectory.controller import MEASUREMENT_DELAY, MotionController, lag_of
+from manipulator.trajectory.controller import MotionController, lag_of
 from manipulator.trajectory.following_error import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.motion_status import MotionStatus
+from manipulator.trajectory.supervisor import MEASUREMENT_DELAY
 
 DELAY = 'age in seconds of a measured pose by the time that its correction moves the joints'
 SINGULARITY = 'what a jogged arm does where it cannot keep its direction: stop or slide'
@@ -49,6 +50,10 @@ TOLERANCE = (
 GOAL_TOLERANCE = (
     'how far a measured joint may be from a goal that is reached (rad or m); '
     '0: 1 % of its range, at most 0.5 degrees'
+)
+POSE_TOLERANCE = (
+    'how far the pose of measured joints may be from a goal that is reached (m; turns in '
+    'proportion); 0: 0.1 % of the characteristic length'
 )
 GOAL_MOTION = 'how a machine at rest goes to goal_pose: line, joint, or any (a line where it can)'
 
@@ -82,13 +87,14 @@ class TrajectoryNode(Node):
         rate = declare(self, 'rate', 100.0, 'setpoints per second (Hz)', (10.0, 500.0))
         tolerance = declare(self, 'following_tolerance', 0.0, TOLERANCE, (0.0, 10.0))
         goal_tolerance = declare(self, 'goal_tolerance', 0.0, GOAL_TOLERANCE, (0.0, 10.0))
+        distance = declare(self, 'pose_tolerance', 0.0, POSE_TOLERANCE, (0.0, 1.0))
         motion_of(declare(self, 'goal_motion', Motion.LINE.value, GOAL_MOTION, is_read_only=False))
         delay = declare(self, 'measurement_delay', MEASUREMENT_DELAY, DELAY, (0.0, 1.0))
         singularity = declare(self, 'jog_singularity', JOG_SINGULARITIES[0], SINGULARITY)
         self.add_on_set_parameters_callback(checked_parameters)
         dt, self._worker = 1.0 / rate, PlanningThread()
         machine = replace(load(name), jog_singularity=singularity)
-        tolerances = Tolerances.of(machine, tolerance, goal_tolerance)
+        tolerances = Tolerances.of(machine, tolerance, goal_tolerance, distance)
         self._controller = MotionController(machine, dt, tolerances, self._worker, delay)
         self._connect()
         PathGoals(self, self._controller)

@@ -23,7 +23,7 @@ from manipulator.trajectory.following_error import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.motion_status import STOPPED, MotionNews, MotionStatus
 from manipulator.trajectory.path_planning import PathGoal, PathPlanning
-from manipulator.trajectory.supervisor import MotionSupervisor
+from manipulator.trajectory.supervisor import MEASUREMENT_DELAY, MotionSupervisor
 from manipulator.trajectory.teleop import Teleop
 from manipulator.trajectory.worker import InPlace, Worker
 
@@ -67,9 +67,6 @@ def lag_of(supervisor: MotionSupervisor) -> dict[str, float]:
     return {'lag_mm': 1e3 * shift, 'lag_deg': degrees(turn)}
 
 
-MEASUREMENT_DELAY = 0.06
-"""Seconds from a measured pose to the moment that its correction moves the joints, by default."""
-
 OVERTAKING = 0.5
 """Seconds by which a goal may overtake a path, which takes longer to send, or a path a goal."""
 
@@ -102,7 +99,7 @@ class MotionController:
         delay: float = MEASUREMENT_DELAY,
     ) -> None:
         """tolerances, worker: see `MotionSupervisor`; delay: see `Teleop`."""
-        self.supervisor = MotionSupervisor(machine, dt, tolerances, worker)
+        self.supervisor = MotionSupervisor(machine, dt, tolerances, worker, delay)
         self.teleop = Teleop(self.supervisor, delay)
         self.jitter = Jitter(dt)
         self.news = MotionNews()
