@@ -22,6 +22,7 @@ from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.following_error import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.motion_status import STOPPED, MotionNews, MotionStatus
+from manipulator.trajectory.orientation import Orientation, OrientationRule
 from manipulator.trajectory.path_planning import PathGoal, PathPlanning
 from manipulator.trajectory.supervisor import MEASUREMENT_DELAY, MotionSupervisor
 from manipulator.trajectory.teleop import Teleop
@@ -143,6 +144,12 @@ class MotionController:
         self._check_order(path.stamp, now)
         self._early.take(lambda: self._paths.begin(path), refuse, now)
 
+    def orientation_rule(self, orientation: Orientation, is_of_platform: bool) -> OrientationRule:
+        """For poses of the platform in the base frame, or of the pivot in the work frame."""
+        frames = self.supervisor.machine.frames
+        point = self.teleop.point_in(frames, is_in_work=not is_of_platform)
+        return OrientationRule(orientation, point)
+
     def home(self, stamp: float, now: float) -> None:
         """A goal at home, along a line or else by a joint move."""
         kinematics = self.supervisor.machine.kinematics
@@ -225,9 +232,13 @@ class MotionController:
 
     def _pursue(self, goal: Goal, refuse: Refuse, now: float, is_of_platform: bool) -> None:
         def act() -> None:
-            frames = self.supervisor.machine.frames
-            pose = frames.pivot(goal.pose) if is_of_platform else goal.pose
-            self.supervisor.executor.pursue(replace(goal, pose=pose))
+            frames, executor = self.supervisor.machine.frames, self.supervisor.executor
+            start = executor.pursued or executor.state.pose
+            if is_of_platform:
+                oriented = goal.orientation.applied(goal.pose, frames.platform(start))
+                executor.pursue(replace(goal, pose=frames.pivot(oriented)))
+            else:
+                executor.pursue(replace(goal, pose=goal.orientation.applied(goal.pose, start)))
 
         self._early.take(act, refuse, now)
 

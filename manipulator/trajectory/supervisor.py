@@ -7,8 +7,6 @@ ends that drops every goal; later motion begins where the joints then are.
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from manipulator.arrays import Array
 from manipulator.deadlines import POSE_DEADLINE, POSE_PAUSE, STATE_DEADLINE
 from manipulator.errors import Refused
