@@ -16,26 +16,16 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 from std_srvs.srv import SetBool, Trigger
 
-from manipulator.errors import ManipulatorError, Refused
+from manipulator.errors import ManipulatorError, Refused, Stopped, TimedOut
 from manipulator.nodes.messages import pose_message, seconds
 from manipulator.nodes.path_goals import path_message
 from manipulator.nodes.qos import COMMAND, LATCHED
 from manipulator.pose import Pose
 from manipulator.states import UNKNOWN, MachineState, MotionMode, MotionResult
 
-"""The state of a machine that has said none."""
-
 MOST_REQUESTS, ANSWERED_WITHIN = 4, 4.0
 DRIVEN_WITHIN = 15.0
 """Seconds until a machine whose servos are on takes goals: its nodes may still be starting."""
-
-
-class NotReady(ManipulatorError, TimeoutError):
-    """The graph did not do in time what it was waited for."""
-
-
-class Stopped(ManipulatorError):
-    """The machine stopped before its goal: by a stop, or by a lost link."""
 
 
 class Client:
@@ -94,14 +84,14 @@ class Client:
         seconds: float,
         progress: Callable[[], object] = lambda: None,
     ) -> None:
-        """Receives messages until `is_so`; NotReady names what did not come.
+        """Receives messages until `is_so`; TimedOut names what did not come.
 
         The seconds begin again whenever `progress` changes.
         """
         end, before = time.monotonic() + seconds, progress()
         while not is_so():
             if time.monotonic() > end:
-                raise NotReady(f'waited {seconds:g} s in vain for {what} ({self.summary})')
+                raise TimedOut(f'waited {seconds:g} s in vain for {what} ({self.summary})')
             self.spin(0.005)
             if (now := progress()) != before:
                 end, before = time.monotonic() + seconds, now
@@ -169,7 +159,7 @@ class Client:
     def go_to(self, pose: Pose, seconds: float = 10.0) -> None:
         """Publishes a goal and waits until it is reached; Refused or Stopped with the reason.
 
-        However long that takes: NotReady after `seconds` in which nothing moves or is received.
+        However long that takes: TimedOut after `seconds` in which nothing moves or is received.
         """
         self.wait('a subscriber on goal_pose', lambda: self._reaches(self._goals), 10.0)
         stamp = f'{self.publish_goal(pose):.9f}'
@@ -247,10 +237,10 @@ class Client:
         """The service's response; requested again where it is lost, as just after discovery."""
         for _ in range(MOST_REQUESTS):
             future = client.call_async(request)
-            with contextlib.suppress(NotReady):
+            with contextlib.suppress(TimedOut):
                 self.wait(what, future.done, ANSWERED_WITHIN)
                 return future.result()
-        raise NotReady(f'no answer: {what} was requested {MOST_REQUESTS} times ({self.summary})')
+        raise TimedOut(f'no answer: {what} was requested {MOST_REQUESTS} times ({self.summary})')
 
     def _on_machine_state(self, message: DiagnosticStatus) -> None:
         self.machine_state = message

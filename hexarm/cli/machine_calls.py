@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from hexarm.cli.statuses import INTERRUPTED, REFUSED
 from hexarm.cli.up import Interrupted, StopSignal
 from hexarm.namespaces import NoMachine, namespace_of, no_machine_in
-from manipulator.errors import Refused
+from manipulator.errors import Refused, TimedOut
 from manipulator.states import UNKNOWN, MachineState
 
 if TYPE_CHECKING:
@@ -91,11 +91,9 @@ def remedy(client: 'Client', namespace: str) -> str:
 
 def await_machine(client: 'Client') -> None:
     """Waits for the machine's state; NoMachine names the namespace and domain."""
-    from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
-
     try:
         client.wait('a machine', lambda: client.machine_state.message != UNKNOWN, RECEIVED_WITHIN)
-    except NotReady as error:
+    except TimedOut as error:
         raise NoMachine(
             no_machine_in(client.node.get_namespace(), client.topics, client.domain)
         ) from error

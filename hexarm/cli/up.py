@@ -20,7 +20,7 @@ from hexarm.graph import (
 from hexarm.machines import described, family, load, read
 from hexarm.namespaces import NAMESPACE
 from hexarm.panel_process import panel_process, panel_words
-from manipulator.errors import ManipulatorError, Refused
+from manipulator.errors import ManipulatorError, Refused, TimedOut
 from manipulator.states import UNKNOWN, MachineState, MotionMode
 
 if TYPE_CHECKING:
@@ -242,13 +242,11 @@ def park(client: 'Client', stop: StopSignal) -> None:
 
 
 def _go_to_park(client: 'Client') -> None:
-    """Raises Refused, Stopped or NotReady where it does not get there."""
-    from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
-
+    """Raises Refused, Stopped or TimedOut where it does not get there."""
     if client.machine_state.message != MachineState.ENABLED:
         raise Refused(f'the machine is {client.machine_state.message}')
     print('parking; Ctrl-C again switches the servos off where they are', flush=True)
-    with contextlib.suppress(NotReady):
+    with contextlib.suppress(TimedOut):
         client.wait(
             'the pose', lambda: client.motion('mode') not in ('', MotionMode.DISABLED), 1.0
         )

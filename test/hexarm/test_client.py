@@ -10,8 +10,8 @@ pytest.importorskip('rclpy')
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from hexarm import client
-from hexarm.client import DRIVEN_WITHIN, Client, NotReady
-from manipulator.errors import Refused
+from hexarm.client import DRIVEN_WITHIN, Client
+from manipulator.errors import Refused, TimedOut
 
 SAID_EVERY = 0.5
 
@@ -77,11 +77,11 @@ def test_enabling_ends_with_the_reason_where_the_machine_is_stopped_meanwhile(en
 
 
 def test_a_machine_that_is_enabled_but_not_driven_is_not_waited_for_for_ever(enabling):
-    with pytest.raises(NotReady, match='waited 15 s in vain for enabling'):
+    with pytest.raises(TimedOut, match='waited 15 s in vain for enabling'):
         enabling(lambda seconds: ('enabled', '', 'disabled')).enable()
 
 
 def test_a_board_that_is_not_there_is_named(enabling):
     gone = ('disconnected', '/dev/ttyUSB7 does not exist', '')
-    with pytest.raises(NotReady, match=r'in vain for the board .*/dev/ttyUSB7 does not exist'):
+    with pytest.raises(TimedOut, match=r'in vain for the board .*/dev/ttyUSB7 does not exist'):
         enabling(lambda seconds: gone).enable()

@@ -11,7 +11,7 @@ import pytest
 from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import Float64
 
-from hexarm.client import NotReady
+from manipulator.errors import TimedOut
 from manipulator.nodes.messages import pose_of
 from manipulator.nodes.qos import LATCHED
 from manipulator.pose import Pose
@@ -187,7 +187,7 @@ def test_slow_moves_are_waited_for_and_what_stands_still_is_given_up(
     status, said = end(start('publish_pose', 0, 0, 0.043, '--patience', 1.5))
     assert (status, said) == (1, 'not there, and nothing has moved for 1.5 s\n')
     monkeypatch.setattr(client, 'patience', 0.0)
-    with pytest.raises(NotReady, match=r'waited 1.5 s in vain for reaching the goal .*moving'):
+    with pytest.raises(TimedOut, match=r'waited 1.5 s in vain for reaching the goal .*moving'):
         client.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.042)), seconds=1.5)
     assert end(start('stop'))[0] == 0
 
