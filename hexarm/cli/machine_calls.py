@@ -9,15 +9,12 @@ from typing import TYPE_CHECKING
 
 from hexarm.cli.statuses import INTERRUPTED, REFUSED
 from hexarm.cli.up import Interrupted, StopSignal
-from hexarm.namespaces import NoMachine, namespace_of, no_machine_in
-from manipulator.errors import Refused, TimedOut
-from manipulator.states import UNKNOWN, MachineState
+from hexarm.namespaces import namespace_of
+from manipulator.errors import Refused
+from manipulator.states import MachineState
 
 if TYPE_CHECKING:
     from hexarm.client import Client
-
-RECEIVED_WITHIN = 8.0
-"""Seconds in which the bridge of a running machine publishes its state."""
 
 SETTLES = 0.5
 """Seconds in which the new state is received, too."""
@@ -68,7 +65,7 @@ def run(call: Call, arguments: argparse.Namespace) -> int:
     stop = StopSignal()
     try:
         with Client(arguments.namespace, stop.check) as client:
-            await_machine(client)
+            client.await_machine()
             answer = call.act(client)
             client.spin(SETTLES)
             words = f' ({answer})' if answer else ''
@@ -87,13 +84,3 @@ def remedy(client: 'Client', namespace: str) -> str:
     if client.machine_state.message not in (MachineState.STOPPED, MachineState.FAULT):
         return ''
     return f'. Look at the machine, then: hexarm clear {namespace}'
-
-
-def await_machine(client: 'Client') -> None:
-    """Waits for the machine's state; NoMachine names the namespace and domain."""
-    try:
-        client.wait('a machine', lambda: client.machine_state.message != UNKNOWN, RECEIVED_WITHIN)
-    except TimedOut as error:
-        raise NoMachine(
-            no_machine_in(client.node.get_namespace(), client.topics, client.domain)
-        ) from error

@@ -28,10 +28,6 @@ if TYPE_CHECKING:
 
 SETTLES = 1.0
 """Seconds within which an earlier STOP is sent to the board, and obeyed."""
-LOOKS = 0.7
-"""Seconds in which a graph that runs already is found: at most 0.46 s in 64 tries."""
-OURS = ('trajectory', 'ik', 'pose', 'serial_bridge')
-"""Nodes of which a namespace has one; a fake board may be there for `--port` to name."""
 SERVOS_OFF = (
     UNKNOWN,
     MachineState.DISCONNECTED,
@@ -79,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     with parts, Client(namespace, interrupt) as client:
         parts.start_processes([*parts.board, *pages])
-        refuse_second(client, namespace)
+        client.refuse_second()
         print(described(machine), flush=True)
         parts.start_nodes(arguments.separate)
         try:
@@ -159,17 +155,6 @@ def check(name: str, machine: str, namespace: str | None) -> None:
         raise Refused(f'both {name!r} and --machine {machine}: name one machine')
     if name in MACHINES and family(machine) != name:
         raise Refused(f'{machine} is a {read(machine).kind}: hexarm up {machine}')
-
-
-def refuse_second(client: 'Client', namespace: str) -> None:
-    """Raises Refused where a graph runs in this namespace: both would receive every call."""
-    client.spin(LOOKS)
-    found = client.node.get_node_names_and_namespaces()
-    if any(name in OURS and space.strip('/') == namespace.strip('/') for name, space in found):
-        raise Refused(
-            f'a graph runs in /{namespace.strip("/")} already: end it, or take another '
-            '--namespace or ROS_DOMAIN_ID (other computers on the network count)'
-        )
 
 
 class StopSignal:
