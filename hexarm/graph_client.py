@@ -93,7 +93,9 @@ class GraphClient:
         end, before = time.monotonic() + seconds, progress()
         while not is_so():
             if time.monotonic() > end:
-                raise TimedOut(f'waited {seconds:g} s in vain for {what} ({self.summary})')
+                raise TimedOut(
+                    f'timed out after {seconds:g} s, waiting for {what} ({self.summary})'
+                )
             self.spin(0.005)
             if (now := progress()) != before:
                 end, before = time.monotonic() + seconds, now

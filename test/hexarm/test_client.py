@@ -79,13 +79,13 @@ def test_enabling_ends_with_the_reason_where_the_machine_is_stopped_meanwhile(en
 
 
 def test_a_machine_that_is_enabled_but_not_driven_is_not_waited_for_for_ever(enabling):
-    with pytest.raises(TimedOut, match='waited 15 s in vain for enabling'):
+    with pytest.raises(TimedOut, match='timed out after 15 s, waiting for enabling'):
         enabling(lambda seconds: ('enabled', '', 'disabled')).enable()
 
 
 def test_a_board_that_is_not_there_is_named(enabling):
     gone = ('disconnected', '/dev/ttyUSB7 does not exist', '')
-    with pytest.raises(TimedOut, match=r'in vain for the board .*/dev/ttyUSB7 does not exist'):
+    with pytest.raises(TimedOut, match=r'waiting for the board .*/dev/ttyUSB7 does not exist'):
         enabling(lambda seconds: gone).enable()
 
 

@@ -88,7 +88,7 @@ class PanelNode(Node):
         self._machine = load(name)
         gripper = gripper_of(name)
         self._joystick = JoystickSocket(self._why_still)
-        self._subscriptions = MachineSubscriptions(self, self._machine, gripper)
+        self._received = MachineSubscriptions(self, self._machine, gripper)
         self._topics = JogTopics(self, 'panel')
         self._requests = RequestClient(self, self._joystick.stop, self._topics.choose, self._grip)
         limits = self._machine.motion
@@ -126,13 +126,13 @@ class PanelNode(Node):
         if self._is_time_for(GOAL_EVERY):
             self._requests.send_goal()
         is_watched = bool(self._server.get_clients())
-        self._subscriptions.watch(is_watched)
+        self._received.watch(is_watched)
         if is_watched:
             self._draw()
 
     def _draw(self) -> None:
         if self._is_time_for(DRAW_EVERY):
-            self._view = self._subscriptions.view()
+            self._view = self._received.view()
             self._page.show(self._view, self._requests.notice)
         if self._is_time_for(SAMPLE_EVERY):
             self._page.note(self._view, time.monotonic())
@@ -190,7 +190,7 @@ class PanelNode(Node):
 
     def _why_still(self) -> str:
         """What a hand on the joystick should know."""
-        state = self._subscriptions.machine_state.message
+        state = self._received.machine_state.message
         return '' if state == MachineState.ENABLED else f'the machine is {state}'
 
     def _on_speed(self, message: Float64) -> None:
