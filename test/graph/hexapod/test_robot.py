@@ -176,7 +176,9 @@ def test_a_motion_that_does_not_go_on_times_out_and_is_ended(robot, enabled, ove
     def wait_in_vain():
         override(0.0)
         enabled.spin(0.3)
-        with pytest.raises(TimedOut, match=r'timed out after 1.5 s, waiting for reaching the goal'):
+        with pytest.raises(
+            TimedOut, match=r'timed out after 1.5 s, waiting for reaching the goal'
+        ):
             robot.move_to((0.0, 0.0, 0.043), timeout=1.5)
         override(1.0)
         enabled.wait_while_driven('rest', lambda: has_stopped(enabled))
