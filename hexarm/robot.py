@@ -111,7 +111,7 @@ class Robot:
     ) -> None:
         """Moves to the named coordinates (m, rad); the others keep their commanded values."""
         named = {'x': x, 'y': y, 'z': z, 'roll': roll, 'pitch': pitch, 'yaw': yaw}
-        goal = moved_to(self._client.destination(), named)
+        goal = moved_to(self.target, named)
         self.move_to(goal, speed=speed, wait=wait, timeout=timeout, progress=progress)
 
     def move_to(
@@ -216,6 +216,11 @@ class Robot:
     def pose(self) -> Pose:
         """The measured pose, received after this call."""
         return pose_of(self._client.fresh('pose'))
+
+    @property
+    def target(self) -> Pose:
+        """The commanded pose: the end of this program's motion under way, else the setpoint."""
+        return self._client.destination()
 
     @property
     def joints(self) -> dict[str, float]:

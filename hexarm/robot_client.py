@@ -67,7 +67,8 @@ class RobotClient(Client):
         """The pose that the machine is commanded to; Refused where it does not take goals."""
         self.receive()
         if self.machine_state.message != MachineState.ENABLED:
-            raise Refused(self.summary)
+            space = self.node.get_namespace()
+            raise Refused(f'{space} takes no goals: {self.summary}')
         return pose_of(self.fresh('setpoint'))
 
     def destination(self) -> Pose:

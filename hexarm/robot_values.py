@@ -21,8 +21,9 @@ COORDINATES = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
 
 @dataclass(frozen=True)
 class Limits:
-    """Of a machine: each joint's range and speed (rad or m, per s), the platform's speeds."""
+    """Of a machine: each joint's unit ('rad', 'm'), range and speed, the platform's speeds."""
 
+    units: Mapping[str, str]
     joints: Mapping[str, tuple[float, float]]
     joint_speeds: Mapping[str, float]
     speed: float
@@ -35,6 +36,7 @@ class Limits:
         low, high = (bounds.tolist() for bounds in machine.joint_ranges)
         speeds = np.broadcast_to(machine.motion.joint.speed, len(names)).tolist()
         return cls(
+            dict.fromkeys(names, machine.kinematics.joint_unit),
             dict(zip(names, zip(low, high, strict=True), strict=True)),
             dict(zip(names, speeds, strict=True)),
             machine.motion.linear.speed,

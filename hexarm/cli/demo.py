@@ -39,9 +39,7 @@ Observed = TypeVar('Observed')
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser(
-        'demo', help='drive the RoboCake and an arm on fake boards, within a minute'
-    )
+    parser = commands.add_parser('demo')
     parser.add_argument(
         '--picture', type=picture_file, default=Path('demo.png'), help='where to save it'
     )

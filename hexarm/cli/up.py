@@ -2,6 +2,8 @@
 
 import argparse
 import contextlib
+import glob
+import os
 import signal
 import sys
 from collections.abc import Callable
@@ -35,6 +37,8 @@ SERVOS_OFF = (
     MachineState.DISARMED,
 )
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
+BOARDS = ('fake', 'simavr')
+"""In place of a port."""
 NAME = 'a shipped name or the path of a machine file'
 SHORT = ', '.join(f'{kind} is short for {name}' for kind, name in MACHINES.items())
 
@@ -49,7 +53,7 @@ class Interrupted(ManipulatorError):
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('up', help='start a whole graph and enable the servos')
+    parser = commands.add_parser('up')
     parser.add_argument('name', metavar='MACHINE', help=f'{NAME}; {SHORT}')
     parser.add_argument('--machine', help=f'{NAME}, after hexapod or arm')
     parser.add_argument('--port', default='fake', help="a device, 'fake' (default) or 'simavr'")
@@ -65,6 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     machine = arguments.machine or MACHINES.get(arguments.name, arguments.name)
     check(arguments.name, machine, arguments.namespace)
+    check_port(arguments.port)
     namespace = arguments.namespace or family(machine)
     pages = [panel_process(machine)] if arguments.panel else []
     stop, parts = StopSignal(), Parts(machine, namespace, arguments.port)
@@ -155,6 +160,20 @@ def check(name: str, machine: str, namespace: str | None) -> None:
         raise Refused(f'both {name!r} and --machine {machine}: name one machine')
     if name in MACHINES and family(machine) != name:
         raise Refused(f'{machine} is a {read(machine).kind}: hexarm up {machine}')
+
+
+def check_port(port: str) -> None:
+    """Raises Refused for a port that does not exist, or that this user may not open."""
+    if port in BOARDS:
+        return
+    if not os.path.exists(port):
+        there = sorted(glob.glob('/dev/serial/by-id/*') + glob.glob('/dev/tty[AU][CS][MB]*'))
+        raise Refused(
+            f'port {port} does not exist: is the board connected? '
+            f'Ports: {", ".join(there) or "none"}, or {" or ".join(BOARDS)}'
+        )
+    if not os.access(port, os.R_OK | os.W_OK):
+        raise Refused(f'port {port} is not permitted: add yourself to the group dialout')
 
 
 class StopSignal:
