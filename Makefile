@@ -6,9 +6,11 @@ BIN := $(ENV)/bin
 # (test/conftest.py). In a worker numpy has one thread.
 PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q
 
+LIBRARIES := manipulator/_kernel.abi3.so bridge/_board.abi3.so
+
 .PHONY: demo check test lint bench soak clean
 
-demo: $(ENV)/demo
+demo: $(ENV)/demo $(LIBRARIES)
 	@echo 'Both machines on fake boards: about a minute.'
 	@$(BIN)/hexarm demo
 
@@ -20,14 +22,14 @@ test: check
 	@echo 'Tests that start graphs, a browser, installations: 3.5 minutes on two quiet cores.'
 	@$(PYTEST) -n auto --dist loadfile -m processes
 
-lint: $(ENV)/ready
+lint: $(ENV)/ready $(LIBRARIES)
 	@echo 'Lint and types: half a minute.'
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy
 
-bench: $(ENV)/peers   # a quiet computer, please: some ten minutes
+bench: $(ENV)/peers $(LIBRARIES)   # a quiet computer, please: some ten minutes
 	@$(BIN)/python -m bench $(if $(WRITE),--write $(WRITE))
 
-soak: $(ENV)/ready
+soak: $(ENV)/ready $(LIBRARIES)
 	@SOAK_SECONDS=600 $(PYTEST) -n auto -s test/world/test_soak.py && $(BIN)/python -m bench.soak
 
 # The libraries that the bench compares with; without them their rows say so.
@@ -35,6 +37,11 @@ $(ENV)/peers: $(ENV)/ready
 	@echo 'Installing the libraries to compare with: about half a minute, once.'
 	@$(BIN)/python -m pip install --disable-pip-version-check -e '.[bench]' >$(ENV)/peers.log 2>&1 \
 	  && touch $@ || echo 'They could not be installed, see $(ENV)/peers.log: the table says which are missing.' >&2
+
+# What pip has built is built again after a change of its sources.
+$(LIBRARIES) &: $(wildcard kernel/*.[ch] firmware/core/*.[ch] firmware/host/*.[ch]) build_backend.py | $(ENV)/demo
+	@echo 'Building the C libraries anew.'
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps -e . && touch $(LIBRARIES)
 
 $(ENV)/demo: setup.py pyproject.toml environment.sh
 	@./environment.sh $(ENV) demo

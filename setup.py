@@ -2,10 +2,22 @@
 
 from pathlib import Path
 
-from setuptools import find_packages, setup
+from setuptools import Extension, find_packages, setup
+from setuptools.command.build_ext import build_ext
+
+from build_backend import LIBRARIES, build
 
 NAME = 'hexarm'
 PACKAGES = ['manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm']
+
+
+class BuildLibraries(build_ext):
+    """Builds the C libraries by their own commands: setuptools' need Python's headers."""
+
+    def build_extension(self, ext: Extension) -> None:
+        """Compiles one to where setuptools wants it."""
+        build(ext.name, Path(self.get_ext_fullpath(ext.name)))
+
 
 setup(
     name=NAME,
@@ -14,6 +26,12 @@ setup(
     license='Apache-2.0',
     python_requires='>=3.10',
     packages=find_packages(include=[pattern for r in PACKAGES for pattern in (r, f'{r}.*')]),
+    ext_modules=[
+        Extension(name, library.files('*.c'), depends=library.files('*.h'), py_limited_api=True)
+        for name, library in LIBRARIES.items()
+    ],
+    cmdclass={'build_ext': BuildLibraries},
+    options={'bdist_wheel': {'py_limited_api': 'cp310'}},
     package_data={'hexarm': ['*.xml', 'panel/joystick.html']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
@@ -50,6 +68,8 @@ setup(
             'ikpy>=3.4',
             'mink>=1.0',
             'daqp>=0.5',
+            'EAIK>=1.2',
+            'pytracik>=0.0.3',
         ],
         'test': [
             'pytest>=8.2',

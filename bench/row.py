@@ -30,3 +30,13 @@ def interleaved_medians(tasks: Sequence[Callable[[int], object]], rounds: int) -
             task(k)
             times[k, column] = time.perf_counter() - before
     return [float(t) for t in np.median(times, axis=0)]
+
+
+def best_time(task: Callable[[], object], rounds: int = 7) -> float:
+    """The least of a few, in seconds: what else the computer does only adds."""
+    times = []
+    for _ in range(rounds):
+        before = time.perf_counter()
+        task()
+        times.append(time.perf_counter() - before)
+    return min(times)

@@ -21,10 +21,10 @@ from std_srvs.srv import SetBool
 from bridge.fake.faults import Faults
 from bridge.protocol import Arm, Disarm, ResetCause, Setpoint
 from hexarm import keep_to_this_computer, machines
-from hexarm.rig import Rig
 from manipulator.errors import ManipulatorError
 from manipulator.nodes.qos import COMMAND, EVERY_WORD
 from manipulator.pose import Pose
+from rig import Rig
 
 FAULTS_PER_MINUTE = 150.0
 BOOT = 2.0
@@ -106,7 +106,7 @@ def bad_frames(rig):
     """How many frames are out of range, or far from the one before."""
     ranges = np.array(rig.calibration.count_ranges)
     speeds = np.array(rig.calibration.count_speeds)
-    frames = rig.tap.heard((Setpoint, Arm, Disarm))
+    frames = rig.tap.frames((Setpoint, Arm, Disarm))
     setpoints = [(t, np.array(m.counts)) for t, m in frames if isinstance(m, Setpoint)]
     bad = sum(bool((c < ranges[:, 0]).any() or (c > ranges[:, 1]).any()) for _, c in setpoints)
     for (before, a), (now, b) in itertools.pairwise(setpoints):

@@ -15,8 +15,8 @@ from std_msgs.msg import Bool
 from bench.row import Row
 from bridge.protocol import Stop
 from hexarm import keep_to_this_computer
-from hexarm.rig import Rig
 from manipulator.nodes.qos import EVERY_WORD
+from rig import Rig
 
 RUNS, STOPS = 5, 20
 GOAL, STOP_GOAL_MS = 0.5, 50.0
@@ -104,7 +104,7 @@ def command_time(rig):
     subprocess.run(
         [sys.executable, '-m', 'hexarm', 'stop', SPACE], capture_output=True, check=True
     )
-    seconds = rig.tap.heard(Stop, before)[0][0] - before
+    seconds = rig.tap.frames(Stop, before)[0][0] - before
     clear(rig)
     return seconds
 
@@ -123,7 +123,7 @@ def emergency_stops(rig):
         rig.circle(random.uniform(0.1, 0.3))
         before = time.monotonic()
         publisher.publish(Bool(data=True))
-        rig.user.wait('STOP', lambda t=before: rig.tap.heard(Stop, t), 5.0)
-        times.append(rig.tap.heard(Stop, before)[0][0] - before)
+        rig.user.wait('STOP', lambda t=before: rig.tap.frames(Stop, t), 5.0)
+        times.append(rig.tap.frames(Stop, before)[0][0] - before)
         clear(rig)
     return times

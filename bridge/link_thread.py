@@ -60,19 +60,19 @@ class SerialPort:
         except BlockingIOError:
             return b''
         except OSError as error:
-            raise LinkError(f'{self.name} has vanished ({_reason(error)})') from error
+            raise LinkError(f'{self.name} was disconnected ({_reason(error)})') from error
         if not received:
-            raise LinkError(f'{self.name} has vanished (unplugged?)')
+            raise LinkError(f'{self.name} was disconnected (unplugged?)')
         return received
 
     def write(self, waiting: bytes) -> bytes:
-        """Writes what fits and returns the rest; LinkError when the port has vanished."""
+        """Writes what fits and returns the rest; LinkError when the port was disconnected."""
         try:
             return waiting[os.write(self.fileno(), waiting) :]
         except BlockingIOError:
             return waiting
         except OSError as error:
-            raise LinkError(f'{self.name} has vanished ({_reason(error)})') from error
+            raise LinkError(f'{self.name} was disconnected ({_reason(error)})') from error
 
     def close(self) -> None:
         """Gives the port back; what is still in its buffers is lost."""

@@ -162,7 +162,7 @@ class ServoWizard:
             return self._settle_end(key)
         if self.stage is Stage.RANGE and key == 'enter':
             return self._go_on()
-        return self._notify(f'{key!r} means nothing here')
+        return self._notify(f'{key!r} has no function here')
 
     def _jog(self, direction: float) -> 'ServoWizard':
         low, high = self.limits[self.index]
@@ -189,7 +189,7 @@ class ServoWizard:
         try:
             number = float(typed)
         except ValueError:
-            return self._notify(f'{shown(typed)} is no number')
+            return self._notify(f'{shown(typed)} is not a number')
         if self.stage is Stage.CENTRE:
             return self._settle_centre(number)
         return self._settle_scale(number)

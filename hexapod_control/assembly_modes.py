@@ -12,15 +12,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hexapod_control import forward_ideal as monomials
-from hexapod_control.forward_ideal import Generators, LegEquations, turned
+from hexapod_control.forward import rules
+from hexapod_control.forward_ideal import GENERATORS, LegEquations, multiples, turned
 from hexapod_control.leg_jacobian import leg_jacobian, rods, smallest_singular_value
+from hexapod_control.parallel_platform import ParallelPlatform, checked_joints
+from manipulator import _kernel
 from manipulator import rotation as so3
-from manipulator.arrays import Array, Mask
+from manipulator.arrays import Array, Mask, frozen, stretched
 from manipulator.errors import InvalidInput, NoSolution
 from manipulator.pose import Pose
 
 DEGREE = 8
-NULL_VALUE = 1e-6  # a singular value is zero below this part of the largest
+SOLUTIONS = 40  # of the general problem, with their multiplicities: Z has as many columns
+GROUPS, LEADING = 252, 228  # sums of equations, of rank 244; those that are safely independent
+NO_PIVOT = 1e-9  # a pivot or a singular value is zero below this part of the largest pivot
 INFINITE = 1e-5  # |e·e| of a solution without a finite rotation, |e| being 1
 REAL = 1e-9  # imaginary part of e, |e| being 1, that is rounding alone
 NEARLY_REAL = 1e-4  # and that can come of two real solutions which almost meet
@@ -29,6 +34,7 @@ DOUBLE = 1e-5  # σmin where two solutions meet
 SAME = 1e-5  # distance of two poses that are one, as part of the platform's size
 TOLERANCE = 1e-10  # of the leg lengths, relative
 ROUNDING = 4e-15  # and what no further step improves
+NEAR = 1e-3  # from here on Newton's method is sure of its way, likewise
 MOST_ITERATIONS = 30
 
 Complex = NDArray[np.complex128]
@@ -67,7 +73,8 @@ def assembly_modes(
     """
     base, platform, legs = _checked(base_points, platform_points, lengths)
     equations = LegEquations.of(base, platform, legs)
-    null_space = _null_space(_multiples(equations.generators()))
+    rows = multiples(DEGREE, GENERATORS).mixed(equations.coefficients(), GROUPS)
+    null_space = _null_space(rows, LEADING)
     e, is_whole = _solutions(null_space)
     quaternions, is_real = _nearly_real(e)
     starts, has_place = _placed(equations, quaternions)
@@ -80,8 +87,17 @@ def assembly_modes(
         sigma,
         null_space.shape[1],
         int(np.sum(np.abs(np.sum(e * e, axis=1)) < INFINITE)),
-        is_whole and bool(np.all(found, where=is_real & has_place)),
+        is_whole
+        and null_space.shape[1] >= SOLUTIONS
+        and bool(np.all(found, where=is_real & has_place)),
     )
+
+
+def modes_of(platform: ParallelPlatform, joints: Array) -> AssemblyModes:
+    """Every pose that a platform's joints (6,) allow; NoSolution as its `forward`."""
+    checked = checked_joints(joints)
+    points = platform.geometry.platform_points
+    return assembly_modes(platform.base_points(checked), points, platform.rod_lengths(checked))
 
 
 def _checked(
@@ -98,42 +114,33 @@ def _checked(
     return arrays[0], arrays[1], arrays[2]
 
 
-def _multiples(generators: list[Generators]) -> Array:
-    """All monomial multiples of the equations that have degree 8, one a row, scaled."""
-    start = monomials.offsets(DEGREE)
-    blocks = []
-    for equations in generators:
-        norm = np.sqrt(sum(np.sum(c * c, axis=1) for c in equations.coefficients))
-        used = norm > np.finfo(float).tiny
-        for power in range(monomials.S_POWERS + 1 - len(equations.coefficients)):
-            rest = DEGREE - equations.degree - 2 * power
-            if rest < 0:
-                continue
-            weights = monomials.scales(rest)
-            block = np.zeros((int(used.sum()), len(weights), start[-1]))
-            rows = np.arange(len(weights))[:, None]
-            for k, coefficient in enumerate(equations.coefficients):
-                columns = monomials.product_index(rest, equations.degree - 2 * k)
-                values = (coefficient[used] / norm[used, None])[:, None, :]
-                block[:, rows, start[power + k] + columns] = values * weights[:, None]
-            blocks.append(block.reshape(-1, start[-1]))
-    matrix: Array = np.vstack(blocks) / monomials.row_scales(DEGREE)
-    return matrix
+def _null_space(columns: Array, leading: int) -> Array:
+    """A basis (n, count) of the functionals that vanish on all `columns` (n, m).
 
-
-def _null_space(matrix: Array) -> Array:
-    """A basis (rows, count) of the functionals that vanish on all rows of `matrix`.
-
-    The eigenvectors of the Gram matrix are found fast and without fail, but to the square root of
-    the precision; one step of iterative refinement restores it.
+    Gauss's elimination with row pivots for the `leading` ones, P L U: with the rows [A; B] of L, A
+    triangular, functionals are P [−A⁻ᵀBᵀ; 1] N, where N vanishes on what is left of the other
+    columns, which are more than their rank, so that it is told without doubt. No entry of L is
+    above 1. Raises NoSolution where the leading columns are dependent.
     """
-    gram = matrix.T @ matrix
-    values, vectors = np.linalg.eigh(gram)
-    count = int(np.sum(values < NULL_VALUE**2 * values[-1]))
-    null, rest = vectors[:, :count], vectors[:, count:]
-    error = rest.T @ (matrix.T @ (matrix @ null))
-    result: Array = null - rest @ (error / values[count:, None])
-    return result
+    from scipy.linalg import lu_factor, solve_triangular  # noqa: PLC0415 (50 MB: for who asks)
+
+    factors, swaps = lu_factor(columns[:, :leading], check_finite=False)
+    pivots = np.abs(np.diag(factors))
+    if not pivots.min() > NO_PIVOT * pivots.max():
+        raise NoSolution('the leg lengths do not fix finitely many poses')
+    order = list(range(len(columns)))
+    for i, k in enumerate(swaps.tolist()):
+        order[i], order[k] = order[k], order[i]
+    above, below = factors[:leading], factors[leading:]
+    lower = solve_triangular(
+        above, below.T, trans=1, lower=True, unit_diagonal=True, check_finite=False
+    )
+    rest = columns[order][:, leading:]
+    left, values, _ = np.linalg.svd(rest[leading:] - lower.T @ rest[:leading])
+    free = left[:, int((values > NO_PIVOT * pivots.max()).sum()) :]
+    null = np.empty((len(columns), free.shape[1]))
+    null[order] = np.vstack([-lower @ free, free])
+    return np.linalg.qr(null)[0]
 
 
 def _solutions(null_space: Array) -> tuple[Complex, bool]:
@@ -142,14 +149,17 @@ def _solutions(null_space: Array) -> tuple[Complex, bool]:
     by_e = factor[..., None] * null_space[index]
     directions, mixture = _DIRECTION
     denominator = np.tensordot(directions, by_e, axes=1)
-    left, values, right = np.linalg.svd(denominator, full_matrices=False)
-    if null_space.shape[1] == 0 or values[-1] < 1e-9 * values[0]:
+    if null_space.shape[1] == 0:
         raise NoSolution('the leg lengths do not fix finitely many poses')
-    inverse = (right.conj().T / values) @ left.conj().T
-    _, vectors = np.linalg.eig(inverse @ np.tensordot(mixture, by_e, axes=1))
+    columns, triangle = np.linalg.qr(denominator)
+    values = np.linalg.svd(triangle, compute_uv=False)
+    if values[-1] < 1e-9 * values[0]:
+        raise NoSolution('the leg lengths do not fix finitely many poses')
+    right = columns.conj().T @ np.tensordot(mixture, by_e, axes=1)
+    _, vectors = np.linalg.eig(np.linalg.solve(triangle, right))
     # an eigenvector is the evaluation at a solution: read e off it
-    seen = denominator @ vectors
-    e = np.einsum('mk,jmk->kj', seen.conj(), by_e @ vectors)
+    seen = factor[..., None] * (null_space @ vectors)[index]
+    e = np.einsum('mk,jmk->kj', (denominator @ vectors).conj(), seen)
     return e / np.linalg.norm(e, axis=1)[:, None], bool(values[-1] > 1e-6 * values[0])
 
 
@@ -187,16 +197,48 @@ def _placed(equations: LegEquations, e: Array) -> tuple[Pose, Mask]:
 
 
 def _polished(base: Array, platform: Array, lengths: Array, poses: Pose) -> tuple[Pose, Mask]:
-    """The poses after Newton's method, and which of them have the leg lengths wanted."""
+    """The poses after Newton's method, and which of them have the leg lengths wanted.
+
+    Steps of least length, which end well even where two solutions meet. What is far from closing
+    is first taken near by the ordinary method, or is none.
+    """
+    longest = lengths.max()
+    worst = _worst(base, platform, lengths, poses)
+    poses = _approached(base, platform, lengths, poses, worst > NEAR * longest)
+    near = np.flatnonzero(_worst(base, platform, lengths, poses) < NEAR * longest)
+    position, rotation = poses.position.copy(), poses.rotation.copy()
+    closed = np.zeros(len(worst), dtype=np.bool_)
     for _ in range(MOST_ITERATIONS):
-        error = lengths - np.linalg.norm(rods(base, platform, poses), axis=-1)
-        worst = np.max(np.abs(error), axis=-1, initial=0.0)
-        if np.all(worst < ROUNDING * lengths.max()):
+        at = Pose(position[near], rotation[near])
+        error = lengths - np.linalg.norm(rods(base, platform, at), axis=-1)
+        misses = np.abs(error).max(axis=-1, initial=0.0)
+        closed[near] = misses < TOLERANCE * longest
+        if np.all(misses < ROUNDING * longest):
             break
-        inverse = np.linalg.pinv(leg_jacobian(base, platform, poses), rcond=1e-12)
-        poses = poses.moved(np.einsum('mij,mj->mi', inverse, error))
-    closed: Mask = worst < TOLERANCE * lengths.max()
-    return poses, closed
+        inverse = np.linalg.pinv(leg_jacobian(base, platform, at), rcond=1e-12)
+        at = at.moved(np.einsum('mij,mj->mi', inverse, error))
+        position[near], rotation[near] = at.position, at.rotation
+    return Pose(position, rotation), closed
+
+
+def _worst(base: Array, platform: Array, lengths: Array, poses: Pose) -> Array:
+    """By how much the worst rod of each pose (m,) misses its length, in metres."""
+    error = lengths - np.linalg.norm(rods(base, platform, poses), axis=-1)
+    worst: Array = np.abs(error).max(axis=-1, initial=0.0)
+    return worst
+
+
+def _approached(base: Array, platform: Array, lengths: Array, poses: Pose, far: Mask) -> Pose:
+    """The poses, of which those that are `far` by the kernel's Newton's method."""
+    position, rotation = poses.position.copy(), poses.rotation.copy()
+    count = int(far.sum())
+    found = np.empty((count, 3)), np.empty((count, 3, 3)), np.empty((count, 5))
+    _kernel.forward_by_lengths(
+        frozen(platform), rules(1.0, None, 0.0), stretched(base, (count, 6, 3)),
+        stretched(lengths, (count, 6)), position[far], rotation[far], *found,
+    )  # fmt: skip
+    position[far], rotation[far] = found[0], found[1]
+    return Pose(np.nan_to_num(position), np.where(np.isfinite(rotation), rotation, 0.0))
 
 
 def _distinct(
@@ -207,15 +249,12 @@ def _distinct(
     angle = np.linalg.norm(so3.log(poses.rotation), axis=-1)
     keys = np.column_stack([-poses.position[:, 2], -poses.position[:, 0], -poses.position[:, 1]])
     order = np.lexsort([angle, *np.round(keys.T[::-1] / (SAME * size))])
+    apart = np.abs(poses.position[:, None] - poses.position).max(axis=-1) / size
+    apart += np.abs(poses.rotation[:, None] - poses.rotation).max(axis=(-1, -2))
     chosen: list[int] = []
-    for k in order:
-        apart = [
-            np.abs(poses.position[k] - poses.position[c]).max() / size
-            + np.abs(poses.rotation[k] - poses.rotation[c]).max()
-            for c in chosen
-        ]
-        if all(a > SAME for a in apart):
-            chosen.append(int(k))
+    for k in order.tolist():
+        if (apart[k, chosen] > SAME).all():
+            chosen.append(k)
     kept = poses[chosen]
     sigma = smallest_singular_value(leg_jacobian(base, platform, kept), size)
     return tuple(kept[k] for k in range(len(chosen))), tuple(float(s) for s in sigma)

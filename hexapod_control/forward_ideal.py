@@ -88,16 +88,74 @@ def shift_table(degree: int) -> tuple[Indices, Array]:
     return index, frozen(factor)
 
 
+@functools.cache
+def multiples(degree: int, generators: tuple[tuple[int, int, int], ...]) -> 'Multiples':
+    """Where every coefficient stands in the rows of all multiples of generators.
+
+    generators are (degree, powers of s, count) of each group; the coefficients in a row, equation
+    by equation, the powers of s one after the other.
+    """
+    start, scale = offsets(degree), row_scales(degree)
+    rows, columns, sources, weights = [], [], [], []
+    row = first = 0
+    for own, powers, count in generators:
+        sizes = [len(exponents(own - 2 * k)) for k in range(powers)]
+        for power in range(min(S_POWERS + 1 - powers, (degree - own) // 2 + 1)):
+            rest = degree - own - 2 * power
+            factors = scales(rest)
+            for equation in range(count):
+                source = first + equation * sum(sizes)
+                for k, size in enumerate(sizes):
+                    column = start[power + k] + product_index(rest, own - 2 * k)
+                    rows.append(np.repeat(row + np.arange(len(factors)), size))
+                    columns.append(column.ravel())
+                    sources.append(np.tile(source + np.arange(size), len(factors)))
+                    weights.append((factors[:, None] / scale[column]).ravel())
+                    source += size
+                row += len(factors)
+        first += count * sum(sizes)
+    row_of, column_of, source_of = (np.concatenate(x) for x in (rows, columns, sources))
+    weight = frozen(np.concatenate(weights))
+    return Multiples(row, start[-1], row_of, column_of, source_of, weight)
+
+
+@dataclass(frozen=True, eq=False)
+class Multiples:
+    """A sparse matrix (rows, columns): at (row[i], column[i]) stands weight[i] times the
+    coefficient source[i] of the generators.
+    """
+
+    rows: int
+    columns: int
+    row: Indices
+    column: Indices
+    source: Indices
+    weight: Array
+
+    def mixed(self, coefficients: Array, count: int) -> Array:
+        """(columns, count): the rows added up in `count` fixed groups, with fixed signs, as
+        columns; in each of them hardly more than the space of all rows is missed.
+        """
+        place, weight = _groups(self, count)
+        total = np.bincount(place, coefficients[self.source] * weight, self.columns * count)
+        return np.asarray(total.reshape(self.columns, count))
+
+
+@functools.lru_cache(maxsize=1)
+def _groups(multiples: Multiples, count: int) -> tuple[Indices, Array]:
+    random = np.random.default_rng(4)
+    group = random.permutation(np.resize(np.arange(count), multiples.rows))
+    sign = random.choice([-1.0, 1.0], multiples.rows)
+    place = multiples.column * count + group[multiples.row]
+    return place, frozen(multiples.weight * sign[multiples.row])
+
+
 HIGHEST = 6
 LEAST_RANK_VALUE = 1e-9
 
 
-@dataclass(frozen=True)
-class Generators:
-    """Equations of one degree: coefficients[k] (count, monomials of degree − 2k) go with sᵏ."""
-
-    degree: int
-    coefficients: tuple[Array, ...]
+GENERATORS = ((3, 2, 4), (4, 2, 6), (6, 3, 20))
+"""Degree, powers of s and number of the cubics (8), quartics (7) and sextics (9)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,50 +201,68 @@ class LegEquations:
         kappa = turns[:, np.argsort(np.abs(values))].T @ weakest
         return cls(a, b, d, float(legs[0]), scale, u, sigma, v, kappa[0], kappa[1])
 
-    def generators(self) -> list[Generators]:
-        """The cubics (8), quartics (7) and sextics (9) of docs/forward-modes.md, section 3."""
-        e, fits = _samples()
+    def coefficients(self) -> Array:
+        """Of the cubics (8), quartics (7) and sextics (9), in the order of `multiples`.
+
+        Every equation is scaled to a length of 1, unless it is empty.
+        """
+        parts = []
+        _, fits = _samples()
+        for (degree, _, _), values in zip(GENERATORS, self._values(), strict=True):
+            fitted = [(fits[degree - 2 * k] @ x).T for k, x in enumerate(values)]
+            rows = np.concatenate(fitted, axis=1)
+            lengths = np.sqrt((rows * rows).sum(axis=1, keepdims=True))
+            parts.append((rows / np.where(lengths > np.finfo(float).tiny, lengths, 1.0)).ravel())
+        return np.concatenate(parts)
+
+    def _values(self) -> list[tuple[Array, ...]]:
+        """The generators at the sample points (m, count), one array for each power of s."""
+        e, _ = _samples()
         n, q5, Q, u1, u2, c = self._parts(e)
         alpha, beta = self.sigma[4] * self.v[4] @ np.stack([self.kappa1, self.kappa2]).T
         i, j = np.triu_indices(4, 1)
         cubics = (q5[:, None] * u2 - beta * c, alpha * u2 - beta * u1)
         quartics = tuple(x[:, i] * u2[:, j] - x[:, j] * u2[:, i] for x in (c, u1))
-        groups = [(3, cubics), (4, quartics)]
-        for part in (slice(0, 3), slice(3, 6)):
-            groups.append((6, self._sextics(n, Q, u1, u2, c, part)))
-        return [
-            Generators(degree, tuple((fits[degree - 2 * k] @ x).T for k, x in enumerate(values)))
-            for degree, values in groups
-        ]
+        products = _products(u1, u2, c)
+        both = [self._sextics(n, Q[:, part], products, part) for part in (_P, _W)]
+        sextics = tuple(np.hstack(pair) for pair in zip(*both, strict=True))
+        return [cubics, quartics, sextics]
 
     def _parts(self, e: Array) -> tuple[Array, Array, Array, Array, Array, Array]:
         """N, the fifth row q5 of (4), Q of (5), and u1, u2, c of (6), at the points e (m, 4)."""
         n = np.sum(e * e, axis=1)
-        q = n[:, None] * self.d - np.einsum('ni,mij,nj->mn', self.a, turned(e), self.b)
+        pairs = (self.a[:, :, None] * self.b[:, None, :]).reshape(-1, 9)
+        q = n[:, None] * self.d - turned(e).reshape(-1, 9) @ pairs.T
         y = q @ self.u
         Q = -(y[:, :4] / self.sigma[:4]) @ self.v[:4]
         u1, u2, c = (_closure(e, x) for x in (self.kappa1, self.kappa2, Q))
         return n, y[:, 4], Q, u1, u2, c
 
     def _sextics(
-        self, n: Array, Q: Array, u1: Array, u2: Array, c: Array, part: slice
+        self, n: Array, Q: Array, products: tuple[Array, ...], part: slice
     ) -> tuple[Array, Array, Array]:
         """|p|² = N²·L1² (or |w|²) times u2_i·u2_j, with t·u2 replaced by −(s·u1 + c): (9)."""
-        x1, x2, Qx = self.kappa1[part], self.kappa2[part], Q[:, part]
-        i, j = np.triu_indices(4)
-
-        def both(x: Array, y: Array) -> Array:
-            product: Array = (x[:, i] * y[:, j] + x[:, j] * y[:, i]) / 2
-            return product
-
-        q1, q2 = (Qx @ x1)[:, None], (Qx @ x2)[:, None]
-        rest = (np.sum(Qx * Qx, axis=1) - (self.length * n) ** 2)[:, None]
+        u1u1, u1u2, u2u2, cu1, cu2, cc = products
+        x1, x2 = self.kappa1[part], self.kappa2[part]
+        q1, q2 = (Q @ x1)[:, None], (Q @ x2)[:, None]
+        rest = (np.sum(Q * Q, axis=1) - (self.length * n) ** 2)[:, None]
         x12, x22 = x1 @ x2, x2 @ x2
         return (
-            rest * both(u2, u2) - 2 * q2 * both(c, u2) + x22 * both(c, c),
-            2 * (q1 * both(u2, u2) - q2 * both(u1, u2) - x12 * both(c, u2) + x22 * both(c, u1)),
-            x1 @ x1 * both(u2, u2) - 2 * x12 * both(u1, u2) + x22 * both(u1, u1),
+            rest * u2u2 - 2 * q2 * cu2 + x22 * cc,
+            2 * (q1 * u2u2 - q2 * u1u2 - x12 * cu2 + x22 * cu1),
+            x1 @ x1 * u2u2 - 2 * x12 * u1u2 + x22 * u1u1,
         )
+
+
+_P, _W = slice(0, 3), slice(3, 6)
+
+
+def _products(u1: Array, u2: Array, c: Array) -> tuple[Array, ...]:
+    """(x_i·y_j + x_j·y_i)/2 for i ≤ j (m, 10), of u1 u1, u1 u2, u2 u2, c u1, c u2 and c c."""
+    i, j = np.triu_indices(4)
+    x = np.stack([u1, u1, u2, c, c, c])
+    y = np.stack([u1, u2, u2, u1, u2, c])
+    return tuple((x[..., i] * y[..., j] + x[..., j] * y[..., i]) / 2)
 
 
 def turned(e: Array) -> Array:

@@ -1,21 +1,92 @@
-"""The `limits` sections of machine files: of crank hexapods and of linear platforms."""
+"""The `limits` sections of machine files: of crank hexapods and of linear platforms.
+
+Passive joints are limited as docs/kinematics.md, section 6, says: a rod end turns freely about
+its bolt, and tilts only as far as its housing lets it.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from hexapod_control.geometry import LEGS
 from hexapod_control.linear import LinearPlatform
-from hexapod_control.passive_joints import (
-    LEG_NAMES,
-    BaseJointSwing,
-    CrankJointTilt,
-    PlatformJointSwing,
+from hexapod_control.parallel_platform import (
+    HEIGHT,
+    JOINT,
+    LEANING,
+    SHORTFALL,
+    SIGMA,
+    SURPLUS,
+    SWING,
+    TILT,
+    ParallelPlatform,
 )
 from hexapod_control.rotary import RotaryHexapod
+from manipulator.arrays import Array, frozen
 from manipulator.config import quantity
 from manipulator.errors import ConfigError
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.machine_limits import BodyHeight, JointRange, RodClosure, SingularityMargin
+from manipulator.limits.machine_limits import BodyHeight, JointRange
+from manipulator.pose import Pose
+
+LEG_NAMES = tuple(f'leg {leg}' for leg in range(1, LEGS + 1))
+
+
+@dataclass(frozen=True, eq=False)
+class PlatformLimit:
+    """A `Limit` on some of a platform's `limited_values`, within [low, high] each."""
+
+    group: ParallelPlatform
+    columns: slice
+    quantity: str
+    unit: str
+    owners: tuple[str, ...]
+    low: Array
+    high: Array
+
+    def values(self, pose: Pose, joints: Array) -> Array:
+        """The limited values (..., k)."""
+        return self.group.limited_values(pose, joints)[..., self.columns]
+
+
+def rod_closure(kinematics: RotaryHexapod, is_surplus: bool = False) -> PlatformLimit:
+    """How much too short (or too long) each rod is to close its leg, in metres: at most 0.
+
+    Depends on the pose alone and so has a value where the joints have none.
+    """
+    name, columns = ('rod surplus', SURPLUS) if is_surplus else ('rod shortfall', SHORTFALL)
+    return _each_leg(kinematics, columns, name, 'm', -np.inf, 0.0)
+
+
+def crank_joint_tilt(kinematics: RotaryHexapod, largest: float) -> PlatformLimit:
+    """The change (rad) since home of the rod's angle to the plane in which its crank turns.
+
+    The bolt of this joint is parallel to the servo's axis, about which the rod turns freely.
+    """
+    return _each_leg(kinematics, TILT, 'crank joint tilt', 'rad', -largest, largest)
+
+
+def platform_joint_swing(kinematics: ParallelPlatform, largest: float) -> PlatformLimit:
+    """The rod's angle (rad) to its direction at home, as the platform sees it: a cone."""
+    return _each_leg(kinematics, SWING, 'platform joint swing', 'rad', -np.inf, largest)
+
+
+def base_joint_swing(kinematics: ParallelPlatform, largest: float) -> PlatformLimit:
+    """A linear leg's angle (rad) to its direction at home, as the base sees it: a cone."""
+    return _each_leg(kinematics, LEANING, 'base joint swing', 'rad', -np.inf, largest)
+
+
+def singularity_margin(kinematics: ParallelPlatform, minimum: float) -> PlatformLimit:
+    """The kinematics' σmin at least `minimum` (dimensionless)."""
+    low, high = frozen([minimum]), frozen([np.inf])
+    return PlatformLimit(kinematics, SIGMA, 'singularity margin', '', ('',), low, high)
+
+
+def _each_leg(
+    kinematics: ParallelPlatform, columns: slice, quantity: str, unit: str, low: float, high: float
+) -> PlatformLimit:
+    bounds = (frozen(np.full(LEGS, end)) for end in (low, high))
+    return PlatformLimit(kinematics, columns, quantity, unit, LEG_NAMES, *bounds)
 
 
 @dataclass(frozen=True)
@@ -51,18 +122,20 @@ class RotaryLimits:
         low, high = self.crank_range
         return Constraints(
             (
-                RodClosure(kinematics.closure, LEG_NAMES),
-                RodClosure(kinematics.closure, LEG_NAMES, is_surplus=True),
+                rod_closure(kinematics),
+                rod_closure(kinematics, is_surplus=True),
                 JointRange(
-                    np.full(len(LEG_NAMES), low),
-                    np.full(len(LEG_NAMES), high),
+                    np.full(LEGS, low),
+                    np.full(LEGS, high),
                     LEG_NAMES,
                     'crank angle',
+                    group=kinematics,
+                    columns=JOINT,
                 ),
-                BodyHeight(self.minimum_height_mm * 1e-3),
-                CrankJointTilt(kinematics, float(np.radians(self.crank_joint_tilt_deg))),
-                PlatformJointSwing(kinematics, float(np.radians(self.platform_joint_swing_deg))),
-                SingularityMargin(kinematics, self.singularity_margin),
+                BodyHeight(self.minimum_height_mm * 1e-3, group=kinematics, columns=HEIGHT),
+                crank_joint_tilt(kinematics, float(np.radians(self.crank_joint_tilt_deg))),
+                platform_joint_swing(kinematics, float(np.radians(self.platform_joint_swing_deg))),
+                singularity_margin(kinematics, self.singularity_margin),
             )
         )
 
@@ -92,9 +165,11 @@ class LinearLimits:
         cone = float(np.radians(self.passive_cone_deg))
         return Constraints(
             (
-                JointRange(low, high, LEG_NAMES, 'leg length', 'm'),
-                BaseJointSwing(kinematics, cone),
-                PlatformJointSwing(kinematics, cone),
-                SingularityMargin(kinematics, self.singularity_margin),
+                JointRange(
+                    low, high, LEG_NAMES, 'leg length', 'm', group=kinematics, columns=JOINT
+                ),
+                base_joint_swing(kinematics, cone),
+                platform_joint_swing(kinematics, cone),
+                singularity_margin(kinematics, self.singularity_margin),
             )
         )

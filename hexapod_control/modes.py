@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hexapod_control.assembly_modes import modes_of
 from hexapod_control.parallel_platform import ParallelPlatform
 from manipulator.arrays import Array
 from manipulator.framed_machine import FramedKinematics
@@ -63,7 +64,7 @@ def _poses(kinematics: Kinematics, joints: Array) -> tuple[list[tuple[Pose, bool
         return [(kinematics.frames.pivot(pose), side) for pose, side in poses], is_complete
     if not isinstance(kinematics, ParallelPlatform):
         return [(kinematics.forward(joints).pose, True)], True
-    found = kinematics.forward_all(joints)
+    found = modes_of(kinematics, joints)
     sides = [bool(kinematics.is_as_at_home(pose, joints)) for pose in found.poses]
     return list(zip(found.poses, sides, strict=True)), found.is_complete
 

@@ -2,30 +2,35 @@
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 
-from hexapod_control.assembly_modes import AssemblyModes, assembly_modes
-from hexapod_control.forward import XYZXY, ForwardByLengths
+from hexapod_control.forward import rules, solution
 from hexapod_control.geometry import LEGS
 from hexapod_control.leg_jacobian import (
-    chunks,
-    keeps_margin,
     leg_jacobian,
-    rods,
     smallest_singular_value,
+    units_and_jacobian,
 )
-from manipulator.arrays import Array, Mask
+from manipulator import _kernel
+from manipulator.arrays import Array, Mask, frozen, stretched
 from manipulator.continuity import first_jump
 from manipulator.errors import ConfigError, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
+from manipulator.limits.limit import Bounds
 from manipulator.links import PLATFORM, Link
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke, outline
 
 SINGULAR = 1e-6
+
+SHORTFALL, SURPLUS, JOINT, TILT, SWING, LEANING = (slice(6 * k, 6 * k + 6) for k in range(6))
+HEIGHT, SIGMA = slice(36, 37), slice(37, 38)
+VALUES, RANGES = 38, 39
+"""Where values stand in `limited`, and the numbers in `limit_ranges`: kernel/limits.h."""
 
 SAME = 0.02
 """Difference of joints (rad or m) that is a measurement's, not another branch's."""
@@ -62,24 +67,47 @@ class ParallelPlatform(ABC):
     geometry: LegGeometry
     characteristic_length: float
     trusted_margin: float
+    legs: Array = field(init=False)
+    parameters: Array = field(init=False)
     home: Pose = field(init=False)
-    newton: ForwardByLengths = field(init=False)
+    warm: Array = field(init=False)
+    cold: Array = field(init=False)
     home_side: float = field(init=False)
     home_bends: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        """Finds home, the sign of det J there, and to which side each joint's gain is."""
+        """Finds home, the sign of det J there, and to which side each joint's gain is.
+
+        legs and parameters are the machine as the kernel takes it: crank_legs and platform of
+        kernel/crank.h and limits.h.
+        """
         home = Pose(np.array([0.0, 0.0, self.geometry.home_height]), np.eye(3))
-        newton = ForwardByLengths(self.geometry.platform_points, self.characteristic_length)
-        object.__setattr__(self, 'home', home)
-        object.__setattr__(self, 'newton', newton)
+        self._put('home', home)
+        self._lay_out(np.zeros((LEGS, 3)), np.zeros(LEGS))
         try:
             joints = self.inverse(home)
         except Unreachable as error:
             raise ConfigError([f'the model does not close at home: {error}']) from error
+        gains = self.joint_gains(home, joints)
+        self._lay_out(self.unit_rods(home, joints), gains)
         side = float(np.sign(np.linalg.det(self.leg_jacobian(home, joints))))
-        object.__setattr__(self, 'home_side', side)
-        object.__setattr__(self, 'home_bends', np.sign(self.joint_gains(home, joints)))
+        self._put('home_side', side)
+        self._put('home_bends', np.sign(gains))
+        self._put('warm', rules(self.characteristic_length, None, 0.0))
+        self._put('cold', rules(self.characteristic_length, side, self.trusted_margin))
+
+    def _put(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
+
+    def _lay_out(self, home_rods: Array, home_gains: Array) -> None:
+        legs, length = self._legs(), [self.characteristic_length]
+        parameters = frozen(np.concatenate([legs, length, home_rods.T.ravel(), home_gains]))
+        self._put('parameters', parameters)
+        self._put('legs', parameters[: len(legs)])
+
+    @abstractmethod
+    def _legs(self) -> Array:
+        """The struct crank_legs of kernel/crank.h."""
 
     @property
     @abstractmethod
@@ -121,9 +149,12 @@ class ParallelPlatform(ABC):
                 last = joints[i] if np.isfinite(joints[i]).all() else last
         return joints
 
-    @abstractmethod
     def base_points(self, joints: Array) -> Array:
         """Where the rods begin, (..., 6, 3), base frame, metres; NaN for NaN joints."""
+        given = stretched(joints, (*np.shape(joints)[:-1], LEGS))
+        points = np.empty((*given.shape, 3))
+        _kernel.base_points(self.legs, given, points)
+        return points
 
     @abstractmethod
     def rod_lengths(self, joints: Array) -> Array:
@@ -152,22 +183,15 @@ class ParallelPlatform(ABC):
         least trusted_margin and no leg bent the other way; a start from `near` must end on near's
         side.
         """
-        checked = checked_joints(joints)
-        base, lengths = self._base_columns(checked), self.rod_lengths(checked)
-        if near is not None:
-            return self.newton.solve_columns(base, lengths, near, None, 0.0)
-        solution = self.newton.solve_columns(
-            base, lengths, self.home, self.home_side, self.trusted_margin
-        )
-        if (self.joint_gains(solution.pose, checked) * self.home_bends <= 0.0).any():
-            raise NoSolution('the pose found bends a leg the other way than at home')
-        return solution
-
-    def forward_all(self, joints: Array) -> AssemblyModes:
-        """Every pose that joints (6,) allow: docs/forward-modes.md. NoSolution as `forward`."""
-        checked = checked_joints(joints)
-        points = self.geometry.platform_points
-        return assembly_modes(self.base_points(checked), points, self.rod_lengths(checked))
+        checked, margin = checked_joints(joints), self.trusted_margin if near is None else 0.0
+        self.rod_lengths(checked)
+        start, trusted = (self.home, self.cold) if near is None else (near, self.warm)
+        position, rotation, report = np.empty(3), np.empty((3, 3)), np.empty(5)
+        _kernel.platform_forward(
+            self.parameters, trusted, checked, start.position, start.rotation,
+            position, rotation, report,
+        )  # fmt: skip
+        return solution(position, rotation, report, margin)
 
     def is_as_at_home(self, pose: Pose, joints: Array) -> Mask:
         """Which configurations (...) are on home's side of every singularity, of both types."""
@@ -178,9 +202,8 @@ class ParallelPlatform(ABC):
 
     def unit_rods(self, pose: Pose, joints: Array) -> Array:
         """Unit vectors (..., 6, 3) along the rods, from base to platform, base axes."""
-        rod = rods(self.base_points(joints), self.geometry.platform_points, pose)
-        unit: Array = rod / np.sqrt((rod * rod).sum(axis=-1))[..., None]
-        return unit
+        points = self.geometry.platform_points
+        return units_and_jacobian(self.base_points(joints), points, pose)[0]
 
     def leg_jacobian(self, pose: Pose, joints: Array) -> Array:
         """J (..., 6, 6): J·twist is how fast each rod would grow if its base point stood, m/s."""
@@ -216,18 +239,39 @@ class ParallelPlatform(ABC):
         """The forward singularity margin (...), dimensionless; NaN for NaN joints."""
         return smallest_singular_value(self.leg_jacobian(pose, joints), self.characteristic_length)
 
-    def keeps_margin(self, pose: Pose, joints: Array, minimum: float) -> Mask:
-        """Which of many configurations (N) have σmin above `minimum`: quicker than by σmin."""
-        kept = np.empty(len(joints), dtype=np.bool_)
-        points, length = self.geometry.platform_points, self.characteristic_length
-        for part, poses, some in chunks(pose, joints):
-            kept[part] = keeps_margin(self.base_points(some), points, poses, length, minimum)
-        return kept
+    def limited_values(self, pose: Pose, joints: Array) -> Array:
+        """See `LimitGroup`: all limited values (..., 38), in the order of kernel/limits.h."""
+        position, rotation, given = _together(pose, joints)
+        values = np.empty((*position.shape[:-1], VALUES))
+        _kernel.limited_values(self.parameters, position, rotation, given, values)
+        return values
 
-    def _base_columns(self, joints: Array) -> Array:
-        """The base points as the (5, 6) array that `ForwardByLengths.solve_columns` takes."""
-        columns: Array = self.base_points(joints).T.take(XYZXY, axis=0)
-        return columns
+    def ranges(self, bounds: Sequence[Bounds]) -> Array:
+        """See `LimitGroup`."""
+        low, high, ranges = np.full(VALUES, -np.inf), np.full(VALUES, np.inf), np.empty(RANGES)
+        for columns, least, most in bounds:
+            low[columns] = np.maximum(low[columns], least)
+            high[columns] = np.minimum(high[columns], most)
+        _kernel.limit_ranges(self.parameters, low, high, ranges)
+        return ranges
+
+    def keeps(self, ranges: Array, pose: Pose, joints: Array) -> Mask:
+        """See `LimitGroup`."""
+        position, rotation, given = _together(pose, joints)
+        kept = np.empty(position.shape[:-1])
+        _kernel.keeps_limits(self.parameters, ranges, position, rotation, given, kept)
+        return np.asarray(kept != 0.0)
+
+
+def _together(pose: Pose, joints: Array) -> tuple[Array, Array, Array]:
+    """Position, rotation and joints with the same leading axes, as the kernel takes them."""
+    position, rotation, shape = pose.position, pose.rotation, np.shape(joints)
+    if shape[:-1] != position.shape[:-1]:
+        leading = np.broadcast_shapes(shape[:-1], position.shape[:-1])
+        position = stretched(position, (*leading, 3))
+        rotation = stretched(rotation, (*leading, 3, 3))
+        shape = (*leading, LEGS)
+    return position, rotation, stretched(joints, (*shape[:-1], LEGS))
 
 
 def checked_joints(joints: Array) -> Array:
@@ -237,4 +281,4 @@ def checked_joints(joints: Array) -> Array:
         raise NoSolution(f'joints have shape {checked.shape}, a pose needs ({LEGS},)')
     if not all(map(math.isfinite, checked.tolist())):
         raise NoSolution(f'joints are not finite: {checked.tolist()}')
-    return checked
+    return stretched(checked, (LEGS,))

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from manipulator import rotation as so3
+from manipulator.analysis.free_paths import admits
 from manipulator.arrays import Array, Mask
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -17,14 +18,6 @@ BURN_IN = 80
 THINNING = 8
 WALKERS = 1000
 BISECTIONS = 50
-
-
-def admits(machine: Machine, pose: Pose) -> Mask:
-    """Which of the poses (N,) close on home's branch and keep every limit."""
-    joints = machine.kinematics.inverse_or_nan(pose)
-    inside = np.asarray(np.isfinite(joints).all(axis=-1), dtype=np.bool_)
-    inside[inside] = machine.constraints.admits(pose[inside], joints[inside])
-    return inside
 
 
 def sample(

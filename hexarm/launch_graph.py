@@ -10,7 +10,7 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 from hexarm.cli.up import MACHINES, check
-from hexarm.graph import Executable, machine_graph
+from hexarm.graph import Executable, environment, machine_graph, ros_arguments
 
 PACKAGE = 'hexarm'
 PROGRAMS = {'machine': 'hexarm_machine', 'panel': 'hexarm_panel'}
@@ -60,7 +60,9 @@ def _nodes(context: LaunchContext, kind: str) -> list[Any]:
 
 def _process(node: Executable, namespace: str, own: dict[str, str]) -> Any:
     if node.command:
-        return ExecuteProcess(cmd=list(node.command), output='screen')
+        words = [*node.command, *ros_arguments(namespace, node.parameters | own)]
+        importable = {'PYTHONPATH': environment()['PYTHONPATH']}
+        return ExecuteProcess(cmd=words, additional_env=importable, output='screen')
     return Node(
         package=PACKAGE,
         executable=PROGRAMS.get(node.name, node.name),

@@ -56,8 +56,9 @@ def _other_bend(machine: Machine) -> Iterator[str]:
     if legs.size:
         yield (
             f'home has {_names(kinematics.joint_names, legs.tolist())} at {_degrees(home[legs])}, '
-            f'in a range with its middle at {_degrees((limit.low + limit.high)[:1] / 2)}; bent '
-            f'the other way: {_degrees(other[legs])}. Is a crank tangent, or the whole, mirrored?'
+            f'in a range with its middle at {_degrees((limit.low + limit.high)[:1] / 2)}; '
+            f'on the other branch: {_degrees(other[legs])}. '
+            'Is a crank tangent, or the whole, mirrored?'
         )
 
 

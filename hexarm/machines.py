@@ -58,7 +58,7 @@ def find(name_or_path: str) -> Path:
     if path.suffix in ('.yaml', '.yml') or '/' in name_or_path:
         if os.path.isfile(path):
             return path
-        fault = 'is no file' if os.path.exists(path) else 'does not exist'
+        fault = 'is not a file' if os.path.exists(path) else 'does not exist'
         raise ConfigError([f'machine file {shortened(name_or_path, 200)} {fault}'])
     known = shipped()
     if name_or_path not in known and os.path.isfile(path):

@@ -31,14 +31,14 @@ def panel_words(panel: Executable) -> str:
     return panel_address(panel) + taken
 
 
-def offered_panel(machine: str, say: Callable[[str], None]) -> list[Executable]:
+def offered_panel(machine: str, echo: Callable[[str], None]) -> list[Executable]:
     """The panel and a line about it; without viser only the line."""
     try:
         panel = panel_process(machine)
     except ModuleNotFoundError:
-        say('(with viser installed, pip install viser, you could watch this in a browser)')
+        echo('(with viser installed, pip install viser, you could watch this in a browser)')
         return []
-    say(f'watch it in a browser: {panel_words(panel)}')
+    echo(f'watch it in a browser: {panel_words(panel)}')
     return [panel]
 
 

@@ -1,4 +1,4 @@
-"""Array types and the one helper that freezes them."""
+"""Array types, and how values become arrays that may be kept or handed to the kernel."""
 
 from typing import TypeAlias
 
@@ -10,7 +10,16 @@ Mask: TypeAlias = NDArray[np.bool_]
 
 
 def frozen(values: ArrayLike) -> Array:
-    """A read-only float64 copy, safe to keep in a frozen dataclass."""
-    array = np.array(values, dtype=np.float64)
+    """A read-only float64 copy, C-contiguous, safe to keep in a frozen dataclass."""
+    array = np.array(values, dtype=np.float64, order='C')
     array.flags.writeable = False
     return array
+
+
+def stretched(values: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """float64 values broadcast to a shape, C-contiguous and aligned as the kernel needs them."""
+    array = np.asarray(values, dtype=np.float64)
+    if array.shape != shape:
+        array = np.broadcast_to(array, shape)
+    flags = array.flags
+    return array if flags.c_contiguous and flags.aligned else array.copy(order='C')

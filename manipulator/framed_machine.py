@@ -4,6 +4,7 @@ It stays a machine like any other, so that plans, limits and maps need not know;
 about the pivot, and moves are straight for it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from manipulator.arrays import Array, Mask
 from manipulator.frames import Frames
 from manipulator.kinematics import ForwardSolution, Kinematics
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.limit import LimitOf, admitted
+from manipulator.limits.limit import Bounds, LimitGroup, LimitOf
 from manipulator.links import Link
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -25,8 +26,14 @@ def in_frames(machine: Machine, frames: Frames) -> Machine:
     if frames.are_plain:
         return machine
     kinematics = FramedKinematics(machine.kinematics, frames)
-    limits = tuple(FramedLimit(limit, frames) for limit in machine.constraints.limits)
-    return replace(machine, kinematics=kinematics, constraints=Constraints(limits), frames=frames)
+    limits, framed = [], dict[LimitGroup, FramedGroup]()
+    constraints = machine.constraints
+    for limit, (group, _) in zip(constraints.limits, constraints.places, strict=True):
+        if group is not None:
+            framed.setdefault(group, FramedGroup(group, frames))
+        limits.append(FramedLimit(limit, frames, None if group is None else framed[group]))
+    constraints = Constraints(tuple(limits))
+    return replace(machine, kinematics=kinematics, constraints=constraints, frames=frames)
 
 
 @dataclass(frozen=True)
@@ -106,10 +113,36 @@ class FramedKinematics:
 
 
 @dataclass(frozen=True, eq=False)
+class FramedGroup:
+    """A group of limits of the machine, asked with poses of the pivot in the work frame."""
+
+    inner: LimitGroup
+    frames: Frames
+
+    def limited_values(self, pose: Pose, joints: Array) -> Array:
+        """See `LimitGroup`."""
+        return self.inner.limited_values(self.frames.platform(pose), joints)
+
+    def ranges(self, bounds: Sequence[Bounds]) -> Array:
+        """See `LimitGroup`."""
+        return self.inner.ranges(bounds)
+
+    def keeps(self, ranges: Array, pose: Pose, joints: Array) -> Mask:
+        """See `LimitGroup`."""
+        return self.inner.keeps(ranges, self.frames.platform(pose), joints)
+
+
+@dataclass(frozen=True, eq=False)
 class FramedLimit(LimitOf):
     """A limit of the machine, for poses of the pivot in the work frame."""
 
     frames: Frames
+    framed_group: FramedGroup | None = None
+
+    @property
+    def group(self) -> LimitGroup | None:
+        """That of the limit, asked likewise."""
+        return self.framed_group
 
     @property
     def low(self) -> Array:
@@ -124,7 +157,3 @@ class FramedLimit(LimitOf):
     def values(self, pose: Pose, joints: Array) -> Array:
         """The limited values (..., k), by the platform's pose."""
         return self.inner.values(self.frames.platform(pose), joints)
-
-    def admits(self, pose: Pose, joints: Array) -> Mask:
-        """Which configurations (...) keep the limit, as quickly as it can."""
-        return admitted(self.inner, self.frames.platform(pose), joints)

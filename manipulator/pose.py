@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from manipulator import _kernel
 from manipulator import rotation as so3
-from manipulator.arrays import Array, frozen
+from manipulator.arrays import Array, frozen, stretched
 from manipulator.errors import InvalidInput
 
 
@@ -47,10 +48,9 @@ class Pose:
         For inner loops: the caller must not have handed either array to anyone else.
         """
         pose = object.__new__(cls)
-        position.flags.writeable = False
-        rotation.flags.writeable = False
-        object.__setattr__(pose, 'position', position)
-        object.__setattr__(pose, 'rotation', rotation)
+        position.setflags(write=False)
+        rotation.setflags(write=False)
+        pose.__dict__.update(position=position, rotation=rotation)
         return pose
 
     @classmethod
@@ -103,12 +103,22 @@ class Pose:
     def moved(self, twist: ArrayLike) -> 'Pose':
         """After a unit of time at `twist`, origin and orientation advanced each on its own."""
         step = np.asarray(twist, dtype=np.float64)
-        return Pose(self.position + step[..., :3], so3.exp(step[..., 3:]) @ self.rotation)
+        leading = np.broadcast_shapes(self.position.shape[:-1], step.shape[:-1])
+        position, rotation = np.empty((*leading, 3)), np.empty((*leading, 3, 3))
+        start = self._stretched(leading)
+        if _kernel.moved(*start, stretched(step, (*leading, 6)), position, rotation):
+            return Pose(position, rotation)  # raises: not finite
+        return Pose.unchecked(position, rotation)
 
     def twist_to(self, target: 'Pose') -> Array:
         """The twist with which `moved` arrives at `target`; (..., 6)."""
-        turn = so3.log(target.rotation @ np.swapaxes(self.rotation, -1, -2))
-        return np.concatenate([target.position - self.position, turn], axis=-1)
+        leading = np.broadcast_shapes(self.position.shape[:-1], target.position.shape[:-1])
+        twist = np.empty((*leading, 6))
+        _kernel.twist_between(*self._stretched(leading), *target._stretched(leading), twist)
+        return twist
+
+    def _stretched(self, leading: tuple[int, ...]) -> tuple[Array, Array]:
+        return stretched(self.position, (*leading, 3)), stretched(self.rotation, (*leading, 3, 3))
 
 
 def _stretched(position: Array, rotation: Array) -> tuple[Array, Array]:

@@ -3,15 +3,13 @@
 All functions broadcast over leading axes. Quaternions are x, y, z, w as in ROS.
 """
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike
 
-from manipulator.arrays import Array, frozen
+from manipulator import _kernel
+from manipulator.arrays import Array, frozen, stretched
 from manipulator.errors import InvalidInput
 
-SMALL_ANGLE = 1e-6
 UNIT_TOLERANCE = 1e-3
 
 
@@ -43,60 +41,26 @@ PRODUCTS = _products()
 
 def exp(rotation_vector: ArrayLike) -> Array:
     """Rodrigues' formula: the rotation by |w| about w; (..., 3) to (..., 3, 3)."""
-    w = np.asarray(rotation_vector, dtype=np.float64)
-    if w.shape == (3,):
-        return _exp_of_one(w)
-    angle = np.sqrt(np.einsum('...i,...i->...', w, w))[..., None, None]
-    safe = np.maximum(angle, SMALL_ANGLE)
-    first = np.where(angle < SMALL_ANGLE, 1.0, np.sin(safe) / safe)
-    second = np.where(angle < SMALL_ANGLE, 0.5, (1.0 - np.cos(safe)) / safe**2)
-    k = skew(w)
-    matrix: Array = np.eye(3) + first * k + second * (k @ k)
+    w = _shaped(rotation_vector, (3,))
+    matrix = np.empty((*w.shape, 3))
+    _kernel.rotation_exp(w, matrix)
     return matrix
-
-
-def _exp_of_one(w: Array) -> Array:
-    """The exp of one vector: needed at every tick; the general one costs four times more."""
-    x, y, z = w.tolist()
-    angle = math.hypot(x, y, z)
-    first, second = 1.0, 0.5
-    if not angle < SMALL_ANGLE:
-        first, second = np.sin(angle) / angle, (1.0 - np.cos(angle)) / (angle * angle)
-    xy, xz, yz = second * x * y, second * x * z, second * y * z
-    return np.array(
-        [
-            [1.0 - second * (y * y + z * z), xy - first * z, xz + first * y],
-            [xy + first * z, 1.0 - second * (x * x + z * z), yz - first * x],
-            [xz - first * y, yz + first * x, 1.0 - second * (x * x + y * y)],
-        ]
-    )
 
 
 def log(rotation: ArrayLike) -> Array:
     """The rotation vector of a matrix, |w| ≤ π; (..., 3, 3) to (..., 3)."""
-    matrix = np.asarray(rotation, dtype=np.float64)
-    if matrix.shape == (3, 3) and matrix.trace() > 1.0:
-        return _log_of_acute(matrix)
-    q = to_quaternion(matrix)
-    vector, scalar = q[..., :3], q[..., 3]
-    sine = np.sqrt(np.einsum('...i,...i->...', vector, vector))
-    angle = 2.0 * np.arctan2(sine, scalar)
-    safe = np.maximum(sine, SMALL_ANGLE)
-    scale = np.where(sine < SMALL_ANGLE, 2.0, angle / safe)
-    result: Array = scale[..., None] * vector
-    return result
+    matrix = _shaped(rotation, (3, 3))
+    w = np.empty(matrix.shape[:-1])
+    _kernel.rotation_log(matrix, w)
+    return w
 
 
-def _log_of_acute(matrix: Array) -> Array:
-    """The log of one rotation by less than 90°: w·sin|w|/|w| is its antisymmetric part.
-
-    Jog modes need it at every tick; by quaternions it costs ten times as much.
-    """
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = matrix.tolist()
-    vector = np.array([zy - yz, xz - zx, yx - xy])
-    sine = 0.5 * math.hypot(zy - yz, xz - zx, yx - xy)
-    angle = math.atan2(sine, 0.5 * (xx + yy + zz - 1.0))
-    return vector * (0.5 if sine < SMALL_ANGLE else 0.5 * angle / sine)
+def _shaped(values: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """As the kernel takes them; InvalidInput unless the last axes have that shape."""
+    array = np.asarray(values, dtype=np.float64)
+    if array.shape[-len(shape) :] != shape:
+        raise InvalidInput(f'an array of shape {array.shape}, needs (..., {str(shape)[1:-1]})')
+    return stretched(array, array.shape)
 
 
 def left_jacobian(rotation_vector: ArrayLike) -> Array:

@@ -1,7 +1,7 @@
 """New values in the text of a YAML file, with every other character left as it was.
 
 Comments, order, spacing and quotes survive because the file is never rewritten: PyYAML knows
-from where to where each value stands, and only those characters are exchanged.
+the span of each value, and only those characters are replaced.
 """
 
 import re

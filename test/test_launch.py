@@ -68,6 +68,7 @@ class Node:
 @dataclass(kw_only=True)
 class ExecuteProcess:
     cmd: list[str]
+    additional_env: dict[str, str]
     output: str
 
 
@@ -194,7 +195,8 @@ def test_arguments_that_do_not_fit_start_nothing(chosen, error, reason):
 def test_chip_on_a_simulator_is_a_process_of_its_own():
     nodes = started('hexapod', port='simavr')
     (chip,) = (n for n in nodes if isinstance(n, ExecuteProcess))
-    assert chip.cmd
+    assert {'__ns:=/hexapod', 'machine:=robocake'} <= set(chip.cmd)
+    assert str(ROOT) in chip.additional_env['PYTHONPATH']
     assert {n.executable for n in nodes if n is not chip} == {MACHINE}
 
 

@@ -106,8 +106,8 @@ def speed_rows(
     rest_off = np.median([error(poses[k], settled(theirs, angles[k], home)) for k in some])
     three_off = np.median([error(poses[k], stepped(theirs, angles[k], home)) for k in some])
     return [
-        against('inverse', inverse, their_inverse),
-        against('forward from home, until converged', forward, to_rest),
+        against('inverse', inverse, their_inverse, 0.5),
+        against('forward from home, until converged', forward, to_rest, 0.15),
         against(f'forward from home, their {OWN_STEPS} steps', forward, three),
         Row(
             f'pose error: ours, theirs converged, theirs after {OWN_STEPS} steps',
@@ -116,9 +116,10 @@ def speed_rows(
     ]
 
 
-def against(what: str, ours: float, theirs: float) -> Row:
-    text = f'{1e6 * theirs:.1f} µs, ours {1e6 * ours:.1f} µs = {ours / theirs:.2f}×'
-    return Row(what, text)
+def against(what: str, ours: float, theirs: float, goal: float | None = None) -> Row:
+    ratio = ours / theirs
+    text = f'{1e6 * theirs:.2f} µs, ours {1e6 * ours:.2f} µs = {ratio:.2f}×'
+    return Row(what, text, f'{goal:g}×' if goal else '', goal is None or ratio <= goal)
 
 
 def honesty_rows(

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from bridge.fake.board import Board
+from bridge.fake.board import AnyBoard
 from bridge.fake.faults import FaultKind, Faults
 from bridge.fake.faulty_bytes import FaultyBytes
 from bridge.protocol import PROTOCOL_VERSION, ResetCause
@@ -16,7 +16,7 @@ class BoardFaults:
     plug: pulls the cable (False) and puts it back. A stuck servo is channel 0.
     """
 
-    board: Board
+    board: AnyBoard
     faults: Faults
     plug: Callable[[bool], None]
     seed: int = 0

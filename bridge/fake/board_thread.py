@@ -5,19 +5,19 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from bridge.calibration import COUNTS_PER_US, Calibration
-from bridge.fake.board import Board
-from bridge.fake.board_courses import Solver
+from bridge.fake.board import AnyBoard, Board, MakeBoard
 from bridge.fake.board_faults import BoardFaults
 from bridge.fake.board_settings import BoardSettings
 from bridge.fake.fake_line import FakeLine
 from bridge.fake.faults import Faults
 from bridge.fake.plant import Plant
+from bridge.fake.program import CrankHexapod
 from bridge.fake.servo import Servos
 from bridge.fake.steppers import Steppers
 from bridge.protocol import ResetCause
@@ -34,7 +34,7 @@ class BoardMachine(Protocol):
     """What the thread steps: a FakeMachine, or what watches one."""
 
     @property
-    def board(self) -> Board:
+    def board(self) -> AnyBoard:
         """Its brain."""
 
     @property
@@ -52,22 +52,27 @@ class FakeMachine:
     is_measured: the board has encoders and tells what they read.
     """
 
-    board: Board
+    board: AnyBoard
     servos: Plant
     calibration: Calibration
     is_measured: bool = False
 
     @classmethod
     def from_config(
-        cls, config: BoardConfig, boot_s: float, hysteresis: float, solve: Solver | None = None
+        cls,
+        config: BoardConfig,
+        boot_s: float,
+        hysteresis: float,
+        hexapod: CrankHexapod | None = None,
+        make_board: MakeBoard = Board,
     ) -> 'FakeMachine':
-        """Unpowered at park; hysteresis in rad (or m); `solve` is what cycles are played by."""
+        """Unpowered at park; hysteresis in rad (or m); `hexapod` is what cycles are played by."""
         calibration = Calibration.from_config(config.servos)
         dead_band = COUNTS_PER_US * config.simulation.dead_band_us / np.abs(calibration.scale)
         drives = DRIVES[config.simulation.drives]
         servos = drives.at_rest(calibration.park, calibration.speed, dead_band, hysteresis)
-        settings = replace(BoardSettings.from_config(config, boot_s), solve=solve)
-        board = Board(settings, round(1000 * config.simulation.battery_v))
+        settings = BoardSettings.from_config(config, boot_s, hexapod)
+        board = make_board(settings, round(1000 * config.simulation.battery_v))
         return cls(board, servos, calibration, config.simulation.joints == 'measured')
 
     def step(self, dt: float, stuck_channel: int | None = None) -> None:
@@ -78,7 +83,7 @@ class FakeMachine:
             pulses[stuck_channel] = np.nan
         self.servos.step(self.calibration.positions(pulses), dt)
         if self.is_measured:
-            self.board.measured = self.calibration.nearest_counts(self.servos.positions)
+            self.board.measure(self.calibration.nearest_counts(self.servos.positions))
 
 
 class BoardThread(threading.Thread):

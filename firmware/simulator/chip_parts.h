@@ -13,6 +13,12 @@ typedef struct {
     uint8_t channel;
 } Tap;
 
+/* What libsimavr does when a compare register is written. */
+typedef struct {
+    avr_io_write_t write;
+    void *param;
+} Compare;
+
 struct Chip {
     avr_t *avr;
     avr_uart_t *uart;
@@ -24,6 +30,7 @@ struct Chip {
     Edge *edges;
     uint32_t edge_count;
     Tap taps[CHANNELS];
+    Compare compares[CHANNELS];
     uint8_t level[CHANNELS];
     uint32_t lost_bytes, watchdog_resets;
     uint32_t battery_pin_mv;

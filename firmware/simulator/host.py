@@ -1,7 +1,5 @@
 """A host that talks to the simulated board, and looks at its servo pins."""
 
-from pathlib import Path
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,8 +27,8 @@ Cycles = NDArray[np.int64]
 class Host:
     """Talks to one board of six joints; times in seconds."""
 
-    def __init__(self, settings: BoardSettings = SETTINGS, table: Path | None = None) -> None:
-        self.board = SimulatedBoard(settings, table=table)
+    def __init__(self, settings: BoardSettings = SETTINGS) -> None:
+        self.board = SimulatedBoard(settings)
         self.chip = self.board.chip
         self.reader = FrameReader()
         self.sequence = 0

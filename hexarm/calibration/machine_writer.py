@@ -12,7 +12,8 @@ from typing import Protocol
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.identification.arm_model import JOINTS, ArmModel
+from arm_control.chain import JOINTS
+from arm_control.identification.arm_model import ArmModel
 from arm_control.identification.arm_model import geometry_lines as arm_lines
 from hexapod_control.identification.leg_model import LegModel, Tolerances
 from hexapod_control.identification.models import geometry_lines, model_of
@@ -91,7 +92,7 @@ class MachineWriter:
             raise ConfigError([f'{self.target} exists already: it is not overwritten'])
         folder = self.target.parent
         if not folder.is_dir():
-            raise ConfigError([f'{folder} is no folder'])
+            raise ConfigError([f'{folder} is not a folder'])
         if not os.access(folder, os.W_OK) or (
             output is None and not os.access(self.target, os.W_OK)
         ):

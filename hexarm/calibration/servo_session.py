@@ -173,7 +173,7 @@ class CalibrationSession:
         """The keys since the last call; raises where terminal or board have gone."""
         characters = self.terminal.read()
         if characters is None:
-            raise TerminalGone('the terminal has gone')
+            raise TerminalGone('the terminal was closed')
         if self.line.trouble:
             raise LinkError(self.line.trouble)
         if self.line.has_released:

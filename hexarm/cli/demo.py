@@ -27,7 +27,7 @@ from manipulator.states import MotionMode
 if TYPE_CHECKING:
     from hexarm.client import Client
     from hexarm.demo.arm_report import ArmResult
-    from hexarm.demo.report import Recorder
+    from hexarm.demo.recording import Recorder
 
 MACHINE = 'robocake'
 CENTRE = np.array([0.0, 0.0, 0.045])
@@ -57,19 +57,19 @@ def run(arguments: argparse.Namespace) -> int:
     os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
     stop = StopSignal()
     try:
-        say('starting the graph: fake_hardware, serial_bridge, ik, trajectory, pose')
+        echo('starting the graph: fake_hardware, serial_bridge, ik, trajectory, pose')
         observation = on_graph('hexapod', MACHINE, [], stop, tour)
         arm = load(demo_arm.MACHINE)
-        say('starting the same graph for the arm, and joy_teleop')
+        echo('starting the same graph for the arm, and joy_teleop')
         arm_observation = on_graph(
             'arm',
             demo_arm.MACHINE,
             [demo_arm.teleop()],
             stop,
-            lambda client: demo_arm.arm_tour(client, arm, say),
+            lambda client: demo_arm.arm_tour(client, arm, echo),
         )
     except Interrupted:
-        say('interrupted: stopping the graph')
+        echo('interrupted: stopping the graph')
         return INTERRUPTED
     result = measure(observation, load(MACHINE).kinematics)
     report(result, demo_arm_report.measure_arm(arm_observation, arm.kinematics), arm, picture)
@@ -89,7 +89,7 @@ def on_graph(
     with link_folder() as folder:
         nodes = machine_graph(machine, 'fake', Path(folder) / 'board')
         with Graph(
-            [*nodes, *others, *offered_panel(machine, say)], kind, log_level='error'
+            [*nodes, *others, *offered_panel(machine, echo)], kind, log_level='error'
         ) as graph:
 
             def interrupt() -> None:
@@ -111,22 +111,22 @@ def put_away(client: 'Client') -> None:
 
 def tour(client: 'Client') -> Observation:
     """Goal moves, a goal out of reach and a circle with a tilt, from outside as a user would."""
-    from hexarm.demo.report import Recorder  # noqa: PLC0415 (needs ROS)
+    from hexarm.demo.recording import Recorder  # noqa: PLC0415 (needs ROS)
 
-    say('waiting for the board, then energising the servos one by one')
+    echo('waiting for the board, then energising the servos one by one')
     client.enable()
     recorder = Recorder(client)
     for text, goal in moves():
-        say(text)
+        echo(text)
         recorder.line_to(goal)
         drive(client, goal)
         client.spin(PAUSE)
     try:
-        say('a goal out of reach: x = 40 mm')
+        echo('a goal out of reach: x = 40 mm')
         drive(client, Pose.from_xyz_rpy((0.04, 0.0, 0.045)), is_possible=False)
     except Refused as refusal:
-        say(f'  {refusal}')
-    say(f'a circle of {RADIUS * 1e3:g} mm with a turning tilt of {math.degrees(TILT):g}°')
+        echo(f'  {refusal}')
+    echo(f'a circle of {RADIUS * 1e3:g} mm with a turning tilt of {math.degrees(TILT):g}°')
     stream(client, recorder)
     return recorder.observation(load(MACHINE).kinematics)
 
@@ -144,7 +144,7 @@ def drive(client: 'Client', goal: Pose, *, is_possible: bool = True) -> None:
         except busy as reason:
             if not tries_left:
                 raise
-            say(f'  {reason}: once more')
+            echo(f'  {reason}: once more')
         else:
             return
 
@@ -172,7 +172,7 @@ def stream(client: 'Client', recorder: 'Recorder') -> None:
         client.spin(begin + k * STREAM_PERIOD - time.time())
         client.publish_goal(circle(k * STREAM_PERIOD))
         if k % (count // 8) == 0:
-            say(f'  {100 * k // count} %')
+            echo(f'  {100 * k // count} %')
     client.spin(0.5)
 
 
@@ -189,6 +189,6 @@ def report(result: Result, arm_result: 'ArmResult', arm: Machine, picture: Path)
     print('To drive it yourself, in a browser: hexarm up hexapod --panel')
 
 
-def say(text: str) -> None:
+def echo(text: str) -> None:
     """Prints one line of progress at once."""
     print(text, flush=True)

@@ -61,4 +61,4 @@ def remedy(client: 'Client', namespace: str) -> str:
     """What ends a stop or a fault, where the machine has one."""
     if client.machine_state.message not in (MachineState.STOPPED, MachineState.FAULT):
         return ''
-    return f'. Look at the machine, then: hexarm clear {namespace}'
+    return f'. Inspect the machine, then: hexarm clear {namespace}'

@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps({'namespace': f'/{space}', 'state': state, 'reason': reason}))
         return 0 if is_confirmed else REFUSED
     if is_confirmed:
-        print(f'/{space}: machine stopped. Look at the machine, then: hexarm clear {space}')
+        print(f'/{space}: machine stopped. Inspect the machine, then: hexarm clear {space}')
         return 0
     print(
         f'hexarm: STOP is sent, but not confirmed within {OBEYED_WITHIN:g} s: machine {state}'

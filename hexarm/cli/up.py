@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bridge.fake.plant import PLANTS, SERVO
 from hexarm.graph import (
     Executable,
     Graph,
@@ -40,6 +41,7 @@ MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
 BOARDS = ('fake', 'simavr')
 """In place of a port."""
 NAME = 'a shipped name or the path of a machine file'
+PLANT = 'what a simulated board moves: servos, or rigid bodies with loads (mujoco)'
 SHORT = ', '.join(f'{kind} is short for {name}' for kind, name in MACHINES.items())
 
 
@@ -57,6 +59,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument('name', metavar='MACHINE', help=f'{NAME}; {SHORT}')
     parser.add_argument('--machine', help=f'{NAME}, after hexapod or arm')
     parser.add_argument('--port', default='fake', help="a device, 'fake' (default) or 'simavr'")
+    parser.add_argument('--plant', choices=PLANTS, default=SERVO, help=PLANT)
     parser.add_argument('--namespace', help='default: hexapod or arm, as the machine is')
     parser.add_argument('--separate', action='store_true', help='one process for each node')
     parser.add_argument('--panel', action='store_true', help='with a web page to watch and drive')
@@ -72,7 +75,8 @@ def run(arguments: argparse.Namespace) -> int:
     check_port(arguments.port)
     namespace = arguments.namespace or family(machine)
     pages = [panel_process(machine)] if arguments.panel else []
-    stop, parts = StopSignal(), Parts(machine, namespace, arguments.port)
+    stop = StopSignal()
+    parts = Parts(machine, namespace, arguments.port, arguments.plant)
 
     def interrupt() -> None:
         stop.check()
@@ -102,9 +106,10 @@ class Parts:
     made when it is entered.
     """
 
-    def __init__(self, machine: str, namespace: str, port: str) -> None:
+    def __init__(self, machine: str, namespace: str, port: str, plant: str) -> None:
         self._stack = contextlib.ExitStack()
         self._machine, self._namespace, self._port = machine, namespace, port
+        self._plant = plant
         self._link: Path | None = None
         self._graphs: list[Graph] = []
         self._are_nodes_alive: Callable[[], bool] = lambda: True
@@ -115,7 +120,7 @@ class Parts:
         from manipulator.nodes.run import context  # noqa: PLC0415 (needs ROS)
 
         link = Path(self._stack.enter_context(link_folder())) / 'board'
-        self.board = board_process(self._machine, self._port, link)
+        self.board = board_process(self._machine, self._port, link, self._plant)
         self._link = link if self.board else None
         parameters = {'machine': self._machine, 'port': str(self._link or self._port)}
         self._stack.enter_context(context(ros_arguments(self._namespace, parameters)))
@@ -223,7 +228,7 @@ def enable(client: 'Client', namespace: str) -> None:
 
 
 def park(client: 'Client', stop: StopSignal) -> None:
-    """Goes to park and switches the servos off; where it cannot, asks before it releases.
+    """Goes to park and switches the servos off; where it cannot, the user confirms the release.
 
     In a terminal the answer is another Ctrl-C. Without one the servos stay on: what the board then
     does is set by `on_link_loss` of the machine file.

@@ -83,9 +83,9 @@ def teleop() -> Executable:
     return Executable('joy_teleop', {'scale': '3.0'})
 
 
-def arm_tour(client: 'Client', machine: Machine, say: 'Callable[[str], None]') -> ArmObservation:
+def arm_tour(client: 'Client', machine: Machine, echo: 'Callable[[str], None]') -> ArmObservation:
     """Drives the arm by a scripted pad; true joint angles are received throughout."""
-    say('the arm: energising its drives, then a gamepad takes over')
+    echo('the arm: energising its drives, then a gamepad takes over')
     client.enable()
     pad = ScriptedPad(client)
     messages: list[JointState] = []
@@ -100,19 +100,19 @@ def arm_tour(client: 'Client', machine: Machine, say: 'Callable[[str], None]') -
         phases.append(Phase(name, begin, time.time()))
         pad.rest(SETTLED)
 
-    say('a goal 0.35 m away; before it arrives the stick pulls the arm back')
+    echo('a goal 0.35 m away; before it arrives the stick pulls the arm back')
     client.publish_goal(kinematics.home.moved([-0.35, 0.0, 0.0, 0.0, 0.0, 0.0]))
     pad.rest(0.7)
     phase('override', {'seconds': 2.0, 'forward': 1.0})
     pad.next_mode(1)
-    say('a square with the orientation held')
+    echo('a square with the orientation held')
     sides = ({'left': -1.0}, {'up': 1.0}, {'left': 1.0}, {'up': -1.0})
     phase('square', *({'seconds': 1.5} | side for side in sides))
     tool = kinematics.forward(joints_of(messages[-1], names)).pose
     point = tool.position + SIGHT * tool.rotation[:, 2]
     look_at(client, point)
     pad.next_mode(-2)
-    say('to and fro, looking at one point')
+    echo('to and fro, looking at one point')
     phase('look', *({'seconds': s, 'forward': f} for s, f in ((1.0, 1), (2.0, -1), (1.0, 1))))
     return ArmObservation(
         times=np.array([seconds(m.header.stamp) for m in messages]),

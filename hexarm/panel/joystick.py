@@ -127,7 +127,7 @@ def parsed(text: str | bytes) -> Beat | int:
     try:
         message = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise InvalidInput(f'is no JSON: {error}') from error
+        raise InvalidInput(f'is not JSON: {error}') from error
     if not isinstance(message, dict):
         raise InvalidInput('needs an object')
     press = message.get('press')

@@ -134,7 +134,7 @@ Colours = NDArray[np.uint8]
 class Pieces:
     """n bars and m balls of a stance, lengths in machine sizes.
 
-    parts (n) and owners (n), ball_owners (m) say what each is of, and which leg's or joint's
+    parts (n) and owners (n), ball_owners (m) are what each is of, and which leg's or joint's
     margin it shows ('' for none).
     """
 

@@ -110,8 +110,8 @@ class Scene:
         """Whether both can be distinguished: a ghost in the same place only dulls the colours."""
         if measured is None:
             return True
-        way = np.abs(commanded.pose.twist_to(measured.pose))
-        return bool(way[:3].max() * self._scale > APART or way[3:].max() > APART)
+        gap = np.abs(commanded.pose.twist_to(measured.pose))
+        return bool(gap[:3].max() * self._scale > APART or gap[3:].max() > APART)
 
     def _remember(self, point: Array) -> None:
         if self._trail and np.linalg.norm(point - self._trail[-1]) < TRAIL_STEP:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hexapod_control.assembly_modes import modes_of
 from hexapod_control.geometry import architecture_sigma
 from hexapod_control.leg_motion import LegMotion, paper_motion
 from hexapod_control.linear import LinearPlatform
@@ -85,7 +86,7 @@ def _equal_angles() -> Finding:
 def _solutions() -> Finding:
     """Real poses for one set of leg lengths."""
     kinematics = _platform('stewart_6_6')
-    modes = kinematics.forward_all(kinematics.inverse(kinematics.home))
+    modes = modes_of(kinematics, kinematics.inverse(kinematics.home))
     return Finding(
         'solutions', LINEAR, 'solutions of the forward problem', 'up to 40; the nearest is taken',
         f'{modes.complex_count} in all, {len(modes.poses)} real at home', len(modes.poses), 0.0,

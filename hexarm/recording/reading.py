@@ -81,7 +81,7 @@ def _records(path: Path) -> Iterator[Any]:
     except OSError as error:
         raise InvalidInput(f'{path}: {error.strerror or error}') from error
     except InvalidMagic as error:
-        raise InvalidInput(f'{path} is no MCAP file') from error
+        raise InvalidInput(f'{path} is not an MCAP file') from error
 
 
 def write(summary: RunSummary, folder: Path) -> list[Path]:

@@ -27,9 +27,9 @@ class TopicSelection:
     """The topics of `namespace`, or only `names` (relative ones are the namespace's).
 
     A command is joined only once its publisher has been there for SETTLED. Many a script
-    publishes once, as soon as anybody listens; a recorder that listened before would now and then
-    be taken for the machine, and the goal, or the stop, would reach nobody else. With
-    `with_commands`, and for a name that was asked for, it is joined at once all the same.
+    publishes once, for the first subscriber; a recorder that subscribed before would sometimes be
+    taken for the machine, and the goal, or the stop, would reach no other node. With
+    `with_commands`, and for a requested name, it is joined at once.
     """
 
     namespace: str

@@ -1,5 +1,6 @@
 """Down the distance to a target, within all limits: docs/workspace.md, section 2."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +24,7 @@ LEAST_CURVATURE = 0.2
 class Linearised:
     """The limits about one pose: normals (m, 6)·step + slack (m,) ≥ 0, all in metres.
 
-    goal (6,) is the step to the target. rows (2k,) says which margins the m rows are.
+    goal (6,) is the step to the target. rows (2k,): which margins the m rows are.
     """
 
     pose: Pose
@@ -45,8 +46,14 @@ class Linearised:
         return cls(pose, offset(machine, pose, target), normals, slack, steepness, rows)
 
     def step(self, curvature: Array) -> tuple[Array, Array]:
-        """The best step within the limits, by a quadratic model (6, 6); multipliers (m,)."""
-        root = np.linalg.cholesky(curvature)
+        """The best step within the limits, by a quadratic model (6, 6); multipliers (m,).
+
+        These are NaN where there is none, or rounding has left the model no minimum.
+        """
+        try:
+            root = np.linalg.cholesky(curvature)
+        except np.linalg.LinAlgError:
+            return self.goal, np.full(len(self.slack), np.nan)
         turned = np.linalg.solve(root, np.vstack([self.goal, self.normals]).T)
         step, weights = nearest_point(turned[:, 0], turned[:, 1:].T, self.slack)
         return np.linalg.solve(root.T, step), weights
@@ -103,15 +110,16 @@ class Descent:
         active = weights > 0.0
         if active.any():
             rows = np.flatnonzero(here.rows)[active]
-            inverse = np.linalg.pinv(here.normals[active])
+            inverse = np.linalg.pinv(here.normals[active]).T
             for _ in range(RESTORATIONS):
                 margins = read_limits(self.machine, trials).margins[:, rows]
-                slack = np.nan_to_num(margins / here.steepness[active]) - self.clearance
-                trials = displaced(self.machine, trials, -np.minimum(slack, 0.0) @ inverse.T)
+                lack = self.clearance - margins / here.steepness[active]
+                lack = np.fmax(lack, 0.0)  # NaN, of a leg that does not close, lacks nothing
+                trials = displaced(self.machine, trials, lack @ inverse)
         inside = admits(self.machine, trials)
         distances = np.where(inside, distance(self.machine, trials, self.target), np.inf)
         best = int(np.argmin(distances))
-        is_nearer = distances[best] < float(np.linalg.norm(here.goal)) * (1.0 - 1e-12)
+        is_nearer = distances[best] < math.sqrt(here.goal @ here.goal) * (1.0 - 1e-12)
         return trials[best] if is_nearer else None
 
 

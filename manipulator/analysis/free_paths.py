@@ -24,7 +24,7 @@ def is_joint_box(machine: Machine) -> bool:
 
 
 def _without_frames(part: object) -> object:
-    """The machine's own limit, where it is asked in other frames."""
+    """The machine's own limit, behind one in other frames."""
     return getattr(part, 'inner', part)
 
 
@@ -43,11 +43,8 @@ def admits(machine: Machine, poses: Pose, near: Array | None = None) -> Mask:
 
 def keeps_limits(machine: Machine, poses: Pose, joints: Array) -> Mask:
     """Which of the poses (N,) with their joints (N, n), NaN where they do not close, are kept."""
-    inside = np.asarray(np.isfinite(joints).all(axis=-1), dtype=np.bool_)
-    if inside.all():
-        return machine.constraints.admits(poses, joints)
-    inside[inside] = machine.constraints.admits(poses[inside], joints[inside])
-    return inside
+    inside = machine.constraints.admits(poses, joints)
+    return inside if np.isfinite(joints.sum()) else inside & np.isfinite(joints).all(axis=-1)
 
 
 def line_between(machine: Machine, start: Pose, end: Pose) -> Pose:
@@ -63,7 +60,7 @@ def is_free(machine: Machine, start: Pose, end: Pose) -> bool:
 
 
 def is_connected(machine: Machine, pose: Pose) -> bool:
-    """Whether a free path leads from home to an admitted pose: straight, or bent about limits.
+    """Whether a free path leads from home to an admitted pose: straight, or a detour about limits.
 
     True is certain (to 1/70 of the characteristic length); False means that none was found.
     """
@@ -79,7 +76,7 @@ def is_connected(machine: Machine, pose: Pose) -> bool:
 
 
 def are_linked(machine: Machine, start: Pose, end: Pose, bends: int = MOST_BENDS) -> bool:
-    """Whether a path is free that is straight, or bent at middles which are put inside."""
+    """Whether a path is free: straight, or a detour through middles that are moved inside."""
     if is_free(machine, start, end):
         return True
     middle = put_inside(machine, start.moved(0.5 * start.twist_to(end))) if bends else None

@@ -101,11 +101,12 @@ def nearest_reachable(machine: Machine, target: Pose, most_steps: int = MOST_STE
         pose = nearest_by_joints(machine, target)
         return Nearest(pose, float(distance(machine, pose, target)))
     starts = _starts(machine, target)
-    ends = [_settled(machine, target, start, most_steps) for start in starts]
-    found = [(float(distance(machine, pose, target)), k) for k, pose in enumerate(ends)]
-    for metres, k in sorted(found):
-        if is_connected(machine, ends[k]) or are_linked(machine, starts[k], ends[k]):
-            return Nearest(ends[k], metres)
+    near = [descended(machine, target, start, most_steps) for start in starts]
+    found = [(float(distance(machine, pose, target)), k) for k, pose in enumerate(near)]
+    for _, k in sorted(found):
+        end = _settled(machine, target, near[k], most_steps)
+        if is_connected(machine, end) or are_linked(machine, starts[k], end):
+            return Nearest(end, float(distance(machine, end, target)))
     return Nearest(starts[0], float(distance(machine, starts[0], target)))
 
 
@@ -113,7 +114,7 @@ def _settled(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Po
     """A local minimum, left again as long as a random pose near it is nearer to the target."""
     generator = np.random.default_rng(8)
     length = machine.kinematics.characteristic_length
-    pose = descended(machine, target, start, most_steps)
+    pose = start
     for _ in range(KICKS):
         radii = length * generator.choice(KICK_RADII, (KICK_POSES, 1))
         trials = displaced(machine, pose, radii * generator.standard_normal((KICK_POSES, 6)))

@@ -37,7 +37,7 @@ class Reach:
 
     @property
     def broken(self) -> tuple[LimitReading, ...]:
-        """The limits in the way."""
+        """The limits that are broken."""
         return tuple(r for r in self.limits if r.margin < 0.0) if not self.is_admitted else ()
 
 

@@ -29,7 +29,8 @@ def offset(machine: Machine, start: Pose, end: Pose) -> Array:
 
 def distance(machine: Machine, start: Pose, end: Pose) -> Array:
     """√(|Δp|² + L²·angle²) in metres (...), L the characteristic length."""
-    result: Array = np.linalg.norm(offset(machine, start, end), axis=-1)
+    step = offset(machine, start, end)
+    result: Array = np.sqrt((step * step).sum(axis=-1))
     return result
 
 
@@ -43,7 +44,7 @@ class LimitReading(Violation):
     """One limited value at one pose.
 
     distance is about how far the pose is from the limit, in metres (rotations scaled by the
-    characteristic length): margin by slope, negative outside, ∞ where the value stands still.
+    characteristic length): margin by slope, negative outside, ∞ where the value does not change.
     """
 
     distance: float
@@ -79,10 +80,5 @@ def read_limits(machine: Machine, pose: Pose, near: Array | None = None) -> Read
 
 def readings_of(machine: Machine, pose: Pose, joints: Array) -> Readings:
     """All limits at poses (...) with their joints (..., n), NaN where they do not close."""
-    limits = machine.constraints.limits
-    return Readings(
-        tuple((limit.quantity, o, limit.unit) for limit in limits for o in limit.owners),
-        np.concatenate([limit.values(pose, joints) for limit in limits], axis=-1),
-        np.concatenate([limit.low for limit in limits]),
-        np.concatenate([limit.high for limit in limits]),
-    )
+    limits = machine.constraints
+    return Readings(limits.names, limits.values(pose, joints), limits.low, limits.high)

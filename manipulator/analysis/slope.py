@@ -37,6 +37,7 @@ def nearest_point(target: Array, normals: Array, slack: Array) -> tuple[Array, A
 
 STEP = 1e-6
 """Of the differences, as part of the characteristic length."""
+AROUND = STEP * np.concatenate([np.zeros((1, 6)), np.eye(6), -np.eye(6)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,17 +55,16 @@ class Slopes:
 
 def slopes(machine: Machine, pose: Pose, near: Array | None = None) -> Slopes:
     """By differences in all six directions, to one side where the other does not close."""
-    step = STEP * machine.kinematics.characteristic_length
-    around = np.concatenate([np.zeros((1, 6)), step * np.eye(6), -step * np.eye(6)])
-    readings = read_limits(machine, displaced(machine, pose, around), near)
-    margins = np.where(np.isfinite(readings.margins), readings.margins, np.nan)
-    ahead = (margins[1:7] - margins[0]) / step
-    behind = (margins[0] - margins[7:]) / step
-    either = np.where(np.isnan(ahead), behind, ahead)
-    gradients = np.where(np.isnan(ahead + behind), either, (ahead + behind) / 2)
-    steeper = np.fmax(np.abs(ahead), np.abs(behind))
+    length = machine.kinematics.characteristic_length
+    readings = read_limits(machine, displaced(machine, pose, length * AROUND), near)
+    margins = readings.margins
+    with np.errstate(invalid='ignore'):  # without a bound, the difference of two infinities
+        sides = np.stack([margins[1:7] - margins[0], margins[0] - margins[7:]]) / (STEP * length)
+    sides = np.where(np.isfinite(sides), sides, sides[::-1])
+    sides[~np.isfinite(sides)] = 0.0
+    steeper = np.abs(sides).max(axis=0)
     return Slopes(
         replace(readings, values=readings.values[0]),
-        np.nan_to_num(gradients).T,
-        np.linalg.norm(np.nan_to_num(steeper), axis=0),
+        ((sides[0] + sides[1]) / 2).T,
+        np.sqrt((steeper * steeper).sum(axis=0)),
     )

@@ -106,7 +106,7 @@ class Survey:
 def survey(machine: Machine, points: int, tilt: float, on_progress: OnProgress) -> Survey:
     """From `points` positions with home's orientation, and a 64th of them with some other.
 
-    Where they are to be looked for is found from fewer positions where few are asked for.
+    The box to search is found from fewer positions where few are requested.
     """
     home, length = machine.kinematics.home, machine.kinematics.characteristic_length
     found = ranges(machine, partial(on_progress, 'ranges'))

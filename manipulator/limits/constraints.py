@@ -3,28 +3,74 @@
 A limit that a machine is beyond is stretched for the way back.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from manipulator.arrays import Array, Mask, frozen
 from manipulator.errors import LimitViolated
-from manipulator.limits.limit import Limit, LimitOf, Violation, admitted
+from manipulator.limits.limit import Bounds, Grouped, Limit, LimitGroup, LimitOf, Violation
 from manipulator.pose import Pose
 
 
 @dataclass(frozen=True)
 class Constraints:
-    """All limits of a machine on its configuration (pose and joints together)."""
+    """All limits of a machine on its configuration (pose and joints together).
+
+    What a group of limits has in common is computed once.
+    """
 
     limits: tuple[Limit, ...]
+    names: tuple[tuple[str, str, str], ...] = field(init=False, compare=False, repr=False)
+    low: Array = field(init=False, compare=False, repr=False)
+    high: Array = field(init=False, compare=False, repr=False)
+    places: tuple[tuple[LimitGroup | None, slice], ...] = field(
+        init=False, compare=False, repr=False
+    )
+    checks: tuple[tuple[LimitGroup, Array], ...] = field(init=False, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Puts all values in a row: names (quantity, owner, unit), bounds, who computes them."""
+        limits = self.limits
+        places = tuple(_place(limit) for limit in limits)
+        parts: dict[LimitGroup, list[Bounds]] = {}
+        for (group, columns), limit in zip(places, limits, strict=True):
+            if group is not None:
+                parts.setdefault(group, []).append((columns, limit.low, limit.high))
+        for name, value in {
+            'names': tuple(
+                (limit.quantity, o, limit.unit) for limit in limits for o in limit.owners
+            ),
+            'low': frozen(np.concatenate([[], *(limit.low for limit in limits)])),
+            'high': frozen(np.concatenate([[], *(limit.high for limit in limits)])),
+            'places': places,
+            'checks': tuple((group, group.ranges(bounds)) for group, bounds in parts.items()),
+        }.items():
+            object.__setattr__(self, name, value)
 
     def admits(self, pose: Pose, joints: Array) -> Mask:
         """Which of the configurations (...) keep every limit."""
-        inside: Mask = np.ones(np.shape(joints)[:-1], dtype=np.bool_)
-        for limit in self.limits:
-            inside &= admitted(limit, pose, joints)
-        return inside
+        masks = [group.keeps(ranges, pose, joints) for group, ranges in self.checks]
+        for (group, _), limit in zip(self.places, self.limits, strict=True):
+            if group is None:
+                values = limit.values(pose, joints)
+                inside = (values >= limit.low) & (values <= limit.high)
+                masks.append(np.asarray(inside.all(axis=-1)))
+        if len(masks) == 1:
+            return masks[0]
+        everything: Mask = np.ones(np.shape(joints)[:-1], dtype=np.bool_)
+        return np.asarray(np.logical_and.reduce([everything, *masks]))
+
+    def values(self, pose: Pose, joints: Array) -> Array:
+        """The values of all limits at configurations (...), one after the other: (..., k)."""
+        tables = {group: group.limited_values(pose, joints) for group, _ in self.checks}
+        return np.concatenate(
+            [
+                limit.values(pose, joints) if group is None else tables[group][..., columns]
+                for (group, columns), limit in zip(self.places, self.limits, strict=True)
+            ],
+            axis=-1,
+        )
 
     def stretched_to(self, pose: Pose, joints: Array) -> 'Constraints':
         """These limits for a machine that is beyond some of them: it may not go further out.
@@ -39,13 +85,12 @@ class Constraints:
 
     def violations(self, pose: Pose, joints: Array) -> list[Violation]:
         """Everything that one configuration violates, in the order of the limits."""
+        values = self.values(pose, joints)
         found = []
-        for limit in self.limits:
-            values = limit.values(pose, joints)
-            for k in np.flatnonzero(~((values >= limit.low) & (values <= limit.high))):
-                value, low, high = float(values[k]), float(limit.low[k]), float(limit.high[k])
-                owner = limit.owners[k]
-                found.append(Violation(limit.quantity, limit.unit, owner, value, low, high))
+        for k in np.flatnonzero(~((values >= self.low) & (values <= self.high))):
+            quantity, owner, unit = self.names[k]
+            value, low, high = float(values[k]), float(self.low[k]), float(self.high[k])
+            found.append(Violation(quantity, unit, owner, value, low, high))
         return found
 
     def check(self, pose: Pose, joints: Array) -> None:
@@ -53,6 +98,8 @@ class Constraints:
         if bool(self.admits(pose, joints)):
             return
         found = self.violations(pose, joints)
+        if not found:  # by the last digit of an angle, which `admits` compares by its cosine
+            return
         worst = found[0]
         digits = ''.join(c for c in worst.owner if c.isdigit())
         raise LimitViolated(
@@ -62,6 +109,11 @@ class Constraints:
             (worst.low, worst.high),
             int(digits) if digits else None,
         )
+
+
+def _place(limit: Limit) -> tuple[LimitGroup | None, slice]:
+    """Where its values are computed together with others, and which columns they are there."""
+    return (limit.group, limit.columns) if isinstance(limit, Grouped) else (None, slice(0))
 
 
 ROUNDING = 1e-9

@@ -1,8 +1,8 @@
 """What a limit is: named values of a configuration and the range that each must keep."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
@@ -16,8 +16,7 @@ class Limit(Protocol):
     """k values computed from a pose and its joints, each with its own range.
 
     quantity and unit go into messages; owners are who each value belongs to ('leg 3', or '' when
-    it is the whole platform's). A limit that can decide faster than by its values what it admits
-    may offer `admits(pose, joints) -> Mask` as well.
+    it is the whole platform's).
     """
 
     @property
@@ -50,14 +49,39 @@ class Limit(Protocol):
         ...
 
 
-def admitted(limit: Limit, pose: Pose, joints: Array) -> Mask:
-    """Which configurations (...) keep one limit."""
-    quick: Callable[[Pose, Array], Mask] | None = getattr(limit, 'admits', None)
-    if quick is not None:
-        return quick(pose, joints)
-    values = limit.values(pose, joints)
-    inside = (values >= limit.low) & (values <= limit.high)
-    return np.asarray(inside.all(axis=-1), dtype=np.bool_)
+Bounds: TypeAlias = tuple[slice, Array, Array]
+"""Columns of a group's values, and the lowest and highest that each may be."""
+
+
+class LimitGroup(Protocol):
+    """A machine that computes the values of many limits at once, and judges them."""
+
+    def limited_values(self, pose: Pose, joints: Array) -> Array:
+        """All values (..., K), NaN where there is none."""
+        ...
+
+    def ranges(self, bounds: Sequence[Bounds]) -> Array:
+        """The ranges of some columns, the strictest of each, as `keeps` takes them."""
+        ...
+
+    def keeps(self, ranges: Array, pose: Pose, joints: Array) -> Mask:
+        """Which configurations (...) have finite joints and all values in their ranges."""
+        ...
+
+
+@runtime_checkable
+class Grouped(Protocol):
+    """A limit whose values are `columns` of those of a group, unless the group is None."""
+
+    @property
+    def group(self) -> LimitGroup | None:
+        """What computes them."""
+        ...
+
+    @property
+    def columns(self) -> slice:
+        """Where they stand there."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -101,9 +125,19 @@ class Violation:
 
 @dataclass(frozen=True, eq=False)
 class LimitOf:
-    """A limit with the quantity, unit and owners of `inner`."""
+    """A limit with the quantity, unit, owners and group of `inner`."""
 
     inner: Limit
+
+    @property
+    def group(self) -> LimitGroup | None:
+        """That of the limit."""
+        return self.inner.group if isinstance(self.inner, Grouped) else None
+
+    @property
+    def columns(self) -> slice:
+        """Those of the limit."""
+        return self.inner.columns if isinstance(self.inner, Grouped) else slice(0)
 
     @property
     def quantity(self) -> str:

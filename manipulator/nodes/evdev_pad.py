@@ -80,7 +80,7 @@ class EvdevPad:
         except BlockingIOError:
             return []
         except OSError as error:
-            raise LinkError(f'{self.name} has gone ({error.strerror})') from error
+            raise LinkError(f'{self.name} was disconnected ({error.strerror})') from error
 
 
 def input_devices() -> list[str]:

@@ -45,8 +45,8 @@ def checked(name: str, value: Any, default: Any, bounds: tuple[float, float] | N
     if isinstance(default, float) and isinstance(value, int) and not isinstance(value, bool):
         value = float(value)
     if type(value) is not type(default):
-        wanted = type(default).__name__
-        raise InvalidInput(f'parameter {name}: {shown(value)} is not a {wanted}')
+        expected = type(default).__name__
+        raise InvalidInput(f'parameter {name}: {shown(value)} is not a {expected}')
     if bounds is not None and not bounds[0] <= value <= bounds[1]:
         raise InvalidInput(f'parameter {name}: {value} outside [{bounds[0]}, {bounds[1]}]')
     return value

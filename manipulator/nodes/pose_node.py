@@ -99,7 +99,7 @@ def declare_prefix(node: Node) -> str:
     prefix = str(declare(node, 'frame_prefix', '', meaning))
     if re.fullmatch(r'([A-Za-z_][\w/-]*)?', prefix, re.ASCII) is None:
         raise InvalidInput(
-            f'parameter frame_prefix: {shown(prefix)} is no beginning of a frame name'
+            f'parameter frame_prefix: {shown(prefix)} is not a valid prefix of a frame name'
         )
     return prefix
 

@@ -94,7 +94,7 @@ class JogMotion:
     'speed of joint 2', 'crank angle of leg 3', 'wrist singularity (…)'.
 
     For the jogger's next step: off_line (6,) is the twist that would bring the tool back onto its
-    commanded line within a second, in base axes; is_leaving: it is on its way out of a singular
+    commanded line within a second, in base axes; is_leaving: it moves out of a singular
     posture, off the line; is_under_way: it moves, or has stopped, on the line.
     """
 

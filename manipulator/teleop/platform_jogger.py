@@ -1,8 +1,8 @@
 """Jogging any machine by its inverse kinematics, with the braking path checked at every tick.
 
 A platform's limits (reach, rod ends, singularity margin) cannot be turned into joint ranges. So
-each tick drives only such a twist from which braking straight ahead keeps all of them: that way
-is there to be taken when no other twist is allowed. It ends at the edge, where everything that
+each tick drives only a twist from which braking straight ahead keeps all of them: braking
+remains available when no other twist is allowed. It ends at the edge, where everything that
 led there is open for the way back.
 """
 
@@ -41,7 +41,7 @@ class PlatformJogger:
             paths = self._paths(motion, aims[first:last], dt)
             inside = constraints.admits(paths.poses, paths.joints)
             if first == 0 and not paths.fit(inside)[0]:
-                # Stretched limits let more through: they matter where something is in the way.
+                # Stretched limits let more through: they matter where a limit is broken.
                 constraints = constraints.stretched_to(motion.pose, motion.joints)
                 if constraints is not self.machine.constraints:
                     inside = constraints.admits(paths.poses, paths.joints)

@@ -2,7 +2,7 @@
 
 It combines the motion supervisor (supervisor.py), jogging (teleop.py), path planning and commands
 that came too early, in the order of a tick. It measures how late ticks come, and how far the
-machine lags behind a stream of goals that asks for more than it can do.
+machine lags behind a stream of goals that exceeds its limits.
 """
 
 from collections import deque
@@ -19,10 +19,9 @@ from manipulator.pose import Pose
 from manipulator.states import MotionResult
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.early_command import EarlyCommand
-from manipulator.trajectory.executor import STOPPED
 from manipulator.trajectory.following_error import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.motion_status import MotionNews, MotionStatus
+from manipulator.trajectory.motion_status import STOPPED, MotionNews, MotionStatus
 from manipulator.trajectory.path_planning import PathGoal, PathPlanning
 from manipulator.trajectory.supervisor import MotionSupervisor
 from manipulator.trajectory.teleop import Teleop
@@ -87,11 +86,11 @@ class Answer:
 
 
 class MotionController:
-    """One machine's; poses are the platform's in the base frame, unless it says otherwise.
+    """One machine's; poses are the platform's in the base frame, unless stated otherwise.
 
     Times are monotonic, in seconds; stamps are those of the messages, and name their commands. It
-    is called from one thread. Commands raise Refused where nobody may drive; commands that
-    come while the machine is about to be taken over wait for that (early_command.py).
+    is called from one thread. Commands raise Refused where the machine cannot be driven; those
+    that come while it is about to be taken over wait for that (early_command.py).
     """
 
     def __init__(

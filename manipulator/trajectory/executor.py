@@ -19,16 +19,11 @@ from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.jogging import JogCommand, Jogging
 from manipulator.trajectory.joint_move import JointMove
-from manipulator.trajectory.motion_status import MotionStatus
+from manipulator.trajectory.motion_status import OVERTAKEN, STOPPED, TAKEN_OVER, MotionStatus
 from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import Hold, MotionState, Plan
 from manipulator.trajectory.planning import Planned, Planning
 from manipulator.trajectory.worker import InPlace, Worker
-
-OVERTAKEN = 'replaced by a newer command while the path was planned'
-STOPPED = 'stopped before it began'
-TAKEN_OVER = 'the machine was taken over again while the path was planned'
-"""Why an expected path is not executed."""
 
 
 class Executor:
@@ -114,7 +109,7 @@ class Executor:
             self._drop()
             self._scaling.is_stopping = not self._active.is_hold
         if command is not None:
-            self._drop_path(_taken_over_by(command))
+            self._drop_path(command.takeover)
         self._jog_command = command
 
     def note_measured(self, pose: Pose) -> None:
@@ -284,8 +279,4 @@ class Executor:
                 self._planning.request(waiting)
         else:
             command = self._jog_command if result == MotionResult.STOPPED else None
-            self._report(result, stamp, _taken_over_by(command) if command else '')
-
-
-def _taken_over_by(command: JogCommand) -> str:
-    return f'{command.source} took over the machine'
+            self._report(result, stamp, command.takeover if command else '')

@@ -9,6 +9,7 @@ import numpy as np
 from manipulator.arrays import Array, frozen
 from manipulator.deadlines import FOLLOWING_PATIENCE
 from manipulator.machine import Machine
+from manipulator.pose import Pose
 from manipulator.states import MotionResult
 from manipulator.trajectory.motion_status import MotionStatus
 
@@ -17,6 +18,12 @@ WINDOW = 0.5
 
 ARRIVAL_PATIENCE = 1.0
 """Seconds that the joints may take to arrive once a plan's time is over."""
+
+TAKEOVER_SHARE = 0.1
+"""Of the following tolerance: how far joints may be from the pose at takeover."""
+
+MISMATCHES = 50
+"""Poses in a row that do not match the joints before that is reported: some are only late."""
 
 FOLLOWING_SHARE, MOST_FOLLOWING = 0.06, 0.2
 """Of a joint's range (and rad, for joints that turn) that it may be from its commands."""
@@ -105,6 +112,39 @@ class FollowingError:
         allowed = f'tolerance {tolerance[k] * factor:.3g}{unit}'
         words = f'{away[k] * factor:.3g}{unit} away from {what} ({allowed})'
         return f'{self._names[k]} is {words}', float(away[k] - tolerance[k])
+
+
+class PoseMatch:
+    """Whether a reported pose matches the reported joints: only there a machine is taken over."""
+
+    def __init__(self, machine: Machine, tolerance: Array) -> None:
+        """Tolerance (n,): the following tolerance of each joint."""
+        self.reason = ''
+        self._kinematics = machine.kinematics
+        self._allowed = TAKEOVER_SHARE * tolerance
+        self._mismatches = 0
+
+    def fits(self, pose: Pose, joints: Array) -> bool:
+        """Compares a platform pose, which may be late, with joints (n,).
+
+        A mismatch that lasts sets `reason`: a leg is on the other branch and nearly straight.
+        """
+        gaps = np.abs(self._kinematics.inverse(pose, joints) - joints)
+        if (gaps < self._allowed).all():
+            return True
+        self._mismatches += 1
+        if self._mismatches == MISMATCHES:
+            worst = int(np.argmax(gaps))
+            self.reason = (
+                f'its pose does not match {self._kinematics.joint_names[worst]}, which differs by '
+                f'{gaps[worst]:.2g} {self._kinematics.joint_unit}: disable and enable it; it then '
+                'parks'
+            )
+        return False
+
+    def clear(self) -> None:
+        """Forgets mismatches."""
+        self._mismatches, self.reason = 0, ''
 
 
 class Arrival:

@@ -26,6 +26,11 @@ class JogCommand:
     frame: str
     mode: JogMode
 
+    @property
+    def takeover(self) -> str:
+        """The reason of a motion that it ends."""
+        return f'{self.source} took over the machine'
+
 
 class Jogging:
     """From rest, through twists, to rest again; poses are T_work_pivot."""

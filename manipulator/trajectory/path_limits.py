@@ -1,4 +1,4 @@
-"""What a machine's limits say about the speed along a path: docs/motion.md, section 5.
+"""The speed along a path within a machine's limits: docs/motion.md, section 5.
 
 With ' for d/ds, a joint moves at q'·ṡ and accelerates by q'·s̈ + q''·ṡ²; platform and tool alike.
 On each interval between two nodes q'' is the mean, Δq'/Δs.
@@ -58,13 +58,13 @@ def fastest(rows: Rows, highest: Array) -> Array:
     return np.asarray(best, dtype=np.float64)
 
 
-def _solved(wanted: Array, given: Array, bound: Array) -> tuple[Array, Array]:
-    """Cap and gain: each wanted square ≤ cap + gain·(the given one); ∞ and 0 where not bound.
+def _solved(limited: Array, given: Array, bound: Array) -> tuple[Array, Array]:
+    """Cap and gain: each limited square ≤ cap + gain·(the given one); ∞ and 0 where not bound.
 
     A row that bounds both from above only restricts what `highest_kept` already does.
     """
-    is_bound = (wanted > 0) & (given < 0)
-    divisor = np.where(is_bound, wanted, 1.0)
+    is_bound = (limited > 0) & (given < 0)
+    divisor = np.where(is_bound, limited, 1.0)
     cap = np.where(is_bound, bound / divisor, np.inf)
     return cap, np.where(is_bound, -given / divisor, 0.0)
 

@@ -12,9 +12,9 @@ from manipulator.errors import ManipulatorError, Refused
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.states import MotionResult
-from manipulator.trajectory.executor import OVERTAKEN, Executor
+from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.motion_status import MotionNews, MotionStatus
+from manipulator.trajectory.motion_status import OVERTAKEN, MotionNews, MotionStatus
 from manipulator.trajectory.path_timing import PathRequest, TimedPath, plan_path
 from manipulator.trajectory.supervisor import MotionSupervisor
 from manipulator.trajectory.worker import Effort, Job, Worker

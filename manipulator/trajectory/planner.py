@@ -37,7 +37,7 @@ ROUNDING = 1e-6
 joints, and must not find one beyond it."""
 
 SAME_JOINTS = 1e-3
-"""rad or m within which joints count as those that were asked for."""
+"""rad or m within which joints count as the requested ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,10 +161,10 @@ def _check_arrival(machine: Machine, goal: Goal, joints: Array, dt: float, effor
     """Refused unless the goal can be met, and what it begins be driven, with `joints` (n,)."""
     if isinstance(goal.then, Cycle):
         check_cycle(machine, goal.then, joints, dt, effort)
-    wanted = goal.then.joints if isinstance(goal.then, TimedPath) else goal.joints
-    if wanted is None:
+    required = goal.then.joints if isinstance(goal.then, TimedPath) else goal.joints
+    if required is None:
         return
-    away = np.abs(joints - wanted)
+    away = np.abs(joints - required)
     worst = int(np.argmax(away))
     if away[worst] > SAME_JOINTS:
         name, unit = machine.kinematics.joint_names[worst], machine.kinematics.joint_unit

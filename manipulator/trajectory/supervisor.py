@@ -18,7 +18,7 @@ from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.states import MachineState, MotionMode, MotionResult
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.following_error import Arrival, FollowingError, Tolerances
+from manipulator.trajectory.following_error import Arrival, FollowingError, PoseMatch, Tolerances
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.worker import Worker
 
@@ -35,12 +35,6 @@ REMEDIES = {
     MachineState.FAULT: 'clear the fault first',
 }
 """What is missing before the machine can be driven, by machine state."""
-
-PRESENT = 0.1
-"""Of the following tolerance: how far joints may be from the pose at takeover."""
-
-MISMATCHES = 50
-"""Poses in a row that do not match the joints before that is reported: some are only late."""
 
 RESULTS = (MotionResult.REACHED, MotionResult.REFUSED, MotionResult.STOPPED)
 """Results of goals: still reported where a machine that held is taken over again at once."""
@@ -80,8 +74,7 @@ class MotionSupervisor:
         self._joints: Array | None = None
         self._pose: Pose | None = None
         self._arrival = Arrival(dt)
-        self._mismatches = 0
-        self._mismatch = ''
+        self._match = PoseMatch(machine, self._tolerances.following)
         self._override = 1.0
         self._is_paused = False
         self._next_frames: Frames | None = None
@@ -90,7 +83,7 @@ class MotionSupervisor:
     def executor(self) -> Executor:
         """Takes commands; Refused while the machine cannot be driven, NotYet where it soon can."""
         if self._executor is None:
-            is_soon = self._state in DRIVABLE and not self._mismatch
+            is_soon = self._state in DRIVABLE and not self._match.reason
             kind = NotYet if is_soon else Refused
             raise kind(f'the machine is {self._state or "unknown"}: {self._missing}')
         if not self._is_followed:
@@ -100,7 +93,7 @@ class MotionSupervisor:
     @property
     def _missing(self) -> str:
         if self._state in DRIVABLE:
-            return self._mismatch or 'its pose is not known yet'
+            return self._match.reason or 'its pose is not known yet'
         return REMEDIES.get(self._state, 'enable it first')
 
     @property
@@ -142,11 +135,11 @@ class MotionSupervisor:
             return
         if self._joints is None or self._state not in DRIVABLE:
             return
-        gaps = self._gaps(T_base_platform, self._joints)
-        if (gaps < PRESENT * self._tolerances.following).all():
+        if self._match.fits(T_base_platform, self._joints):
             self._take_over(T_base_platform, self._joints)
-        else:
-            self._note_mismatch(gaps)
+        elif self._match.reason:
+            stamp, reason = self.status.goal_stamp, self._match.reason
+            self.status = MotionStatus(MotionMode.DISABLED, MotionResult.IDLE, stamp, reason)
 
     def note_silence(self, seconds: float) -> None:
         """Seconds without a pose: first the plan brakes on its path, later it is dropped."""
@@ -247,32 +240,10 @@ class MotionSupervisor:
         self._arrival = Arrival(self._dt)
         self.status = executor.status if self._is_followed else CONNECTING
 
-    def _gaps(self, T_base_platform: Pose, joints: Array) -> Array:
-        """Distance of each joint from those of a pose, which may be late."""
-        gaps: Array = np.abs(self._bare.kinematics.inverse(T_base_platform, joints) - joints)
-        return gaps
-
-    def _note_mismatch(self, gaps: Array) -> None:
-        """Reports the joint that prevents the takeover, once that lasts.
-
-        So it is where a leg is on the other branch and nearly straight: no motion begins there.
-        """
-        self._mismatches += 1
-        if self._mismatches == MISMATCHES:
-            worst = int(np.argmax(gaps))
-            kinematics = self._bare.kinematics
-            self._mismatch = (
-                f'its pose does not match {kinematics.joint_names[worst]}, which differs by '
-                f'{gaps[worst]:.2g} {kinematics.joint_unit}: disable and enable it; it then parks'
-            )
-            self.status = MotionStatus(
-                MotionMode.DISABLED, MotionResult.IDLE, self.status.goal_stamp, self._mismatch
-            )
-
     def _clear_mismatch(self) -> None:
-        if self._mismatch:
+        if self._match.reason:
             self.status = DISABLED
-        self._mismatches, self._mismatch = 0, ''
+        self._match.clear()
 
     def _take_frames(self, frames: Frames) -> None:
         old, self.machine = self.machine, in_frames(self._bare, frames)

@@ -197,10 +197,10 @@ def test_what_is_so_already_is_not_asked_of_a_machine_that_may_be_moving(enabled
 
 
 def test_a_refusal_is_reported_with_what_is_wrong_with_the_board(rig):
-    rig.driver.link.lost('/dev/ttyACM0 has vanished', rig.now)
+    rig.driver.link.lost('/dev/ttyACM0 was disconnected', rig.now)
     asked = rig.driver.enable(True)
     rig.run(STEP)
-    reason = 'no board is connected: no port: /dev/ttyACM0 has vanished'
+    reason = 'no board is connected: no port: /dev/ttyACM0 was disconnected'
     assert rig.driver.answer(asked) == (False, reason)
 
 

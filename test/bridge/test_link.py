@@ -218,9 +218,9 @@ def test_a_lost_port_is_looked_for_again_and_its_board_comes_back_disarmed(rig):
     rig.put(3200)
     asked = rig.link.request(Disarm())
     rig.link.turn(b'', rig.now)
-    rig.link.lost('the port has vanished', rig.now)
-    assert str(asked.exception(0.0)) == 'the port has vanished'
-    assert rig.logged(Ticket, Disconnected) == [Disconnected('the port has vanished')]
+    rig.link.lost('the port was disconnected', rig.now)
+    assert str(asked.exception(0.0)) == 'the port was disconnected'
+    assert rig.logged(Ticket, Disconnected) == [Disconnected('the port was disconnected')]
     assert not rig.link.wants_port(rig.now)
     assert rig.link.rest(rig.now) == LOOK_AGAIN_AFTER
     rig.now += LOOK_AGAIN_AFTER
@@ -234,7 +234,7 @@ def test_a_lost_port_is_looked_for_again_and_its_board_comes_back_disarmed(rig):
 
 
 def test_without_a_port_requests_are_refused_and_a_stop_is_sent_as_soon_as_there_is_one(rig):
-    rig.link.lost('the port has vanished', rig.now)
+    rig.link.lost('the port was disconnected', rig.now)
     asked = rig.link.request(Stop())
     rig.run(0.1)
     with pytest.raises(Refused, match='no board is connected: no port'):

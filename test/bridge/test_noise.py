@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from bridge.events import StateReceived
 from bridge.fake.board import Board
-from bridge.fake.board_modes import BoardSettings
+from bridge.fake.board_settings import BoardSettings
 from bridge.framing import FrameReader
 from bridge.link import Link
 from bridge.link_thread import LinkThread, SerialPort

@@ -92,8 +92,8 @@ def test_the_servo_returns_to_its_new_centre_before_the_next_one_is_asked_for():
     ('keys', 'text'),
     [
         (['y'], 'jog it by 20 µs first'),
-        (['enter'], 'means nothing here'),
-        (['s', '=', '.', 'enter'], 'is no number'),
+        (['enter'], 'has no function here'),
+        (['s', '=', '.', 'enter'], 'is not a number'),
         (['s', 'enter', '=', '9', '0', 'enter'], 'too near the centre'),
         (['s', 'enter', '+', 'right', 'right', 'right', '=', '9', '0', 'enter'], 'contradicts'),
         (['s', 'enter', '+', 'right', 'right', '=', '1', '7', '0', 'enter'], 'read it again'),

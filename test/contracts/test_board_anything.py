@@ -108,7 +108,7 @@ def told(driver, seed):
 
 
 @pytest.mark.parametrize('seed', range(6))
-def test_twin_and_firmware_answer_alike(make_both, seed):
-    twin, firmware = (told(driver, seed) for driver in make_both(arm_interval_us=20_000))
-    for ours, theirs in zip(twin, firmware, strict=True):
+def test_computer_and_chip_answer_alike(make_both, seed):
+    computer, chip = (told(driver, seed) for driver in make_both(arm_interval_us=20_000))
+    for ours, theirs in zip(computer, chip, strict=True):
         assert ours[1:] == theirs[1:], f'after {ours[0]}'

@@ -115,6 +115,18 @@ def test_a_table_larger_than_the_memory_is_refused(armed):
     assert armed.ask(TableBegin(448, 50)) is Result.OK
 
 
+@pytest.mark.parametrize(('joints', 'rows'), [(6, 448), (8, 336)])
+def test_the_largest_table_is_taken_to_its_last_count_and_played(make_driver, joints, rows):
+    ranges, speeds = ((1100, 4900),) * joints, (12_600.0,) * joints
+    driver = make_driver(count_ranges=ranges, count_speeds=speeds, hexapod=None)
+    table = [tuple(3000 + (7 * k + i) % 100 for i in range(joints)) for k in range(rows)]
+    driver.arm(table[0])
+    assert driver.upload(table) is Result.OK
+    assert driver.ask(Play(Program.TABLE, True)) is Result.OK
+    driver.run(1.0)
+    assert driver.state().mode is Mode.PLAYING
+
+
 @pytest.mark.parametrize(('rows', 'step_ms'), [(0, 50), (1, 50), (2, 19), (2, 0)])
 def test_a_table_without_way_or_time_is_refused(armed, rows, step_ms):
     assert armed.ask(TableBegin(rows, step_ms)) is Result.BAD_TABLE

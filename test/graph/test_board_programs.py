@@ -8,8 +8,7 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from hexarm.board import build as firmware_build
-from hexarm.graph import Executable, Graph
+from hexarm.graph import Executable, Graph, board_process
 from manipulator.errors import Refused
 from manipulator.nodes.qos import COMMAND, LATCHED
 from patient_user import PatientUser
@@ -60,8 +59,7 @@ def rig(request, tmp_path_factory):
     board = Executable('fake_hardware', {'machine': 'robocake', 'link': str(link)})
     if request.param == 'chip':
         request.getfixturevalue('chip_tools')
-        command = firmware_build.chip_process('robocake', link)
-        board = Executable('chip', command=command)
+        (board,) = board_process('robocake', 'simavr', link)
     parameters = {'machine': 'robocake', 'port': str(link), 'board_cycle.amplitude': AMPLITUDE}
     parameters['board_cycle.frequency'] = '[1.0,1.0,1.0,1.0,1.0,1.0]'
     bridge = Executable('serial_bridge', parameters, needs=link)

@@ -122,4 +122,4 @@ def test_prefix_that_tf2_would_refuse_is_refused(pose_node):
     node = pose_node('refused', frame_prefix='/hexapod/')
     said = node.communicate(timeout=60)[1]
     assert node.returncode == 1
-    assert "parameter frame_prefix: '/hexapod/' is no beginning of a frame name" in said
+    assert "parameter frame_prefix: '/hexapod/' is not a valid prefix of a frame name" in said

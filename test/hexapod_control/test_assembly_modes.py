@@ -237,11 +237,19 @@ def test_wrong_input_is_named():
         assembly_modes(base, platform, [1, 1, np.nan, 1, 1, 1])
 
 
-def test_the_null_space_is_exact_though_found_from_squares():
+def test_the_null_space_is_as_exact_as_the_equations_fix_it():
     random = np.random.default_rng(13)
     left, right = (np.linalg.qr(random.normal(size=(60, 60)))[0] for _ in range(2))
     singular = np.concatenate([np.geomspace(1.0, 1e-4, 50), np.zeros(10)])
     matrix = (left * singular) @ right.T
-    null = _null_space(matrix)
+    null = _null_space(matrix.T, 40)
     assert null.shape == (60, 10)
+    np.testing.assert_allclose(null.T @ null, np.eye(10), atol=1e-12)
     assert np.abs(right[:, :50].T @ null).max() < 1e-11
+
+
+def test_dependent_leading_columns_are_refused():
+    random = np.random.default_rng(14)
+    columns = random.normal(size=(30, 8)) @ random.normal(size=(8, 20))
+    with pytest.raises(NoSolution, match='finitely many'):
+        _null_space(columns, 10)

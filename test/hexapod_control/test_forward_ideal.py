@@ -21,14 +21,16 @@ def problem(random, planar):
     return equations, 1.7 * e, 1.7**2 * s
 
 
-def values(generators, e, s):
-    result = []
-    for g in generators:
-        total = 0.0
-        for k, coefficient in enumerate(g.coefficients):
-            point = monomials.evaluate(g.degree - 2 * k, e[None])[0]
-            total = total + s**k * coefficient @ point
-        result.append(total / np.sqrt(sum(np.sum(c * c) for c in g.coefficients)))
+def values(coefficients, e, s):
+    """Of the cubics, the quartics and the sextics at e and s."""
+    result, start = [], 0
+    for degree, powers, count in monomials.GENERATORS:
+        point = np.concatenate(
+            [s**k * monomials.evaluate(degree - 2 * k, e[None])[0] for k in range(powers)]
+        )
+        size = count * len(point)
+        result.append(coefficients[start : start + size].reshape(count, -1) @ point)
+        start += size
     return result
 
 
@@ -37,10 +39,10 @@ def test_all_equations_hold_at_the_pose_and_fail_beside_it(planar):
     random = np.random.default_rng(1)
     for _ in range(10):
         equations, e, s = problem(random, planar)
-        generators = equations.generators()
-        assert all(np.abs(v).max() < 1e-12 for v in values(generators, e, s))
+        coefficients = equations.coefficients()
+        assert all(np.abs(v).max() < 1e-12 for v in values(coefficients, e, s))
         beside = e + 0.01 * random.normal(size=4)
-        assert all(np.abs(v).max() > 1e-6 for v in values(generators, beside, s))
+        assert all(np.abs(v).max() > 1e-6 for v in values(coefficients, beside, s))
 
 
 def test_turned_is_the_rotation_times_the_squared_length():
@@ -69,3 +71,16 @@ def test_scaled_monomials_have_the_length_of_their_point():
     for degree in range(9):
         length = np.linalg.norm(monomials.scales(degree) * monomials.evaluate(degree, e))
         assert length == pytest.approx(np.linalg.norm(e) ** degree)
+
+
+def test_the_mixed_multiples_vanish_at_a_solution():
+    random = np.random.default_rng(5)
+    for _ in range(5):
+        equations, e, s = problem(random, planar=False)
+        table = monomials.multiples(8, monomials.GENERATORS)
+        assert (table.rows, table.columns) == (774, 284)
+        mixed = table.mixed(equations.coefficients(), 252)
+        plain = [s**k * monomials.evaluate(8 - 2 * k, e[None])[0] for k in range(3)]
+        point = monomials.row_scales(8) * np.concatenate(plain)
+        assert np.abs(mixed.T @ point).max() < 1e-11
+        assert np.linalg.matrix_rank(mixed, tol=1e-9) == 244

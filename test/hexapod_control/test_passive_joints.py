@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hexapod_control.passive_joints import CrankJointTilt, PlatformJointSwing
+from hexapod_control.leg_limits import crank_joint_tilt, platform_joint_swing
 from manipulator.pose import Pose
 
 
@@ -14,12 +14,12 @@ def rods(hexapod, pose, joints):
 
 @pytest.fixture
 def swing(hexapod):
-    return PlatformJointSwing(hexapod, 0.5)
+    return platform_joint_swing(hexapod, 0.5)
 
 
 @pytest.fixture
 def tilt(hexapod):
-    return CrankJointTilt(hexapod, 0.3)
+    return crank_joint_tilt(hexapod, 0.3)
 
 
 def test_nothing_swings_at_home(hexapod, swing, tilt):
@@ -50,11 +50,14 @@ def test_crank_joints_turn_freely_about_their_bolt(hexapod, tilt):
 def test_a_rod_at_a_right_angle_to_its_cranks_plane_has_a_tilt(hexapod, tilt, side):
     """Rounding may make its sine a little more than one."""
     g, joints = hexapod.geometry, np.linspace(0.0, 3.0, 200)[:, None].repeat(6, axis=1)
+    at_home = np.arcsin(
+        (rods(hexapod, hexapod.home, hexapod.inverse(hexapod.home)) * g.normals).sum(1)
+    )
     for leg, tips in enumerate(hexapod.crank_tips(joints).swapaxes(0, 1)):
         ends = tips + side * g.rod_lengths[leg] * g.normals[leg]
         poses = Pose.from_xyz_rpy(ends - g.platform_points[leg])
         values = tilt.values(poses, joints)[:, leg]
-        np.testing.assert_allclose(values, side * np.pi / 2 - tilt.at_home[leg], atol=1e-7)
+        np.testing.assert_allclose(values, side * np.pi / 2 - at_home[leg], atol=1e-7)
 
 
 def test_crank_joints_tilt_by_what_the_platform_moves_outward(hexapod, tilt):
@@ -68,7 +71,7 @@ def test_limits_name_the_leg(robocake, hexapod):
     pose = Pose.from_xyz_rpy([0.0, 0.0, 0.0412], [0.33, 0.0, 0.0])
     violations = [str(v) for v in robocake.constraints.violations(pose, hexapod.inverse(pose))]
     assert violations
-    narrow = PlatformJointSwing(hexapod, 0.2)
+    narrow = platform_joint_swing(hexapod, 0.2)
     values = narrow.values(pose, hexapod.inverse(pose))
     assert (values > narrow.high).any()
     assert narrow.owners[2] == 'leg 3'

@@ -3,7 +3,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hexapod_control.workspace import admits, axis_range, sample
+from hexapod_control.workspace import axis_range, sample
+from manipulator.analysis.free_paths import admits
 from manipulator.limits.constraints import Constraints
 from manipulator.pose import Pose
 

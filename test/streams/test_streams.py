@@ -210,7 +210,7 @@ def norms(vectors):
 def test_no_stream_of_wishes_breaks_a_limit(loop_of, name, stream):
     loop = loop_of(name)
     user = User(loop)
-    for command, ticks in stream:
-        user.ask(command, ticks)
+    for wish, ticks in stream:
+        user.ask(wish, ticks)
     loop.run(30)
     check(loop)

@@ -45,7 +45,7 @@ class NewestWorker(Generic[Question]):
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
-    def ask(self, question: Question) -> None:
+    def request(self, question: Question) -> None:
         """Returns at once."""
         self._question = question
         self._is_asked.set()
@@ -176,7 +176,7 @@ class PanelNode(Node):
         self._page.scene.show_goal(pose)
         self._reach_at = pose
         commanded = self._view.commanded
-        self._reach.ask((pose, None if commanded is None else commanded.joints))
+        self._reach.request((pose, None if commanded is None else commanded.joints))
 
     def _show_reach(self, question: tuple[Pose, Array | None]) -> None:
         """In the worker's thread: the range of each slider, and once the hull."""

@@ -151,7 +151,7 @@ def _check_host(host: str) -> None:
             probe.bind((host, 0))
     except OSError as error:
         raise Refused(
-            f'host {shown(host)} is no address of this computer: {error.strerror}'
+            f'host {shown(host)} is not an address of this computer: {error.strerror}'
         ) from error
 
 

@@ -7,6 +7,7 @@ import signal
 import numpy as np
 import pytest
 
+from bridge.frames import encode
 from bridge.protocol import Arm, Mode
 from bridge.servo_config import BoardConfig
 from hexarm import machines
@@ -98,7 +99,7 @@ def test_a_board_that_vanishes_ends_the_session_in_words(sit_down):
     person.begin()
     person.board.do(lambda: person.board.plug(None))
     assert person.await_end() == 1
-    assert 'has vanished' in person.said
+    assert 'was disconnected' in person.said
     assert 'pull their plug' in person.said
     assert 'Traceback' not in person.said
 
@@ -130,7 +131,13 @@ def test_without_consent_no_servo_gets_a_pulse(sit_down):
 
 def test_a_platform_that_the_board_holds_up_is_not_dropped_without_consent(sit_down):
     person, _ = sit_down({})
-    person.board.do(lambda: person.machine.board._modes.obey(Arm((3000,) * 6), 0))
+
+    def arm():
+        board = person.machine.board
+        board.step(0.1)  # its boot, in which it hears nothing
+        board.feed(encode(Arm((3000,) * 6), 1))
+
+    person.board.do(arm)
     person.await_words('ENTER energises')
     person.type('q')
     assert person.await_end() == 0
@@ -162,7 +169,7 @@ def test_a_port_that_another_program_holds_is_reported_kindly(sit_down):
     ('words', 'text'),
     [
         (['robocake'], '--output my_robocake.yaml'),
-        (['robocake', '--output', '/nowhere/x.yaml'], 'is no folder'),
+        (['robocake', '--output', '/nowhere/x.yaml'], 'is not a folder'),
         (['robocake', '--output', __file__], 'not overwritten'),
         (['robocake', '--output', 'new.yaml', '--only', 'crnk_1'], "did you mean 'crank_1'"),
         (['robocake', '--output', 'new.yaml'], 'needs a terminal'),

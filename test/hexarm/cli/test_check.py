@@ -277,7 +277,7 @@ def test_home_on_the_wrong_bend_is_a_warning_with_both_values():
     assert report.problems == ()
     (warning,) = report.warnings
     assert 'crank_1, crank_2, crank_3, crank_4, crank_5, crank_6 at 109.9°' in warning
-    assert 'bent the other way: 0.0°, 0.0°' in warning
+    assert 'on the other branch: 0.0°, 0.0°' in warning
 
 
 def test_tilted_home_in_the_middle_of_its_range_is_no_warning():

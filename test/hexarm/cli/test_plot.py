@@ -204,7 +204,7 @@ def test_files_that_are_no_recordings(tmp_path, capsys):
         pass
     for name, reason in (
         ('none.mcap', 'none.mcap: No such file or directory'),
-        ('text.mcap', 'text.mcap is no MCAP file'),
+        ('text.mcap', 'text.mcap is not an MCAP file'),
         ('empty.mcap', 'there is no machine in this recording'),
         ('bag', 'is an SQLite bag: turn it into MCAP with `ros2 bag convert`'),
     ):

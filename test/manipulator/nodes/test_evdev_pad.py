@@ -139,7 +139,7 @@ def test_heart_beats_only_when_the_sensors_report(machine):
 def test_pad_that_has_gone_is_reported_by_name(machine, gone):
     pad = found(machine)
     machine[gone].is_gone = True
-    with pytest.raises(LinkError, match='Wireless Controller has gone'):
+    with pytest.raises(LinkError, match='Wireless Controller was disconnected'):
         pad.update()
 
 

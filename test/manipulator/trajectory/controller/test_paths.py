@@ -7,8 +7,8 @@ import pytest
 
 from manipulator.errors import InvalidInput, Refused
 from manipulator.pose import Pose
-from manipulator.trajectory.executor import OVERTAKEN
 from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.motion_status import OVERTAKEN
 from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.path_planning import PathGoal
 from manipulator.trajectory.path_timing import PathRequest

@@ -1,0 +1,87 @@
+#include "crank.h"
+
+#include "trigonometry.h"
+
+/* So much nearer, in rad, elbow in must be for a leg to be taken for bent that way: at the edge of
+   the reach both branches meet, and a machine that comes back bends its legs as at home. */
+#define BRANCHES_MEET REAL(0.1)
+
+void leg_gaps(const struct crank_legs *legs, const real position[3], const real rotation[9],
+              real gap[3][LEGS])
+{
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < LEGS; i++)
+            gap[k][i] = rotation[3 * k] * legs->end[0][i] + rotation[3 * k + 1] * legs->end[1][i] +
+                        rotation[3 * k + 2] * legs->end[2][i] +
+                        (position[k] - legs->centre[k][i]);
+}
+
+static inline real along(const real axis[3][LEGS], real gap[3][LEGS], int i)
+{
+    return axis[0][i] * gap[0][i] + axis[1][i] * gap[1][i] + axis[2][i] * gap[2][i];
+}
+
+static inline real within_half_a_turn(real angle, real centre)
+{
+    return angle - REAL_TURN * nearest_integer((angle - centre) * (1 / REAL_TURN));
+}
+
+int crank_elbows(const struct crank_legs *legs, const real position[3], const real rotation[9],
+                 real out[LEGS], real *in)
+{
+    real gap[3][LEGS], y[LEGS], z[LEGS], side[LEGS], height[LEGS];
+    leg_gaps(legs, position, rotation, gap);
+    /* The triangle of crank, rod and gap, seen along the crank's axis: the crank's tip is `side`
+       along the gap and `height` across it, both by EC / r. So (2.2) needs no arc cosine. */
+    for (int i = 0; i < LEGS; i++) {
+        real x = along(legs->normal, gap, i), r = legs->crank[i], d = legs->rod[i];
+        y[i] = along(legs->tangent, gap, i);
+        z[i] = along(legs->up, gap, i);
+        real in_plane = y[i] * y[i] + z[i] * z[i];
+        /* (r - d)(r + d), not r^2 - d^2: the difference keeps its digits. */
+        side[i] = (in_plane + x * x + (r - d) * (r + d)) / (2 * r);
+        height[i] = in_plane - side[i] * side[i];
+    }
+    int open = 0;
+    for (int i = 0; i < LEGS; i++)
+        open += !(height[i] >= 0); /* counts what is not a number, too */
+    for (int i = 0; i < LEGS; i++) {
+        real h = real_sqrt(height[i]);
+        real angle = angle_of(side[i] * z[i] + h * y[i], side[i] * y[i] - h * z[i]);
+        out[i] = within_half_a_turn(angle, legs->middle);
+    }
+    for (int i = 0; in && i < LEGS; i++) {
+        real h = real_sqrt(height[i]);
+        real angle = angle_of(side[i] * z[i] - h * y[i], side[i] * y[i] + h * z[i]);
+        in[i] = within_half_a_turn(angle, legs->middle);
+    }
+    return open;
+}
+
+int crank_inverse(const struct crank_legs *legs, const real position[3], const real rotation[9],
+                  const real *near, real angles[LEGS])
+{
+    if (!near)
+        return crank_elbows(legs, position, rotation, angles, 0);
+    real in[LEGS];
+    int open = crank_elbows(legs, position, rotation, angles, in);
+    for (int i = 0; i < LEGS; i++) {
+        real far_out = within_half_a_turn(angles[i], near[i]);
+        real far_in = within_half_a_turn(in[i], near[i]);
+        real difference = real_fabs(far_out - near[i]) - real_fabs(far_in - near[i]);
+        angles[i] = difference <= BRANCHES_MEET ? far_out : far_in;
+    }
+    for (int i = 0; i < LEGS; i++)
+        open += !(real_fabs(near[i]) < INFINITY);
+    return open;
+}
+
+void linear_inverse(const struct crank_legs *legs, const real position[3], const real rotation[9],
+                    real lengths[LEGS])
+{
+    real gap[3][LEGS];
+    leg_gaps(legs, position, rotation, gap);
+    for (int i = 0; i < LEGS; i++)
+        lengths[i] =
+            real_sqrt(gap[0][i] * gap[0][i] + gap[1][i] * gap[1][i] + gap[2][i] * gap[2][i]);
+}

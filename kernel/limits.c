@@ -1,0 +1,146 @@
+#include "limits.h"
+
+#include "matrix6.h"
+#include "rods.h"
+#include "trigonometry.h"
+
+#define BEYOND_ANY_SINE 2
+/* Below, pivots no longer tell singular values apart. */
+#define LEAST_PIVOT_MARGIN REAL(1e-3)
+
+static struct rods rods_at(const struct platform *platform, const real position[3],
+                           const real rotation[9], const real joints[LEGS])
+{
+    real base[3][LEGS];
+    base_points(&platform->legs, joints, base);
+    return rods_of(base, platform->legs.end, position, rotation);
+}
+
+/* Products with the unit rods, one a leg: the sines of their angles to the cranks' planes, and the
+   cosines of their angles to their directions at home, as the platform and as the base see it. */
+struct products {
+    real tilt_sine[LEGS], swing_cosine[LEGS], leaning_cosine[LEGS];
+};
+
+static struct products products_of(const struct platform *platform, const struct rods *rods,
+                                   const real rotation[9])
+{
+    struct products p;
+    const real(*home)[LEGS] = platform->home_rod, (*normal)[LEGS] = platform->legs.normal;
+    const real *r = rotation;
+    for (int i = 0; i < LEGS; i++) {
+        real x = rods->unit[0][i], y = rods->unit[1][i], z = rods->unit[2][i];
+        real a = home[0][i], b = home[1][i], c = home[2][i];
+        p.tilt_sine[i] = x * normal[0][i] + y * normal[1][i] + z * normal[2][i];
+        p.leaning_cosine[i] = x * a + y * b + z * c;
+        p.swing_cosine[i] = x * (r[0] * a + r[1] * b + r[2] * c) +
+                            y * (r[3] * a + r[4] * b + r[5] * c) +
+                            z * (r[6] * a + r[7] * b + r[8] * c);
+    }
+    return p;
+}
+
+/* The sine at home of a leg's angle to its crank's plane. */
+static real home_tilt(const struct platform *platform, int leg)
+{
+    real sine = 0;
+    for (int k = 0; k < 3; k++)
+        sine += platform->home_rod[k][leg] * platform->legs.normal[k][leg];
+    return real_asin(fmax(-1, fmin(1, sine)));
+}
+
+static real clipped(real cosine)
+{
+    return cosine > 1 ? 1 : cosine < -1 ? -1 : cosine;
+}
+
+/* How far a rod is from the shortest and the longest that would close its leg: (2.3). */
+static void put_misfits(const struct crank_legs *legs, const real position[3],
+                        const real rotation[9], real values[VALUES])
+{
+    real gap[3][LEGS];
+    leg_gaps(legs, position, rotation, gap);
+    for (int i = 0; i < LEGS; i++) {
+        real across = 0, along = 0, up = 0, r = legs->crank[i];
+        for (int k = 0; k < 3; k++) {
+            across += legs->normal[k][i] * gap[k][i];
+            along += legs->tangent[k][i] * gap[k][i];
+            up += legs->up[k][i] * gap[k][i];
+        }
+        real in_plane = real_sqrt(along * along + up * up);
+        values[SHORTFALL + i] =
+            real_sqrt(across * across + (in_plane - r) * (in_plane - r)) - legs->rod[i];
+        values[SURPLUS + i] =
+            legs->rod[i] - real_sqrt(across * across + (in_plane + r) * (in_plane + r));
+    }
+}
+
+void limited_values(const struct platform *platform, const real position[3],
+                    const real rotation[9], const real joints[LEGS], real values[VALUES])
+{
+    struct rods rods = rods_at(platform, position, rotation, joints);
+    struct products p = products_of(platform, &rods, rotation);
+    real columns[6][6];
+    put_misfits(&platform->legs, position, rotation, values);
+    for (int i = 0; i < LEGS; i++) {
+        values[JOINT + i] = joints[i];
+        values[TILT + i] = real_asin(clipped(p.tilt_sine[i])) - home_tilt(platform, i);
+        values[SWING + i] = real_acos(clipped(p.swing_cosine[i]));
+        values[LEANING + i] = real_acos(clipped(p.leaning_cosine[i]));
+    }
+    leg_columns(&rods, platform->length, columns);
+    values[HEIGHT] = position[2];
+    values[SIGMA] = smallest_singular_value(columns);
+}
+
+struct limit_ranges limit_ranges(const struct platform *platform, const real low[VALUES],
+                                 const real high[VALUES])
+{
+    struct limit_ranges r = {.height = {low[HEIGHT], high[HEIGHT]}, .sigma = low[SIGMA]};
+    for (int i = 0; i < LEGS; i++) {
+        real home = home_tilt(platform, i);
+        real least = home + low[TILT + i], most = home + high[TILT + i];
+        r.joint[0][i] = low[JOINT + i];
+        r.joint[1][i] = high[JOINT + i];
+        r.tilt_sine[0][i] = least <= -REAL_PI / 2 ? -BEYOND_ANY_SINE : real_sin(least);
+        r.tilt_sine[1][i] = most >= REAL_PI / 2 ? BEYOND_ANY_SINE : real_sin(most);
+        r.swing_cosine[i] =
+            high[SWING + i] >= REAL_PI ? -BEYOND_ANY_SINE : real_cos(high[SWING + i]);
+        r.leaning_cosine[i] =
+            high[LEANING + i] >= REAL_PI ? -BEYOND_ANY_SINE : real_cos(high[LEANING + i]);
+    }
+    return r;
+}
+
+static int keeps_ranges(const struct limit_ranges *r, real height, const real joints[LEGS])
+{
+    int kept = height >= r->height[0] && height <= r->height[1];
+    for (int i = 0; i < LEGS; i++)
+        kept &= real_fabs(joints[i]) < INFINITY && joints[i] >= r->joint[0][i] &&
+                joints[i] <= r->joint[1][i];
+    return kept;
+}
+
+static int keeps_margin(const struct platform *platform, const struct rods *rods, real least)
+{
+    real columns[6][6];
+    leg_columns(rods, platform->length, columns);
+    return least < LEAST_PIVOT_MARGIN ? smallest_singular_value(columns) >= least
+                                      : keeps_singular_value(columns, least);
+}
+
+int keeps_limits(const struct platform *platform, const struct limit_ranges *ranges,
+                 const real position[3], const real rotation[9], const real joints[LEGS])
+{
+    if (!keeps_ranges(ranges, position[2], joints))
+        return 0;
+    struct rods rods = rods_at(platform, position, rotation, joints);
+    struct products p = products_of(platform, &rods, rotation);
+    int kept = 1;
+    for (int i = 0; i < LEGS; i++)
+        kept &= (p.tilt_sine[i] >= ranges->tilt_sine[0][i]) &
+                (p.tilt_sine[i] <= ranges->tilt_sine[1][i]) &
+                (p.swing_cosine[i] >= ranges->swing_cosine[i]) &
+                (p.leaning_cosine[i] >= ranges->leaning_cosine[i]);
+    return kept && (ranges->sigma == -INFINITY || keeps_margin(platform, &rods, ranges->sigma));
+}

@@ -1,0 +1,40 @@
+/* What limits a platform: docs/kinematics.md, 5 and 6. */
+#ifndef KERNEL_LIMITS_H
+#define KERNEL_LIMITS_H
+
+#include "platform.h"
+
+/* The limited values of a configuration, in m and rad, one after the other. */
+enum limited {
+    SHORTFALL = 0,      /* the shortest rod that would do less the rod, (2.3) */
+    SURPLUS = LEGS,     /* the rod less the longest that would */
+    JOINT = 2 * LEGS,   /* the joints themselves */
+    TILT = 3 * LEGS,    /* of crank joints */
+    SWING = 4 * LEGS,   /* of platform joints */
+    LEANING = 5 * LEGS, /* of base joints */
+    HEIGHT = 6 * LEGS,
+    SIGMA, /* (5.1) */
+    VALUES
+};
+
+void limited_values(const struct platform *platform, const real position[3],
+                    const real rotation[9], const real joints[LEGS], real values[VALUES]);
+
+/* Ranges of the values in the form in which they are compared: angles by sine and cosine. */
+struct limit_ranges {
+    real joint[2][LEGS]; /* least, most */
+    real height[2];
+    real tilt_sine[2][LEGS];
+    real swing_cosine[LEGS]; /* the least */
+    real leaning_cosine[LEGS];
+    real sigma; /* the least */
+};
+
+struct limit_ranges limit_ranges(const struct platform *platform, const real low[VALUES],
+                                 const real high[VALUES]);
+
+/* Whether the joints exist (are finite) and all values are in their ranges. */
+int keeps_limits(const struct platform *platform, const struct limit_ranges *ranges,
+                 const real position[3], const real rotation[9], const real joints[LEGS]);
+
+#endif

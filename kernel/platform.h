@@ -1,0 +1,21 @@
+/* A platform on six legs, and its pose for given joints: docs/kinematics.md, 3. */
+#ifndef KERNEL_PLATFORM_H
+#define KERNEL_PLATFORM_H
+
+#include "crank.h"
+#include "newton.h"
+
+struct platform {
+    struct crank_legs legs;
+    real length;            /* L of (5.1), m */
+    real home_rod[3][LEGS]; /* unit vectors along the rods at home, base axes */
+    real home_gain[LEGS];   /* of the cranks at home, (4.1) */
+};
+
+/* The pose for joints (6), from a start, which becomes the pose. Cold (the rules name a side), a
+   leg that is bent the other way than at home is refused, too. */
+struct newton_report platform_forward(const struct platform *platform,
+                                      const struct newton_rules *rules, const real joints[LEGS],
+                                      real position[3], real rotation[9]);
+
+#endif

@@ -1,0 +1,243 @@
+/* What Python calls of the platforms' mathematics. Points and directions come as Python has them,
+   leg by leg. */
+#include <string.h>
+
+#include "limits.h"
+#include "matrix6.h"
+#include "newton.h"
+#include "python.h"
+#include "rods.h"
+#include "se3.h"
+
+static void by_axis(const real points[3 * LEGS], real columns[3][LEGS])
+{
+    for (int i = 0; i < LEGS; i++)
+        for (int k = 0; k < 3; k++)
+            columns[k][i] = points[3 * i + k];
+}
+
+static void by_leg(real columns[3][LEGS], real points[3 * LEGS])
+{
+    for (int i = 0; i < LEGS; i++)
+        for (int k = 0; k < 3; k++)
+            points[3 * i + k] = columns[k][i];
+}
+
+static Py_ssize_t call_crank_inverse(real *const *a, Py_ssize_t items)
+{
+    Py_ssize_t open = 0;
+    for (Py_ssize_t i = 0; i < items; i++)
+        open += crank_inverse((const struct crank_legs *)a[0], a[1] + 3 * i, a[2] + 9 * i,
+                              a[3] ? a[3] + LEGS * i : NULL, a[4] + LEGS * i);
+    return open;
+}
+FUNCTION(crank_inverse, {WHOLE, NUMBERS(struct crank_legs)}, {ITEMS, 3}, {ITEMS, 9},
+         {OPTIONAL, LEGS}, {WRITTEN, LEGS})
+
+static Py_ssize_t call_crank_elbows(real *const *a, Py_ssize_t items)
+{
+    Py_ssize_t open = 0;
+    for (Py_ssize_t i = 0; i < items; i++)
+        open += crank_elbows((const struct crank_legs *)a[0], a[1] + 3 * i, a[2] + 9 * i,
+                             a[3] + LEGS * i, a[4] + LEGS * i);
+    return open;
+}
+FUNCTION(crank_elbows, {WHOLE, NUMBERS(struct crank_legs)}, {ITEMS, 3}, {ITEMS, 9},
+         {WRITTEN, LEGS}, {WRITTEN, LEGS})
+
+static Py_ssize_t call_linear_inverse(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        linear_inverse((const struct crank_legs *)a[0], a[1] + 3 * i, a[2] + 9 * i,
+                       a[3] + LEGS * i);
+    return 0;
+}
+FUNCTION(linear_inverse, {WHOLE, NUMBERS(struct crank_legs)}, {ITEMS, 3}, {ITEMS, 9},
+         {WRITTEN, LEGS})
+
+static Py_ssize_t call_base_points(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        real base[3][LEGS];
+        base_points((const struct crank_legs *)a[0], a[1] + LEGS * i, base);
+        by_leg(base, a[2] + 3 * LEGS * i);
+    }
+    return 0;
+}
+FUNCTION(base_points, {WHOLE, NUMBERS(struct crank_legs)}, {ITEMS, LEGS}, {WRITTEN, 3 * LEGS})
+
+static Py_ssize_t call_crank_gains(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        real unit[3][LEGS];
+        by_axis(a[2] + 3 * LEGS * i, unit);
+        crank_gains((const struct crank_legs *)a[0], a[1] + LEGS * i, unit, a[3] + LEGS * i);
+    }
+    return 0;
+}
+FUNCTION(crank_gains, {WHOLE, NUMBERS(struct crank_legs)}, {ITEMS, LEGS}, {ITEMS, 3 * LEGS},
+         {WRITTEN, LEGS})
+
+/* Platform joints, base points, poses: the rods' unit vectors, and the leg Jacobian. */
+static Py_ssize_t call_leg_jacobian(real *const *a, Py_ssize_t items)
+{
+    struct newton_problem problem;
+    const struct newton_problem *ends = &problem;
+    real columns[6][LEGS];
+    by_axis(a[0], problem.end);
+    for (Py_ssize_t i = 0; i < items; i++) {
+        by_axis(a[1] + 3 * LEGS * i, problem.base);
+        struct rods rods = rods_of(problem.base, ends->end, a[2] + 3 * i, a[3] + 9 * i);
+        by_leg(rods.unit, a[4] + 3 * LEGS * i);
+        leg_columns(&rods, 1, columns);
+        for (int leg = 0; leg < LEGS; leg++)
+            for (int k = 0; k < 6; k++)
+                a[5][36 * i + 6 * leg + k] = columns[k][leg];
+    }
+    return 0;
+}
+FUNCTION(leg_jacobian, {WHOLE, 3 * LEGS}, {ITEMS, 3 * LEGS}, {ITEMS, 3}, {ITEMS, 9},
+         {WRITTEN, 3 * LEGS}, {WRITTEN, 36})
+
+static Py_ssize_t call_smallest_singular_value(real *const *a, Py_ssize_t items)
+{
+    real matrix[6][6];
+    for (Py_ssize_t i = 0; i < items; i++) {
+        for (int row = 0; row < 6; row++)
+            for (int k = 0; k < 6; k++)
+                matrix[row][k] = a[1][36 * i + 6 * row + k] / (k < 3 ? 1 : *a[0]);
+        a[2][i] = smallest_singular_value(matrix);
+    }
+    return 0;
+}
+FUNCTION(smallest_singular_value, {WHOLE, 1}, {ITEMS, 36}, {WRITTEN, 1})
+
+static Py_ssize_t call_forward_by_lengths(real *const *a, Py_ssize_t items)
+{
+    struct newton_problem problem;
+    by_axis(a[0], problem.end);
+    for (Py_ssize_t i = 0; i < items; i++) {
+        real *position = a[6] + 3 * i, *rotation = a[7] + 9 * i;
+        by_axis(a[2] + 3 * LEGS * i, problem.base);
+        memcpy(problem.length, a[3] + LEGS * i, sizeof problem.length);
+        memcpy(position, a[4] + 3 * i, 3 * sizeof(real));
+        memcpy(rotation, a[5] + 9 * i, 9 * sizeof(real));
+        ((struct newton_report *)a[8])[i] =
+            newton(&problem, (const struct newton_rules *)a[1], position, rotation);
+    }
+    return 0;
+}
+FUNCTION(forward_by_lengths, {WHOLE, 3 * LEGS}, {WHOLE, NUMBERS(struct newton_rules)},
+         {ITEMS, 3 * LEGS}, {ITEMS, LEGS}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, 3}, {WRITTEN, 9},
+         {WRITTEN, NUMBERS(struct newton_report)})
+
+static Py_ssize_t call_platform_forward(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        real *position = a[5] + 3 * i, *rotation = a[6] + 9 * i;
+        memcpy(position, a[3] + 3 * i, 3 * sizeof(real));
+        memcpy(rotation, a[4] + 9 * i, 9 * sizeof(real));
+        ((struct newton_report *)a[7])[i] =
+            platform_forward((const struct platform *)a[0], (const struct newton_rules *)a[1],
+                             a[2] + LEGS * i, position, rotation);
+    }
+    return 0;
+}
+FUNCTION(platform_forward, {WHOLE, NUMBERS(struct platform)},
+         {WHOLE, NUMBERS(struct newton_rules)}, {ITEMS, LEGS}, {ITEMS, 3}, {ITEMS, 9},
+         {WRITTEN, 3}, {WRITTEN, 9}, {WRITTEN, NUMBERS(struct newton_report)})
+
+static Py_ssize_t call_limited_values(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        limited_values((const struct platform *)a[0], a[1] + 3 * i, a[2] + 9 * i, a[3] + LEGS * i,
+                       a[4] + VALUES * i);
+    return 0;
+}
+FUNCTION(limited_values, {WHOLE, NUMBERS(struct platform)}, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, LEGS},
+         {WRITTEN, VALUES})
+
+static Py_ssize_t call_limit_ranges(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        ((struct limit_ranges *)a[3])[i] =
+            limit_ranges((const struct platform *)a[0], a[1] + VALUES * i, a[2] + VALUES * i);
+    return 0;
+}
+FUNCTION(limit_ranges, {WHOLE, NUMBERS(struct platform)}, {ITEMS, VALUES}, {ITEMS, VALUES},
+         {WRITTEN, NUMBERS(struct limit_ranges)})
+
+/* Writes 1 for a configuration that keeps all limits, else 0; returns how many do. */
+static Py_ssize_t call_keeps_limits(real *const *a, Py_ssize_t items)
+{
+    Py_ssize_t count = 0;
+    for (Py_ssize_t i = 0; i < items; i++) {
+        int kept = keeps_limits((const struct platform *)a[0], (const struct limit_ranges *)a[1],
+                                a[2] + 3 * i, a[3] + 9 * i, a[4] + LEGS * i);
+        a[5][i] = kept;
+        count += kept;
+    }
+    return count;
+}
+FUNCTION(keeps_limits, {WHOLE, NUMBERS(struct platform)}, {WHOLE, NUMBERS(struct limit_ranges)},
+         {ITEMS, 3}, {ITEMS, 9}, {ITEMS, LEGS}, {WRITTEN, 1})
+
+static Py_ssize_t call_rotation_exp(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        rotation_exp(a[0] + 3 * i, a[1] + 9 * i);
+    return 0;
+}
+FUNCTION(rotation_exp, {ITEMS, 3}, {WRITTEN, 9})
+
+static Py_ssize_t call_rotation_log(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        rotation_log(a[0] + 9 * i, a[1] + 3 * i);
+    return 0;
+}
+FUNCTION(rotation_log, {ITEMS, 9}, {WRITTEN, 3})
+
+static Py_ssize_t call_moved(real *const *a, Py_ssize_t items)
+{
+    Py_ssize_t endless = 0;
+    for (Py_ssize_t i = 0; i < items; i++) {
+        real *position = a[3] + 3 * i, *rotation = a[4] + 9 * i, sum = 0;
+        memcpy(position, a[0] + 3 * i, 3 * sizeof(real));
+        memcpy(rotation, a[1] + 9 * i, 9 * sizeof(real));
+        se3_move(a[2] + 6 * i, position, rotation);
+        for (int k = 0; k < 3; k++)
+            sum += real_fabs(position[k]) + real_fabs(rotation[4 * k]);
+        endless += !(sum < INFINITY);
+    }
+    return endless;
+}
+FUNCTION(moved, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, 6}, {WRITTEN, 3}, {WRITTEN, 9})
+
+static Py_ssize_t call_twist_between(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        se3_twist(a[0] + 3 * i, a[1] + 9 * i, a[2] + 3 * i, a[3] + 9 * i, a[4] + 6 * i);
+    return 0;
+}
+FUNCTION(twist_between, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, 6})
+
+PyMethodDef PLATFORM_FUNCTIONS[] = {
+    METHOD(crank_inverse),
+    METHOD(crank_elbows),
+    METHOD(linear_inverse),
+    METHOD(base_points),
+    METHOD(crank_gains),
+    METHOD(leg_jacobian),
+    METHOD(smallest_singular_value),
+    METHOD(forward_by_lengths),
+    METHOD(platform_forward),
+    METHOD(limited_values),
+    METHOD(limit_ranges),
+    METHOD(keeps_limits),
+    METHOD(rotation_exp),
+    METHOD(rotation_log),
+    METHOD(moved),
+    METHOD(twist_between),
+    {NULL, NULL, 0, NULL},
+};

@@ -1,0 +1,55 @@
+/* As much of Python's stable ABI as `python.c` uses, declared here so that building needs no
+   Python headers: https://docs.python.org/3/c-api/stable.html. The layouts are those of 64-bit
+   CPython 3.10 and later. */
+#ifndef KERNEL_PYTHON_ABI_H
+#define KERNEL_PYTHON_ABI_H
+
+#include <stddef.h>
+
+typedef ptrdiff_t Py_ssize_t;
+typedef struct PyObject PyObject;
+
+typedef struct {
+    void *buf;
+    PyObject *obj;
+    Py_ssize_t len, itemsize;
+    int readonly, ndim;
+    char *format;
+    Py_ssize_t *shape, *strides, *suboffsets;
+    void *internal;
+} Py_buffer;
+
+typedef struct {
+    const char *name;
+    PyObject *(*call)(PyObject *self, PyObject *const *arguments, Py_ssize_t count);
+    int flags;
+    const char *doc;
+} PyMethodDef;
+
+typedef struct {
+    Py_ssize_t reference_count;
+    void *type, *init;
+    Py_ssize_t index;
+    PyObject *copy;
+    const char *name, *doc;
+    Py_ssize_t size;
+    PyMethodDef *methods;
+    void *slots, *traverse, *clear, *free;
+} PyModuleDef;
+
+enum { METH_FASTCALL = 0x80, PyBUF_WRITABLE = 1, PyBUF_FORMAT = 4, PyBUF_C_CONTIGUOUS = 0x38 };
+enum { ABI_VERSION = 1013 };
+
+extern PyObject _Py_NoneStruct;
+extern PyObject *PyExc_TypeError, *PyExc_ValueError;
+
+PyObject *PyModule_Create2(PyModuleDef *definition, int version);
+int PyModule_AddFunctions(PyObject *module, PyMethodDef *functions);
+PyObject *PyLong_FromSsize_t(Py_ssize_t number);
+PyObject *PyErr_Format(PyObject *exception, const char *format, ...);
+int PyObject_GetBuffer(PyObject *exporter, Py_buffer *view, int flags);
+void PyBuffer_Release(Py_buffer *view);
+void *PyEval_SaveThread(void);
+void PyEval_RestoreThread(void *state);
+
+#endif

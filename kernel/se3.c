@@ -1,0 +1,82 @@
+#include "se3.h"
+
+#include <string.h>
+
+#include "vector.h"
+
+/* Below, in rad, sin(x) / x is 1 to the last digit. */
+#define SMALL_ANGLE REAL(1e-6)
+
+void rotation_exp(const real w[3], real rotation[9])
+{
+    real x = w[0], y = w[1], z = w[2], angle = real_sqrt(dot3(w, w)), s = 1, c = REAL(0.5);
+    if (!(angle < SMALL_ANGLE)) {
+        real half = real_sin(angle / 2) / angle;
+        s = real_sin(angle) / angle;
+        c = 2 * half * half;
+    }
+    rotation[0] = 1 - c * (y * y + z * z);
+    rotation[1] = c * x * y - s * z;
+    rotation[2] = c * x * z + s * y;
+    rotation[3] = c * x * y + s * z;
+    rotation[4] = 1 - c * (x * x + z * z);
+    rotation[5] = c * y * z - s * x;
+    rotation[6] = c * x * z - s * y;
+    rotation[7] = c * y * z + s * x;
+    rotation[8] = 1 - c * (x * x + y * y);
+}
+
+/* The longest of the rows of 4 q q' = I + ..., each of which is the unit quaternion x, y, z, w
+   times a factor: so that none of its digits are lost (Shepperd 1978). */
+static void quaternion_of(const real r[9], real q[4])
+{
+    real trace = r[0] + r[4] + r[8], diagonal[4] = {r[0], r[4], r[8], trace};
+    int longest = 0;
+    for (int i = 1; i < 4; i++)
+        longest = diagonal[i] > diagonal[longest] ? i : longest;
+    const real rows[4][4] = {
+        {1 + 2 * r[0] - trace, r[1] + r[3], r[2] + r[6], r[7] - r[5]},
+        {r[1] + r[3], 1 + 2 * r[4] - trace, r[5] + r[7], r[2] - r[6]},
+        {r[2] + r[6], r[5] + r[7], 1 + 2 * r[8] - trace, r[3] - r[1]},
+        {r[7] - r[5], r[2] - r[6], r[3] - r[1], 1 + trace},
+    };
+    const real *row = rows[longest];
+    real length = real_sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2] + row[3] * row[3]);
+    for (int i = 0; i < 4; i++)
+        q[i] = row[i] / (row[3] < 0 ? -length : length);
+}
+
+void rotation_log(const real rotation[9], real w[3])
+{
+    real q[4];
+    quaternion_of(rotation, q);
+    real sine = real_sqrt(dot3(q, q));
+    real scale = sine < SMALL_ANGLE ? 2 : 2 * real_atan2(sine, q[3]) / sine;
+    for (int i = 0; i < 3; i++)
+        w[i] = scale * q[i];
+}
+
+void se3_move(const real twist[6], real position[3], real rotation[9])
+{
+    real turn[9], before[9];
+    rotation_exp(twist + 3, turn);
+    memcpy(before, rotation, sizeof before);
+    for (int i = 0; i < 3; i++) {
+        position[i] += twist[i];
+        for (int j = 0; j < 3; j++)
+            rotation[3 * i + j] = turn[3 * i] * before[j] + turn[3 * i + 1] * before[3 + j] +
+                                  turn[3 * i + 2] * before[6 + j];
+    }
+}
+
+void se3_twist(const real from_position[3], const real from_rotation[9],
+                   const real to_position[3], const real to_rotation[9], real twist[6])
+{
+    real turn[9];
+    for (int i = 0; i < 3; i++) {
+        twist[i] = to_position[i] - from_position[i];
+        for (int j = 0; j < 3; j++)
+            turn[3 * i + j] = dot3(to_rotation + 3 * i, from_rotation + 3 * j);
+    }
+    rotation_log(turn, twist + 3);
+}

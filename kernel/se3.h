@@ -1,0 +1,20 @@
+/* Displacements: docs/kinematics.md, 3. A twist is v, then the rotation vector, both base axes. */
+#ifndef KERNEL_SE3_H
+#define KERNEL_SE3_H
+
+#include "real.h"
+
+/* Rodrigues' formula: the rotation by |w| about w. */
+void rotation_exp(const real w[3], real rotation[9]);
+
+/* The rotation vector of a matrix, at most pi long. */
+void rotation_log(const real rotation[9], real w[3]);
+
+/* p + v and exp(w) R: origin and orientation advance each on its own. */
+void se3_move(const real twist[6], real position[3], real rotation[9]);
+
+/* The twist that moves one pose to another. */
+void se3_twist(const real from_position[3], const real from_rotation[9],
+                   const real to_position[3], const real to_rotation[9], real twist[6]);
+
+#endif
