@@ -20,7 +20,7 @@ from manipulator.arrays import Array, Mask, frozen, stretched
 from manipulator.continuity import first_jump
 from manipulator.errors import ConfigError, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
-from manipulator.limits.limit import Bounds, Search
+from manipulator.limits.limit import Bounds, Search, Ways
 from manipulator.links import PLATFORM, Link
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke, outline
@@ -31,6 +31,10 @@ SHORTFALL, SURPLUS, JOINT, TILT, SWING, LEANING = (slice(6 * k, 6 * k + 6) for k
 HEIGHT, SIGMA = slice(36, 37), slice(37, 38)
 VALUES, RANGES = 38, 39
 """Where values stand in `limited`, and the numbers in `limit_ranges`: kernel/limits.h."""
+
+WAY = 20
+PLAIN_FRAME = frozen(np.concatenate([np.zeros(3), np.eye(3).ravel(), np.zeros(3)]))
+"""Numbers in `way`, and the `jog_frame` that changes nothing: kernel/braking.h."""
 
 SAME = 0.02
 """Difference of joints (rad or m) that is a measurement's, not another branch's."""
@@ -261,6 +265,16 @@ class ParallelPlatform(ABC):
             start.position, start.rotation, position, rotation,
         )  # fmt: skip
         return Pose.unchecked(position, rotation)
+
+    def first_free_way(self, ranges: Array, ways: Ways) -> tuple[int, Array]:
+        """See `LimitGroup`."""
+        pose, found = ways.pose, np.empty((len(ways.twists), WAY))
+        frame = PLAIN_FRAME if ways.frame is None else ways.frame
+        free = _kernel.first_free_way(
+            self.parameters, ranges, frame, ways.bounds, pose.position, pose.rotation,
+            ways.joints, ways.rates, ways.twists, found,
+        )  # fmt: skip
+        return free, found
 
     def keeps(self, ranges: Array, pose: Pose, joints: Array) -> Mask:
         """See `LimitGroup`."""

@@ -106,3 +106,17 @@ def descended(
     rotation: Array,
 ) -> int:
     """0; the last two are written: kernel/descent.h."""
+
+def first_free_way(
+    platform: Array,
+    ranges: Array,
+    frame: Array,
+    bounds: Array,
+    position: Array,
+    rotation: Array,
+    joints: Array,
+    rates: Array,
+    twists: Array,
+    ways: Array,
+) -> int:
+    """The first of the twists that can be braked, or how many there are: kernel/braking.h."""
