@@ -115,7 +115,7 @@ def _checked(
 
 
 def _null_space(columns: Array, leading: int) -> Array:
-    """A basis (n, count) of the functionals that vanish on all `columns` (n, m).
+    """A basis (n, count) of the functionals that vanish on all `columns` (n, m), consumed.
 
     Gauss's elimination with row pivots for the `leading` ones, P L U: with the rows [A; B] of L, A
     triangular, functionals are P [−A⁻ᵀBᵀ; 1] N, where N vanishes on what is left of the other
@@ -124,7 +124,8 @@ def _null_space(columns: Array, leading: int) -> Array:
     """
     from scipy.linalg import lu_factor, solve_triangular  # noqa: PLC0415 (50 MB: for who asks)
 
-    factors, swaps = lu_factor(columns[:, :leading], check_finite=False)
+    rest = columns[:, leading:].copy()
+    factors, swaps = lu_factor(columns[:, :leading], overwrite_a=True, check_finite=False)
     pivots = np.abs(np.diag(factors))
     if not pivots.min() > NO_PIVOT * pivots.max():
         raise NoSolution('the leg lengths do not fix finitely many poses')
@@ -135,7 +136,7 @@ def _null_space(columns: Array, leading: int) -> Array:
     lower = solve_triangular(
         above, below.T, trans=1, lower=True, unit_diagonal=True, check_finite=False
     )
-    rest = columns[order][:, leading:]
+    rest = rest[order]
     left, values, _ = np.linalg.svd(rest[leading:] - lower.T @ rest[:leading])
     free = left[:, int((values > NO_PIVOT * pivots.max()).sum()) :]
     null = np.empty((len(columns), free.shape[1]))
