@@ -6,11 +6,11 @@ BIN := $(ENV)/bin
 # (test/conftest.py). In a worker numpy has one thread.
 PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q
 
-LIBRARY := manipulator/_kernel.abi3.so
+LIBRARIES := manipulator/_kernel.abi3.so bridge/_board.abi3.so
 
 .PHONY: demo check test lint bench soak clean
 
-demo: $(ENV)/demo $(LIBRARY)
+demo: $(ENV)/demo $(LIBRARIES)
 	@echo 'Both machines on fake boards: about a minute.'
 	@$(BIN)/hexarm demo
 
@@ -22,14 +22,14 @@ test: check
 	@echo 'Tests that start graphs, a browser, installations: 3.5 minutes on two quiet cores.'
 	@$(PYTEST) -n auto --dist loadfile -m processes
 
-lint: $(ENV)/ready $(LIBRARY)
+lint: $(ENV)/ready $(LIBRARIES)
 	@echo 'Lint and types: half a minute.'
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy
 
-bench: $(ENV)/peers $(LIBRARY)   # a quiet computer, please: some ten minutes
+bench: $(ENV)/peers $(LIBRARIES)   # a quiet computer, please: some ten minutes
 	@$(BIN)/python -m bench $(if $(WRITE),--write $(WRITE))
 
-soak: $(ENV)/ready $(LIBRARY)
+soak: $(ENV)/ready $(LIBRARIES)
 	@SOAK_SECONDS=600 $(PYTEST) -n auto -s test/world/test_soak.py && $(BIN)/python -m bench.soak
 
 # The libraries that the bench compares with; without them their rows say so.
@@ -39,9 +39,9 @@ $(ENV)/peers: $(ENV)/ready
 	  && touch $@ || echo 'They could not be installed, see $(ENV)/peers.log: the table says which are missing.' >&2
 
 # What pip has built is built again after a change of its sources.
-$(LIBRARY): $(wildcard kernel/*) | $(ENV)/demo
-	@echo 'Building the C library anew.'
-	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps -e . && touch $@
+$(LIBRARIES) &: $(wildcard kernel/*.[ch] firmware/core/*.[ch] firmware/host/*.[ch]) build_backend.py | $(ENV)/demo
+	@echo 'Building the C libraries anew.'
+	@$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps -e . && touch $(LIBRARIES)
 
 $(ENV)/demo: setup.py pyproject.toml environment.sh
 	@./environment.sh $(ENV) demo

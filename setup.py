@@ -5,18 +5,18 @@ from pathlib import Path
 from setuptools import Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
 
-from kernel.build import build
+from build_backend import LIBRARIES, build
 
 NAME = 'hexarm'
 PACKAGES = ['manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm']
 
 
-class BuildKernel(build_ext):
-    """Builds the C library by its own command: setuptools' needs Python's headers."""
+class BuildLibraries(build_ext):
+    """Builds the C libraries by their own commands: setuptools' need Python's headers."""
 
     def build_extension(self, ext: Extension) -> None:
-        """Compiles it to where setuptools wants it."""
-        build(Path(self.get_ext_fullpath(ext.name)))
+        """Compiles one to where setuptools wants it."""
+        build(ext.name, Path(self.get_ext_fullpath(ext.name)))
 
 
 setup(
@@ -27,16 +27,12 @@ setup(
     python_requires='>=3.10',
     packages=find_packages(include=[pattern for r in PACKAGES for pattern in (r, f'{r}.*')]),
     ext_modules=[
-        Extension(
-            'manipulator._kernel',
-            sorted(str(f) for f in Path('kernel').glob('*.c')),
-            depends=sorted(str(f) for f in Path('kernel').glob('*.h')),
-            py_limited_api=True,
-        )
+        Extension(name, library.files('*.c'), depends=library.files('*.h'), py_limited_api=True)
+        for name, library in LIBRARIES.items()
     ],
-    cmdclass={'build_ext': BuildKernel},
+    cmdclass={'build_ext': BuildLibraries},
     options={'bdist_wheel': {'py_limited_api': 'cp310'}},
-    package_data={'hexarm': ['fastdds.xml', 'panel/joystick.html']},
+    package_data={'hexarm': ['*.xml', 'panel/joystick.html']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
@@ -63,7 +59,7 @@ setup(
         'physics': ['mujoco>=3.2', 'matplotlib>=3.8', 'pillow>=10'],
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.5', 'matplotlib>=3.8'],
         'panel': ['viser>=1.1,<1.2'],  # panel/nodes/web_server.py reaches into it
-        'terminal': ['rich>=13'],
+        'terminal': ['rich>=13', 'argcomplete>=3'],
         # Libraries that `make bench` compares with: docs/performance.md.
         'bench': [
             'reachy-mini-rust-kinematics>=1.0',
@@ -72,6 +68,8 @@ setup(
             'ikpy>=3.4',
             'mink>=1.0',
             'daqp>=0.5',
+            'EAIK>=1.2',
+            'pytracik>=0.0.3',
         ],
         'test': [
             'pytest>=8.2',

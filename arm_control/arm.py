@@ -4,10 +4,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from arm_control.branches import nearby_joints, nearest_branch, unwrapped
-from arm_control.chain import Chain
+from arm_control.chain import JOINTS, Chain, aligned
+from arm_control.closed_forms import BRANCHES
 from arm_control.geometry import JOINT_NAMES, JointLimits
 from arm_control.inverse_method import InverseMethod, fitting_method
+from arm_control.numerical import MOST_BRANCHES
+from manipulator import _kernel
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
@@ -30,6 +32,7 @@ class SerialArm:
     rest: Array
     home: Pose = field(init=False)
     method: InverseMethod = field(init=False)
+    _numbers: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Raises ConfigError when home lies outside the joint ranges."""
@@ -45,8 +48,11 @@ class SerialArm:
             )
         object.__setattr__(self, 'rest', rest)
         object.__setattr__(self, 'home', self.chain.forward(rest))
-        method = fitting_method(self.chain, self.limits, self.characteristic_length)
+        length, low, high = self.characteristic_length, self.limits.low, self.limits.high
+        method = fitting_method(self.chain, self.limits, length)
+        numbers = method.arm_numbers(length, low, high)
         object.__setattr__(self, 'method', method)
+        object.__setattr__(self, '_numbers', numbers)
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -72,11 +78,16 @@ class SerialArm:
         """Every branch (..., k, 6), by whole turns nearest to `near` within the joint ranges.
 
         NaN rows are branches that do not close. k is 8 where there is a closed form; without one
-        a branch may be missing.
+        it is 16, and a branch may be missing.
         """
-        start = self._near(near)
-        found = self.method.branches(pose, start)
-        return unwrapped(found, start[..., None, :], self.limits.low, self.limits.high)
+        position, rotation = pose.position, pose.rotation
+        start = self.rest if near is None else self._checked(near, finite=False)
+        if start.shape[:-1] != position.shape[:-1]:
+            position, rotation, start = aligned(pose, start)
+        found = np.empty((*start.shape[:-1], MOST_BRANCHES, JOINTS))
+        if _kernel.arm_branches(self._numbers, position, rotation, start, found):
+            self._checked(start)
+        return found[..., :BRANCHES, :] if self.is_explicit else found
 
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """Joints (..., 6) on the branch nearest to `near` (default: home's joints).
@@ -84,27 +95,36 @@ class SerialArm:
         Branches within the joint ranges come first. Raises Unreachable with what does not reach,
         by how much, where no branch closes.
         """
-        joints = self.inverse_or_nan(pose, near)
-        lost = np.argwhere(np.isnan(joints[..., 0]))
-        if len(lost):
-            index = tuple(int(i) for i in lost[0])
+        joints, lost = self._nearest(pose, near)
+        if lost:
+            index = tuple(int(i) for i in np.argwhere(np.isnan(joints[..., 0]))[0])
             place = f'pose {list(index)}: ' if index else ''
             raise Unreachable(place + self.method.refusal(pose[index] if index else pose))
         return joints
 
     def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
         """As `inverse`, with NaN for poses out of reach."""
-        start = self._near(near)
-        if pose.position.ndim == 1 and start.ndim == 1:
-            joints = nearby_joints(self.chain, pose, start)
-            if ((joints >= self.limits.low) & (joints <= self.limits.high)).all():
-                return joints
-        branches = self.inverse_all(pose, start)
-        return nearest_branch(branches, start, self.limits.low, self.limits.high)
+        return self._nearest(pose, near)[0]
+
+    def _nearest(self, pose: Pose, near: Array | None) -> tuple[Array, int]:
+        """Joints (..., 6), and how many of them are NaN: as all are near what is not finite."""
+        position, rotation = pose.position, pose.rotation
+        start = self.rest if near is None else self._checked(near, finite=False)
+        if start.shape[:-1] != position.shape[:-1]:
+            position, rotation, start = aligned(pose, start)
+        joints = np.empty(start.shape)
+        lost = _kernel.arm_inverse(self._numbers, position, rotation, start, joints)
+        if lost:
+            self._checked(start)
+        return joints, lost
 
     def inverse_along(self, poses: Pose, near: Array) -> Array:
         """See `Kinematics`: joints go on beyond their ranges, without turning back by 360°."""
-        return self.method.along(poses, self._checked(near))
+        joints = np.empty((len(poses.position), JOINTS))
+        _kernel.arm_along(
+            self._numbers, self._checked(near), poses.position, poses.rotation, joints
+        )
+        return joints
 
     def forward(self, joints: Array, near: Pose | None = None) -> ForwardSolution:
         """The tool's pose: explicit, so that `near` changes nothing.
@@ -144,19 +164,13 @@ class SerialArm:
 
     def sigma_min(self, pose: Pose, joints: Array) -> Array:
         """The smallest singular value (...) of the Jacobian in characteristic lengths."""
-        scaled = self.chain.jacobian(self._checked(joints, finite=False))
-        scaled[..., :3, :] /= self.characteristic_length
-        lost = np.isnan(scaled.sum(axis=(-2, -1)))
-        values = np.linalg.svd(np.where(lost[..., None, None], 0.0, scaled), compute_uv=False)
-        result: Array = np.where(lost, np.nan, values[..., -1])
-        return result
-
-    def _near(self, near: Array | None) -> Array:
-        return self.rest if near is None else self._checked(near)
+        return self.chain.sigma_min(
+            self._checked(joints, finite=False), self.characteristic_length
+        )
 
     def _checked(self, joints: Array, finite: bool = True) -> Array:
-        array = np.asarray(joints, dtype=np.float64)
-        if array.shape[-1:] != (len(JOINT_NAMES),):
+        array = np.ascontiguousarray(joints, np.float64)
+        if array.shape[-1:] != (JOINTS,):
             raise InvalidInput(f'joints have shape {array.shape}, needs (..., 6)')
         if finite and not np.isfinite(array).all():
             raise InvalidInput(f'joints are not finite: {array.ravel()[:6].tolist()}')

@@ -1,164 +1,155 @@
-"""Closed-form inverses: all branches of two kinds of arms (docs/arm-kinematics.md).
+"""Closed-form inverses: all branches of two kinds of arms (docs/arm-kinematics.md, 4 and 5).
 
 Arms whose last three axes meet in one point have eight; so have arms built as the UR5, with
-joints 2, 3 and 4 parallel and axes 5 and 6 meeting.
+joints 2, 3 and 4 parallel and axes 5 and 6 meeting. Their formulas are in kernel/closed_forms.c.
 """
 
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from enum import IntEnum
 
 import numpy as np
 
-from arm_control.chain import Chain
-from arm_control.subproblems import (
-    TwoLink,
-    facing_angle,
-    lattice,
-    perpendicular,
-    projection_angles,
-    rotate,
-)
-from arm_control.tracking import tracked
-from manipulator.arrays import Array
+from arm_control.chain import JOINTS, Chain, aligned
+from manipulator import _kernel
+from manipulator.arrays import Array, frozen
 from manipulator.pose import Pose
 
+EXACT = 1e-9
+"""Metres, and sines of angles: how well axes must meet or be parallel for a closed form."""
 
-@dataclass(frozen=True, eq=False)
-class SphericalWrist:
-    """Joints 2 and 3 parallel, axes 4, 5, 6 through `centre` (docs/arm-kinematics.md, 4)."""
-
-    chain: Chain
-    centre: Array
-
-    @property
-    def is_explicit(self) -> bool:
-        """See `InverseMethod`."""
-        return True
-
-    def branches(self, pose: Pose, near: Array) -> Array:
-        """All eight (..., 8, 6): two of joint 1, times two elbows, times two wrists."""
-        w1, w2, w3 = self.chain.axes[:3]
-        displacement = pose @ self.chain.home.inverse()
-        centre = displacement.transform(self.centre[None])[..., 0, :]
-        arm = TwoLink(self.chain, self.centre)
-        q1 = arm.joint_1(centre, near[..., 0])[..., None, None]
-        local = arm.in_joint_1(centre[..., None, None, None, :], q1)
-        q3 = arm.joint_3(local[..., 0, 0, :], near[..., 2, None])[..., None]
-        q2 = arm.joint_2(local, q3, near[..., 1, None, None, None])
-        columns = np.swapaxes(displacement.rotation, -1, -2)[..., None, None, None, :, :]
-        for axis, angle in ((w1, q1), (w2, q2), (w3, q3)):
-            columns = rotate(axis, -angle[..., None], columns)
-        return lattice((q1, q2, q3, *self._wrist(columns, near)))
-
-    def along(self, poses: Pose, near: Array) -> Array:
-        """See `InverseMethod`."""
-        return tracked(self.branches(poses, near), near)
-
-    def refusal(self, pose: Pose) -> str:
-        """Which triangle of the arm does not close."""
-        centre = (pose @ self.chain.home.inverse()).transform(self.centre[None])[0]
-        arm = TwoLink(self.chain, self.centre)
-        q1 = arm.joint_1(centre, np.zeros(()))
-        if np.isnan(q1).all():
-            return arm.joint_1_refusal('wrist centre', centre)
-        return arm.elbow_refusal('wrist centre', arm.in_joint_1(centre, q1))
-
-    def _wrist(self, columns: Array, near: Array) -> tuple[Array, Array, Array]:
-        """q4, q5, q6 with R4·R5·R6 = R; columns[..., j, :] is R's column j.
-
-        q5 is found once roughly, to choose its branch, then exactly from q4: the arc cosine alone
-        is good to 1e-8 rad where the wrist is aligned.
-        """
-        w4, w5, w6 = self.chain.axes[3:]
-        across = perpendicular(w6)
-        tool = np.einsum('...ji,j->...i', columns, w6)
-        side = np.einsum('...ji,j->...i', columns, across)
-        free_4, free_5, free_6 = (near[..., i, None, None] for i in (3, 4, 5))
-        rough = projection_angles(w5, w6, w4, tool[..., 0, :] @ w4, free_5)
-        q4 = facing_angle(w4, rotate(w5, rough, w6), tool, free_4[..., None])
-        q5 = facing_angle(w5, w6, rotate(w4, -q4, tool), rough)
-        turned = rotate(w5, -q5, rotate(w4, -q4, side))
-        return q4, q5, facing_angle(w6, across, turned, free_6[..., None])
+BRANCHES = 8
 
 
 @dataclass(frozen=True, eq=False)
-class ParallelAxes:
-    """`centre` (3,) is where axes 5 and 6 meet at zero angles (docs/arm-kinematics.md, 5).
+class ClosedForm(ABC):
+    """`centre` (3,) is where axes 5 and 6 meet at zero angles, in metres.
 
-    Arrays of branches have three axes before the coordinates: joint 1, wrist, elbow.
+    numbers are the chain, the centre and the kind, in the order of `struct closed_form`.
     """
 
     chain: Chain
     centre: Array
+    numbers: Array = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Prepares what the kernel is given."""
+        parts = self.chain.numbers, self.centre, [float(self.has_parallel_axes)]
+        object.__setattr__(self, 'numbers', frozen(np.concatenate(parts)))
+
+    @property
+    @abstractmethod
+    def has_parallel_axes(self) -> bool:
+        """Whether axis 4 is parallel to 2 and 3, too."""
+
+    @property
+    @abstractmethod
+    def tip(self) -> str:
+        """What joints 1 to 3 bring to its place."""
 
     @property
     def is_explicit(self) -> bool:
         """See `InverseMethod`."""
         return True
 
-    def branches(self, pose: Pose, near: Array) -> Array:
-        """All eight (..., 8, 6): two of joint 1, times two wrists, times two elbows."""
-        displacement = pose @ self.chain.home.inverse()
-        frees = [near[..., i, None, None, None] for i in range(6)]
-        q1, q5, q6 = self._outer(displacement, frees)
-        target, angle = self._inner_targets(displacement, (q1, q5, q6), frees[3])
-        elbow = TwoLink(self.chain, self.chain.points[3])
-        q3 = elbow.joint_3(target[..., 0, :], frees[2][..., 0])
-        q2 = elbow.joint_2(target, q3, frees[1])
-        _, sense_3, sense_4 = np.sign(self.chain.axes[1:4] @ self.chain.axes[1])
-        q4 = sense_4 * (angle - q2 - sense_3 * q3)
-        return lattice((q1, q2, q3, q4, q5, q6))
-
-    def along(self, poses: Pose, near: Array) -> Array:
+    @property
+    def form(self) -> 'ClosedForm':
         """See `InverseMethod`."""
-        return tracked(self.branches(poses, near), near)
+        return self
+
+    def arm_numbers(self, length: float, low: Array, high: Array) -> Array:
+        """See `InverseMethod`."""
+        return arm_numbers(self.chain, self, length, low, high)
+
+    def branches(self, pose: Pose, near: Array) -> Array:
+        """All eight (..., 8, 6): two of joint 1, times two elbows, times two wrists."""
+        position, rotation, start = aligned(pose, near)
+        branches = np.empty((*start.shape[:-1], BRANCHES, JOINTS))
+        _kernel.closed_branches(self.numbers, position, rotation, start, branches)
+        return branches
 
     def refusal(self, pose: Pose) -> str:
-        """Which triangle of the arm does not close: joint 1's, or every elbow's."""
-        displacement = pose @ self.chain.home.inverse()
-        frees = [np.zeros((1, 1, 1))] * 6
-        outer = self._outer(displacement, frees)
-        if np.isnan(outer[0]).all():
-            centre = displacement.transform(self.centre[None])[0]
-            wrist = TwoLink(self.chain, self.centre)
-            return wrist.joint_1_refusal('wrist centre', centre)
-        target, _ = self._inner_targets(displacement, outer, frees[3])
-        elbow = TwoLink(self.chain, self.chain.points[3])
-        return elbow.elbow_refusal("joint 4's axis", target.reshape(-1, 3))
-
-    def _outer(self, displacement: Pose, frees: list[Array]) -> tuple[Array, Array, Array]:
-        """q1 from the wrist centre's distance to the plane of joints 2 to 4, then q5 and q6.
-
-        Those two bring the normal of that plane, which joints 2 to 4 cannot turn, to its place.
-        """
-        w1, w2, _, _, w5, w6 = self.chain.axes
-        centre = displacement.transform(self.centre[None])[..., 0, :]
-        wrist = TwoLink(self.chain, self.centre)
-        q1 = wrist.joint_1(centre, frees[0][..., 0, 0, 0])[..., None, None]
-        normal = _turned(np.swapaxes(displacement.rotation, -1, -2), rotate(w1, q1, w2))
-        rough = projection_angles(w5, w6, w2, (normal @ w6)[..., 0], frees[4][..., 0])
-        rough = np.swapaxes(rough, -1, -2)
-        q6 = facing_angle(w6, normal, rotate(w5, -rough, w2), frees[5])
-        return q1, facing_angle(w5, rotate(w6, q6, normal), w2, rough), q6
-
-    def _inner_targets(
-        self, displacement: Pose, outer: tuple[Array, Array, Array], free: Array
-    ) -> tuple[Array, Array]:
-        """Where joints 2 to 4 must bring joint 4's point, and how far they must turn in all.
-
-        The displacement with joints 1, 5 and 6 taken off, in joint 1's frame.
-        """
-        q1, q5, q6 = outer
-        w1, w2, _, _, w5, w6 = self.chain.axes
-        side = perpendicular(w2)
-        arm = self.chain.points[3] - self.centre
-        point = self.centre + rotate(w6, -q6, rotate(w5, -q5, arm))
-        shift = displacement.position[..., None, None, None, :]
-        moved = _turned(displacement.rotation, point) + shift
-        target = TwoLink(self.chain, self.centre).in_joint_1(moved, q1)
-        turned = _turned(displacement.rotation, rotate(w6, -q6, rotate(w5, -q5, side)))
-        return target, facing_angle(w2, side, rotate(w1, -q1, turned), free)
+        """Which triangle of the arm does not close."""
+        gap = np.empty(4)
+        _kernel.closed_gap(self.numbers, pose.position, pose.rotation, gap)
+        is_at_shoulder, distance, least, most = gap.tolist()
+        if not is_at_shoulder:
+            place = f"wrist centre {distance:.4g} m from joint 1's axis"
+            return f'{place}, needs at least {least:.4g} m'
+        bound = f'reach is {most:.4g} m' if distance > most else f'needs at least {least:.4g} m'
+        return f'{self.tip} {distance:.4g} m from the shoulder, {bound}'
 
 
-def _turned(rotation: Array, vectors: Array) -> Array:
-    result: Array = np.einsum('...ij,...abcj->...abci', rotation, vectors)
-    return result
+class SphericalWrist(ClosedForm):
+    """Joints 2 and 3 parallel, axes 4, 5, 6 through `centre` (docs/arm-kinematics.md, 4)."""
+
+    has_parallel_axes = False
+    tip = 'wrist centre'
+
+
+class ParallelAxes(ClosedForm):
+    """Joints 2, 3 and 4 parallel, axes 5 and 6 through `centre` (docs/arm-kinematics.md, 5)."""
+
+    has_parallel_axes = True
+    tip = "joint 4's axis"
+
+
+NO_LOOP = -1
+"""Instead of the joint after which a loop for elimination begins."""
+
+
+class Closes(IntEnum):
+    """Which closed form an arm has, as kernel/arm.h says it."""
+
+    NO_FORM = 0
+    ALMOST = 1
+    CLOSED = 2
+
+
+def arm_numbers(
+    chain: Chain,
+    form: ClosedForm | None,
+    length: float,
+    low: Array,
+    high: Array,
+    first: int = NO_LOOP,
+) -> Array:
+    """An arm in the order of `struct arm`: its chain, the closed form that it has, or almost."""
+    closes = Closes.NO_FORM
+    if form is not None:
+        closes = Closes.CLOSED if form.chain is chain else Closes.ALMOST
+    without = np.zeros(len(chain.numbers) + 4)
+    numbers = without if form is None else form.numbers
+    return frozen(np.concatenate([chain.numbers, numbers, [closes, length], low, high, [first]]))
+
+
+def closed_form(chain: Chain) -> ClosedForm | None:
+    """The one whose conditions the axes meet."""
+    axes = chain.axes
+    if _are_parallel(axes[1], axes[2]) and not _are_parallel(axes[0], axes[1]):
+        centre = _meeting_point(chain, 4, 5)
+        if centre is not None and _is_on_axis(chain, 3, centre):
+            return SphericalWrist(chain, centre)
+        if centre is not None and _are_parallel(axes[1], axes[3]):
+            return ParallelAxes(chain, centre)
+    return None
+
+
+def _are_parallel(a: Array, b: Array) -> bool:
+    return bool(np.linalg.norm(np.cross(a, b)) < EXACT)
+
+
+def _is_on_axis(chain: Chain, joint: int, point: Array) -> bool:
+    off_axis = np.cross(chain.axes[joint], point - chain.points[joint])
+    return bool(np.linalg.norm(off_axis) < EXACT)
+
+
+def _meeting_point(chain: Chain, first: int, second: int) -> Array | None:
+    """Where two axes meet, None when they pass each other or run parallel."""
+    a, b = chain.axes[first], chain.axes[second]
+    if _are_parallel(a, b):
+        return None
+    p, q = chain.points[first], chain.points[second]
+    along, *_ = np.linalg.lstsq(np.stack([a, -b], axis=1), q - p, rcond=None)
+    point: Array = p + along[0] * a
+    return point if _is_on_axis(chain, second, point) else None

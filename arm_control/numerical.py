@@ -1,28 +1,23 @@
 """Inverse of any chain by damped Newton steps from many starts (docs/arm-kinematics.md, 6).
 
-A calibrated arm, built almost as one with a closed form, starts at that one's branches.
+A calibrated arm, built almost as one with a closed form, starts at that one's branches. The
+steps are in kernel/numerical.c, where they start in kernel/arm.c.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from arm_control.branches import without_repeats
-from arm_control.chain import Chain
-from arm_control.closed_forms import ParallelAxes, SphericalWrist
-from arm_control.tracking import tracked_by_newton
-from manipulator.arrays import Array, Mask
+from arm_control.chain import JOINTS, Chain, aligned
+from arm_control.closed_forms import NO_LOOP, ClosedForm, arm_numbers
+from manipulator import _kernel
+from manipulator.arrays import Array
 from manipulator.pose import Pose
 
-STEPS = 60
-STARTS = 32
-TOLERANCE = 1e-10
-LOOK_BACK, STALLED = 10, 0.9
-"""A start whose error is still more than this part of what it was ten steps ago is given up."""
-
-CHUNK = 256
-"""Poses that are solved together: a few megabytes, a second, and Ctrl-C is heard."""
+STARTS = 33
+MOST_BRANCHES = 16
+"""Of any arm with six joints."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,150 +31,123 @@ class Numerical:
     length: float
     low: Array
     high: Array
+    first: int = field(init=False)
+    numbers: Array = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Prepares what the kernel is given."""
+        first = best_loop(self.chain, self.length)
+        numbers = arm_numbers(self.chain, None, self.length, self.low, self.high, first)
+        object.__setattr__(self, 'first', first)
+        object.__setattr__(self, 'numbers', numbers)
 
     @property
     def is_explicit(self) -> bool:
         """See `InverseMethod`."""
         return False
 
+    @property
+    def form(self) -> None:
+        """See `InverseMethod`."""
+        return None
+
+    def arm_numbers(self, length: float, low: Array, high: Array) -> Array:
+        """See `InverseMethod`."""
+        return self.numbers
+
     def branches(self, pose: Pose, near: Array) -> Array:
-        """What was found from `near` (entry 0) and from the cold starts: (..., 33, 6).
+        """What was found from `near`, which comes first, and from the cold starts: (..., 16, 6).
 
         A branch may be missed.
         """
-        lead = pose.position.shape[:-1]
-        places, turns = pose.position.reshape(-1, 3), pose.rotation.reshape(-1, 3, 3)
-        wanted = np.broadcast_to(near, (*lead, 6)).reshape(-1, 6)
-        found = np.full((len(places), STARTS + 1, 6), np.nan)
-        near_enough = np.flatnonzero(self._is_within_reach(places))
-        for some in np.split(near_enough, range(CHUNK, len(near_enough), CHUNK)):
-            found[some] = self._solved(Pose(places[some], turns[some]), wanted[some])
-        return found.reshape(*lead, STARTS + 1, 6)
-
-    def _solved(self, pose: Pose, near: Array) -> Array:
-        """The branches (n, 33, 6) of n poses."""
-        spread = np.random.default_rng(0).uniform(self.low, self.high, (STARTS, 6))
-        cold = np.broadcast_to(spread, (len(near), STARTS, 6))
-        joints, error = self.descend(pose, np.concatenate([near[:, None], cold], axis=1))
-        return without_repeats(np.where((error < TOLERANCE)[..., None], joints, np.nan))
-
-    def along(self, poses: Pose, near: Array) -> Array:
-        """See `InverseMethod`."""
-        return tracked_by_newton(self.chain, poses, near, self.branches)
-
-    def _is_within_reach(self, places: Array) -> Mask:
-        """Whether the links, all in one line, come to the places (n, 3)."""
-        path = np.vstack([self.chain.points, self.chain.home.position])
-        reach = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
-        away = np.linalg.norm(places - self.chain.points[0], axis=1)
-        within: Mask = away <= reach * (1 + 1e-9)
-        return within
+        return arm_branches(self.numbers, pose, near)
 
     def refusal(self, pose: Pose) -> str:
         """How near the best attempt came."""
-        middle = (self.low + self.high) / 2
-        spread = np.random.default_rng(0).uniform(self.low, self.high, (STARTS, 6))
-        joints, error = self.descend(pose, np.vstack([middle, spread]))
-        miss = self.chain.forward(joints[np.argmin(error)]).twist_to(pose)
+        miss = np.empty(6)
+        _kernel.arm_miss(self.numbers, pose.position, pose.rotation, miss)
         distance, angle = np.linalg.norm(miss[:3]), np.degrees(np.linalg.norm(miss[3:]))
-        return f'no joint angles found: the best of {STARTS + 1} starts missed by ' + (
+        return f'no joint angles found: the best of {STARTS} starts missed by ' + (
             f'{distance:.4g} m and {angle:.3g}°'
         )
-
-    def descend(self, pose: Pose, joints: Array, steps: int = STEPS) -> tuple[Array, Array]:
-        """Joints (..., k, 6) after the steps, and the scaled error that is left of each."""
-        lead = joints.shape[:-1]
-        found = np.array(joints, dtype=np.float64).reshape(-1, 6)
-        places = np.broadcast_to(pose.position[..., None, :], (*lead, 3)).reshape(-1, 3)
-        turns = np.broadcast_to(pose.rotation[..., None, :, :], (*lead, 3, 3)).reshape(-1, 3, 3)
-        going, left = np.arange(len(found)), np.empty(len(found))
-        last = np.full(len(found), np.inf)
-        for step in range(steps + 1):
-            error = self._scale * self.chain.forward(found[going]).twist_to(
-                Pose(places[going], turns[going])
-            )
-            size = np.linalg.norm(error, axis=-1)
-            left[going] = size
-            moving = size >= TOLERANCE / 10
-            if step and step % LOOK_BACK == 0:
-                moving &= size < STALLED * last[going]
-            if step % LOOK_BACK == 0:
-                last[going] = size
-            going, error, size = going[moving], error[moving], size[moving]
-            if step == steps or not going.size:
-                break
-            found[going] = self._stepped(found[going], error, size)
-        return found.reshape(*lead, 6), left.reshape(lead)
-
-    def _stepped(self, joints: Array, error: Array, size: Array) -> Array:
-        """Joints (n, 6) after one damped step against their scaled errors (n, 6), sizes (n,)."""
-        jacobian = self._scale[:, None] * self.chain.jacobian(joints)
-        transposed = np.swapaxes(jacobian, -1, -2)
-        damping = np.minimum(size**2 / 2, 0.1)[:, None, None] + 1e-12
-        normal = transposed @ jacobian + damping * np.eye(6)
-        stepped: Array = joints + np.linalg.solve(normal, transposed @ error[..., None])[..., 0]
-        return stepped
-
-    @property
-    def _scale(self) -> Array:
-        return np.array([1 / self.length] * 3 + [1.0] * 3)
-
-
-ALMOST_PARALLEL, ALMOST_MEETING = np.radians(5.0), 0.005
-"""How far axes may be from parallel (rad), and from meeting in one point (m)."""
-
-ASIDE = (0.96, 1.04, 0.9)
-"""Distances from the shoulder, as parts of the pose's own, at which the ideal arm is asked too."""
-
-FEW_STEPS = 20
-"""Of descent from the ideal arm's branches: more is only needed where two branches meet."""
 
 
 @dataclass(frozen=True, eq=False)
 class AlmostClosed:
     """What damped Newton steps find from `near` and from the eight branches of the ideal arm."""
 
-    ideal: SphericalWrist | ParallelAxes
+    ideal: ClosedForm
     numerical: Numerical
+    numbers: Array = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Prepares what the kernel is given."""
+        own = self.numerical
+        numbers = arm_numbers(own.chain, self.ideal, own.length, own.low, own.high, own.first)
+        object.__setattr__(self, 'numbers', numbers)
 
     @property
     def is_explicit(self) -> bool:
         """See `InverseMethod`."""
         return False
 
-    def branches(self, pose: Pose, near: Array) -> Array:
-        """All eight and NaN (..., 9, 6); for one pose that has none, what `Numerical` finds."""
-        starts = self._starts(pose, near)
-        joints, error = self.numerical.descend(pose, starts, FEW_STEPS)
-        found = without_repeats(np.where((error < TOLERANCE)[..., None], joints, np.nan))
-        if pose.position.ndim == 1 and np.isnan(found).all():
-            return self.numerical.branches(pose, near)
-        return found
-
-    def _starts(self, pose: Pose, near: Array) -> Array:
-        """`near`, then the ideal arm's branches, or where it has none those a little aside.
-
-        At the edge of the reach the real arm may have a branch which the ideal one has not.
-        """
-        starts = self.ideal.branches(pose, near)
-        shoulder = self.ideal.chain.points[1]
-        for stretch in ASIDE:
-            lost = np.isnan(starts)
-            if not lost.any():
-                break
-            place = shoulder + stretch * (pose.position - shoulder)
-            starts = np.where(lost, self.ideal.branches(Pose(place, pose.rotation), near), starts)
-        first = np.broadcast_to(near[..., None, :], (*starts.shape[:-2], 1, starts.shape[-1]))
-        return np.concatenate([first, np.where(np.isnan(starts), first, starts)], axis=-2)
-
-    def along(self, poses: Pose, near: Array) -> Array:
+    @property
+    def form(self) -> ClosedForm:
         """See `InverseMethod`."""
-        return tracked_by_newton(self.numerical.chain, poses, near, self.branches)
+        return self.ideal
+
+    def arm_numbers(self, length: float, low: Array, high: Array) -> Array:
+        """See `InverseMethod`."""
+        return self.numbers
+
+    def branches(self, pose: Pose, near: Array) -> Array:
+        """All of them and NaN (..., 16, 6); for a pose that has none, what `Numerical` finds."""
+        return arm_branches(self.numbers, pose, near)
 
     def refusal(self, pose: Pose) -> str:
         """Which triangle of the ideal arm does not close, or how near the real one comes."""
-        is_out_of_reach = np.isnan(self.ideal.branches(pose, np.zeros(6))).all()
+        is_out_of_reach = np.isnan(self.ideal.branches(pose, np.zeros(JOINTS))).all()
         return (self.ideal if is_out_of_reach else self.numerical).refusal(pose)
+
+
+def arm_branches(numbers: Array, pose: Pose, near: Array) -> Array:
+    """All branches (..., 16, 6) of an arm, by whole turns nearest to `near` within its ranges."""
+    position, rotation, start = aligned(pose, near)
+    found = np.empty((*start.shape[:-1], MOST_BRANCHES, JOINTS))
+    _kernel.arm_branches(numbers, position, rotation, start, found)
+    return found
+
+
+TRIED = 12
+"""Postures on which the ways to begin the loop of an elimination are tried."""
+CANDIDATES = 48
+ORDER = (5, 2, 4, 0, 1, 3)
+"""Most arms have axes that are parallel, or that meet, where the first of these have a use."""
+GOOD, USEFUL = 1e-9, 1e-3
+"""Radians from a posture at which three quarters of its eliminations have a candidate."""
+
+
+def best_loop(chain: Chain, length: float) -> int:
+    """After which joint a loop begins that has its candidates near; NO_LOOP where none has a use.
+
+    Which determinant tells an arm's branches depends on which of its axes are parallel or meet.
+    """
+    joints = np.random.default_rng(0).uniform(-np.pi, np.pi, (TRIED, JOINTS))
+    poses, missed = chain.forward(joints), {}
+    for first in ORDER:
+        found, how = np.empty((TRIED, CANDIDATES, JOINTS)), np.array([length, first])
+        _kernel.general_candidates(chain.numbers, how, poses.position, poses.rotation, found)
+        apart = np.abs(np.exp(1j * found) - np.exp(1j * joints)[:, None]).max(axis=-1)
+        nearest = np.sort(np.nan_to_num(apart, nan=np.inf).min(axis=-1))
+        missed[first] = float(nearest[3 * TRIED // 4])
+        if missed[first] < GOOD:
+            return first
+    best = min(missed, key=lambda first: missed[first])
+    return best if missed[best] < USEFUL else NO_LOOP
+
+
+ALMOST_PARALLEL, ALMOST_MEETING = np.radians(5.0), 0.005
+"""How far axes may be from parallel (rad), and from meeting in one point (m)."""
 
 
 def idealised(chain: Chain) -> Iterator[Chain]:

@@ -1,49 +1,44 @@
 """How much of wanted joint rates the joints can drive: speeds, stops, accelerations.
 
 Rates are scaled as a whole, never one joint alone, so that the tool keeps its direction
-(docs/arm-kinematics.md, 8).
+(docs/arm-kinematics.md, 8). The formulas are in kernel/rate_scaling.c.
 
 The ways out where a twist cannot be kept to (docs/arm-kinematics.md, 9).
 """
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from arm_control.chain import JOINTS
 from arm_control.line_keeping import LOST, Posture
-from manipulator.arrays import Array, Mask
+from manipulator import _kernel
+from manipulator.arrays import Array, Mask, frozen
 
 AT_STOP = 1e-4
 """Radians from its stop at which a joint stands there: 0.006°, finer than any of our drives."""
-STANDING = 1e-9
-"""rad/s."""
 AT_ONCE = 1e12
 """1/s, for a twist that may fall as fast as the joints can brake."""
-ROUNDING = 1e-6
-"""Radians by which a jog stays off the end of each range: who solves its pose again for the joints
-must not find one beyond it."""
-BEND_SHARE = 0.25
-"""Of a joint's acceleration, what following a straight line at constant speed may take; the rest
-is left for braking on it."""
-BRAKING_LEFT = 0.1
-"""Of a joint's braking, what is counted on where the line takes most of it."""
-STRAIGHT = 1e-12
-"""rad/s²."""
-FAR = 1e12
-"""Radians or rad/s that hold nothing back."""
+LIMITS = ('', 'speed', 'acceleration', 'stop')
+"""What sets a scale, in the order of kernel/rate_scaling.h."""
 
 
 @dataclass(frozen=True, eq=False)
 class Room:
-    """Radians (6,) from each joint to both ends of its range; negative beyond."""
+    """Radians (12,) from each joint to the low and the high end of its range; negative beyond."""
 
-    to_low: Array
-    to_high: Array
+    numbers: Array
 
-    def ahead(self, rates: Array) -> Array:
-        """To the ends that `rates` lead to."""
-        return np.where(rates > 0, self.to_high, self.to_low)
+    @property
+    def to_low(self) -> Array:
+        """(6,)."""
+        return self.numbers[:JOINTS]
+
+    @property
+    def to_high(self) -> Array:
+        """(6,)."""
+        return self.numbers[JOINTS:]
 
 
 @dataclass(frozen=True)
@@ -64,16 +59,27 @@ class Scale:
 
 @dataclass(frozen=True, eq=False)
 class RateScaling:
-    """The joints' limits, each (6,), in rad, rad/s and rad/s²."""
+    """The joints' limits, each (6,), in rad, rad/s and rad/s².
+
+    numbers are these in the order of `struct joint_limits`.
+    """
 
     low: Array
     high: Array
     speed: Array
     acceleration: Array
+    numbers: Array = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Prepares what the kernel is given."""
+        limits = self.low, self.high, self.speed, self.acceleration
+        object.__setattr__(self, 'numbers', frozen(np.concatenate(limits)))
 
     def room(self, joints: Array) -> Room:
-        """What is left of the ranges, less ROUNDING."""
-        return Room(joints - self.low - ROUNDING, self.high - ROUNDING - joints)
+        """What is left of the ranges for joints (6,), but for rounding."""
+        room = np.empty(2 * JOINTS)
+        _kernel.room_of(self.numbers, joints, room)
+        return Room(room)
 
     def scale(
         self, rates: Array, bend: Array, room: Room, dt: float, slowing: float = AT_ONCE
@@ -83,77 +89,23 @@ class RateScaling:
         bend (6,) in rad/s² is how `rates` change while the tool goes straight on with all of them.
         slowing: the part of itself (1/s) by which the rates may fall before a stop.
         """
-        size = np.maximum(np.abs(rates), STANDING)
-        driven = (self.speed / size).tolist()
-        bent = self._bent(bend)
-        fastest, easiest = min(driven), min(bent)
-        cruise = min(1.0, fastest, easiest)
-        speeds = self._braking_speeds(rates, size, cruise**2 * bend, room, dt, slowing)
-        braked = (speeds / size).tolist()
-        gentlest = min(braked)
-        if min(cruise, gentlest) >= 1.0:
-            return Scale(1.0)
-        if gentlest < cruise:
-            return Scale(gentlest, 'stop', braked.index(gentlest) + 1)
-        if easiest < fastest:
-            return Scale(easiest, 'acceleration', bent.index(easiest) + 1)
-        return Scale(fastest, 'speed', driven.index(fastest) + 1)
+        scale, time = np.empty(3), np.array((dt, slowing))
+        _kernel.scale_rates(self.numbers, room.numbers, rates, bend, time, scale)
+        part, limit, joint = scale.tolist()
+        return Scale(part, LIMITS[int(limit)], int(joint))
 
-    def _bent(self, bend: Array) -> list[float]:
-        """The part of the rates at which each joint can follow their bend."""
-        squares = BEND_SHARE * self.acceleration / np.maximum(np.abs(bend), STRAIGHT)
-        result: list[float] = np.sqrt(squares).tolist()
-        return result
+    def followed(
+        self, before: Array, joints: Array, rates: Array, part: float, room: Room, dt: float
+    ) -> tuple[Array, Array]:
+        """Rates (6,) that the accelerations allow after `before`, and joints (6,) dt later.
 
-    def _braking_speeds(
-        self, rates: Array, size: Array, bend: Array, room: Room, dt: float, slowing: float
-    ) -> Array:
-        """From what speed (6,) each joint can stand before its stop, all braking together.
-
-        With deceleration a and room r: v·dt + v²/(2a) ≤ r. All joints fall by the same part of
-        themselves, as fast as the one that brakes worst; what its line bends towards the stop, a
-        joint has to brake as well. Joints that stand may be anywhere.
+        On the way to part·rates they are a multiple of `rates`, the nearest to `part`, wherever
+        one can be reached; else all joints go the same part of the way. Stops outrank
+        accelerations: a step that would pass one is shortened as a whole.
         """
-        fall = min(slowing, *((self.acceleration - np.abs(bend)) / size).tolist())
-        most = fall * size
-        a = np.maximum(
-            most - np.maximum(np.copysign(bend, rates * bend), 0.0), BRAKING_LEFT * most
-        )
-        ahead = room.ahead(rates)
-        ahead[ahead <= AT_STOP] = 0.0
-        slowed = a * dt
-        speeds: Array = np.sqrt(slowed * slowed + 2 * a * ahead) - slowed
-        speeds[size <= STANDING] = FAR
-        return speeds
-
-    def followed(self, before: Array, rates: Array, part: float, room: Room, dt: float) -> Array:
-        """Rates (6,) that the accelerations allow after `before`, on the way to part·rates.
-
-        They are a multiple of `rates`, the nearest to `part`, wherever one can be reached; else
-        all joints go the same part of the way. Stops outrank accelerations: a step that would pass
-        one is shortened as a whole.
-        """
-        size, gain = np.maximum(np.abs(rates), STANDING), self.acceleration * dt
-        now, reach = np.copysign(before, before * rates) / size, gain / size
-        least, most = max((now - reach).tolist()), min((now + reach).tolist())
-        chosen = min(max(part, least), most) * rates
-        if least > most or most < 0 or max((np.abs(chosen) - self.speed).tolist()) > STANDING:
-            change = part * rates - before
-            chosen = before + change / max(1.0, *(np.abs(change) / gain).tolist())
-        size = np.abs(chosen)
-        chosen[size < STANDING] = 0.0
-        ahead = np.maximum(room.ahead(chosen), 0.0)
-        ahead[size < STANDING] = FAR
-        parts = ahead / np.maximum(size, STANDING)
-        shortened: Array = chosen * min(1.0, *(parts / dt).tolist())
-        return shortened
-
-    def stepped(self, joints: Array, rates: Array, dt: float) -> Array:
-        """Joints (6,) dt later; only rounding is cut off, what stops do is in `rates`."""
-        highest = np.maximum(self.high - ROUNDING, joints)
-        lowest = np.minimum(self.low + ROUNDING, joints)
-        result: Array = np.minimum(np.maximum(joints + dt * rates, lowest), highest)
-        return result
+        after, there, going = before.copy(), joints.copy(), np.array((part, dt))
+        _kernel.follow_rates(self.numbers, room.numbers, rates, going, after, there)
+        return after, there
 
 
 NEGLIGIBLE = 1e-9

@@ -9,7 +9,6 @@ from arm_control.line_keeping import (
     LOST,
     LineRates,
     Posture,
-    exact_rates,
     line_rates,
     singularity,
     without_noise,
@@ -24,6 +23,7 @@ from arm_control.rate_scaling import (
     folding_rates,
     sliding_rates,
 )
+from manipulator import _kernel
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput
 from manipulator.motion_limits import MotionLimits
@@ -111,15 +111,19 @@ class ResolvedRate:
     slides: bool = False
     scaling: RateScaling = field(init=False, repr=False)
     _unit: Array = field(init=False, repr=False)
+    _length: Array = field(init=False, repr=False)
+    _onset: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Combines the joints' own limits with the machine's."""
         limits = self.arm.limits
         joint = self.motion.joint.tightened(limits.speed, limits.acceleration)
         scaling = RateScaling(limits.low, limits.high, joint.speed, joint.acceleration)
-        unit = np.array([1 / self.arm.characteristic_length] * 3 + [1.0] * 3)
+        length = self.arm.characteristic_length
         object.__setattr__(self, 'scaling', scaling)
-        object.__setattr__(self, '_unit', frozen(unit))
+        object.__setattr__(self, '_unit', frozen([1 / length] * 3 + [1.0] * 3))
+        object.__setattr__(self, '_length', frozen([length]))
+        object.__setattr__(self, '_onset', frozen([self.onset]))
 
     def step(self, state: JogState, twist: Array, dt: float, slowing: float = AT_ONCE) -> JogStep:
         """The state dt seconds later, for a twist (6,) of the tool in base axes.
@@ -135,8 +139,8 @@ class ResolvedRate:
         drive = tick.damped() if self.slides else tick.on_line()
         if drive.scale == 0.0 and wanted.any():
             drive = tick.way_out() or drive
-        rates = self.scaling.followed(state.rates, drive.rates, drive.scale, tick.room, dt)
-        joints = self.scaling.stepped(state.joints, rates, dt)
+        before = state.rates, state.joints
+        rates, joints = self.scaling.followed(*before, drive.rates, drive.scale, tick.room, dt)
         off_line, driven = tick.missed(rates)
         if drive.is_sliding:
             off_line = STRAIGHT
@@ -144,12 +148,14 @@ class ResolvedRate:
         is_on_line = bool(rates.any()) and not (drive.is_sliding or is_leaving)
         is_asked = bool(wanted.any() or rates.any())
         is_under_way = is_on_line or (state.is_under_way and is_asked)
-        after = JogState(frozen(joints), frozen(rates), off_line, is_leaving, is_under_way)
+        for array in (joints, rates, off_line):
+            array.setflags(write=False)
+        after = JogState(joints, rates, off_line, is_leaving, is_under_way)
         return JogStep(after, drive.scale, drive.held_by, tick.posture.sigma_min, driven)
 
     def posture(self, joints: Array) -> Posture:
         """The Jacobian at joints (6,), its linear velocities in characteristic lengths."""
-        return Posture.of(self.arm.chain.jacobian(joints) * self._unit[:, None])
+        return Posture.at(self.arm.chain, self._length, joints)
 
 
 class _Tick:
@@ -171,20 +177,19 @@ class _Tick:
     def on_line(self) -> _Drive:
         """The twist with its direction kept, as far as the joints allow."""
         off_line = self._state.off_line * self._jog._unit
-        line = line_rates(self.posture, self._twist, off_line, self._jog.onset)
+        line = line_rates(self.posture, self._twist, self._jog._onset, off_line)
         drive = self._scaled(line)
         if drive.scale > 0.0 or self.posture.sigma_min >= self._jog.onset:
             return drive
         # Nothing but the twist: where it is stopped, its opposite is not.
-        exact = self._scaled(exact_rates(self.posture, self._twist))
+        exact = self._scaled(self._exact(self._twist))
         return exact if exact.scale > 0.0 else drive
 
     def damped(self) -> _Drive:
         """The twist with its lost directions damped."""
-        onset = self._jog.onset
-        rates = without_noise(self.posture.damped_rates(self._twist, onset))
-        scale = self._scale(rates, np.zeros(6))
-        if self.posture.sigma_min >= onset:
+        rates = self.posture.damped_rates(self._twist, self._jog._onset)
+        scale = self._scale(rates, STRAIGHT)
+        if self.posture.sigma_min >= self._jog.onset:
             return _Drive(rates, scale.part, str(scale))
         return _Drive(rates, scale.part, SLIDING + self._place(), is_sliding=True)
 
@@ -202,13 +207,13 @@ class _Tick:
 
     def missed(self, rates: Array) -> tuple[Array, float]:
         """How far (6,) the tool is off its line with these rates, and the part of the twist."""
-        size = float(self._twist @ self._twist)
-        if size == 0.0:
-            return self._state.off_line, 0.0
-        moving = self.posture.jacobian @ rates
-        part = float(moving @ self._twist) / size
-        away = self._dt * (part * self._twist - moving) / self._jog._unit
-        return frozen(self._state.off_line + away), min(part, 1.0)
+        off_line, part = self._state.off_line.copy(), np.empty(1)
+        time = np.array((self._jog.arm.characteristic_length, self._dt))
+        _kernel.part_driven(self.posture.numbers, time, self._twist, rates, off_line, part)
+        return off_line, float(part[0])
+
+    def _exact(self, twist: Array) -> LineRates:
+        return line_rates(self.posture, twist, self._jog._onset)
 
     def _scale(self, rates: Array, bend: Array) -> Scale:
         return self._jog.scaling.scale(rates, bend, self.room, self._dt, self._slowing)
@@ -260,16 +265,16 @@ class _Tick:
         damping = 0.5 * self._jog.onset
         rates = sliding_rates(self.posture.jacobian, self._twist, damping, *stops)
         rates = without_noise(rates)
-        scale = self._scale(rates, np.zeros(6))
+        scale = self._scale(rates, STRAIGHT)
         return _Drive(rates, scale.part, SLIDING + place, True, is_leaving)
 
     def _is_trapped(self) -> bool:
         """Whether none of the twelve unit twists can be driven."""
         near_stops = self.room.to_low <= CORNER, self.room.to_high <= CORNER
-        unit_rates = self.posture.damped_unit_rates(self._jog.onset)
+        unit_rates = self.posture.damped_rates(np.eye(6), self._jog._onset).T
         free = np.flatnonzero(~blocked(unit_rates, *near_stops))
         if self._jog.slides or self.posture.sigma_min >= self._jog.onset or free.size in (0, 12):
             return free.size == 0
         size = float(np.sqrt(self._twist @ self._twist))
         units = size * np.concatenate([np.eye(6), -np.eye(6)])[free]
-        return all(self._scaled(exact_rates(self.posture, unit)).scale == 0.0 for unit in units)
+        return all(self._scaled(self._exact(unit)).scale == 0.0 for unit in units)

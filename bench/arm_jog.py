@@ -51,9 +51,9 @@ def held(
     shift = max(np.linalg.norm(pose.position - start.position) for pose in turned)
     missed = max(np.linalg.norm(off_sight(pose, point)) for pose in looking)
     return [
-        ('orientation held over 1 m', np.degrees(angle), '°', goals[0]),
-        ('tool point held while turning', 1e3 * shift, 'mm', goals[1]),
-        ('sight held on a point over 1 m', np.degrees(missed), '°', goals[0]),
+        ('orientation kept over 1 m', np.degrees(angle), '°', goals[0]),
+        ('tool point kept while turning', 1e3 * shift, 'mm', goals[1]),
+        ('line of sight kept on a point over 1 m', np.degrees(missed), '°', goals[0]),
     ]
 
 

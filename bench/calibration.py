@@ -31,5 +31,5 @@ def rows() -> list[Row]:
             )  # fmt: skip
             law = 1e3 * np.sqrt(np.mean([run.law**2 for run in runs], axis=0))
             text = ', '.join(f'{axis} {e:.3f}' for axis, e in zip('xyz', law, strict=True))
-            found.append(Row(f'{title}: what the covariance says', f'{text} mm'))
+            found.append(Row(f'{title}: predicted by the covariance', f'{text} mm'))
     return found

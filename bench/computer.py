@@ -16,7 +16,7 @@ def this_computer() -> dict[str, str]:
         'date': date.today().isoformat(),
         'commit': commit(),
         'processor': f'{processor()}, {os.cpu_count()} cores',
-        'load averages at the start': f'{load} (above 0.5, others were at work: repeat it)',
+        'load averages at the start': f'{load} (above 0.5, others were active: repeat it)',
         'system': f'{platform.system()} {platform.release()}',
         'threads of linear algebra': os.environ.get('OPENBLAS_NUM_THREADS', 'as many as cores'),
         'Python, numpy': f'{platform.python_version()}, {np.__version__}',

@@ -1,4 +1,4 @@
-"""The arm jogged at 500 setpoints a second through the whole graph: what comes, and when."""
+"""The arm jogged at 500 setpoints a second through the whole graph: message rates and jitter."""
 
 import os
 import tempfile
@@ -14,6 +14,7 @@ from bench.graph import cpu_seconds
 from bench.row import Row
 from bridge.frames import encode
 from bridge.protocol import Setpoint
+from hexarm import keep_to_this_computer
 from hexarm.client import Client
 from hexarm.graph import Graph, machine_graph
 from hexarm.machines import read
@@ -27,7 +28,7 @@ BITS_PER_BYTE = 10  # with start and stop bit
 
 def rows():
     os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    keep_to_this_computer()
     setpoints, commands, jitter, shares = jogged()
     ticks = {'trajectory': setpoints, 'ik': commands}
     costs = {name: 10 * shares[name] / rate for name, rate in ticks.items()}

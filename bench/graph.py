@@ -1,4 +1,4 @@
-"""The running machine: `hexarm up` with its nodes in one process, and in one each."""
+"""The running machine: `hexarm up` with its nodes in one process, and in separate processes."""
 
 import json
 import os
@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from bench.row import Row
+from hexarm import keep_to_this_computer
 from hexarm.client import Client
 
 SPACE = 'bench'
@@ -36,7 +37,7 @@ class Run:
 
 def rows():
     os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    keep_to_this_computer()
     bare = float(np.median(bare_chain())) * 1e3
     separate, together = running('--separate'), running()
     return [

@@ -1,4 +1,4 @@
-"""How often a cold start takes one assembly mode for another: in the workspace and outside it."""
+"""Assembly modes that a cold start confuses: share of poses inside and outside the workspace."""
 
 from pathlib import Path
 

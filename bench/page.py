@@ -9,13 +9,13 @@ from bench.section import Section
 HEAD = """\
 # Performance
 
-The last run of `make bench WRITE=docs/performance.md`, which makes this page: run it again rather
-than edit it. `make bench` alone prints the same table.
+`make bench WRITE=docs/performance.md` generates this page from one run. To change it, repeat the
+run. `make bench` alone prints the same table.
 
-Times are medians of calls taken in turns, so that what else the computer does falls on all alike.
-"× a 6×6 solve" is the time over that of one 6×6 `numpy.linalg.solve` in the same turns; "ours …
-= 0.50×" is our time over the other's, below 1 where we are quicker. A goal not reached is marked
-MISSED.
+Times are medians of calls in alternation, so that other load on the computer affects all of them
+alike. "× a 6×6 solve" is the time divided by that of one 6×6 `numpy.linalg.solve` in the same
+alternation; "ours … = 0.50×" is our time divided by the other's: below 1, ours is faster. Missed
+goals are marked MISSED.
 
 """
 

@@ -1,4 +1,4 @@
-"""The source papers' own methods: the plane of the platform, the arm's step on a controller."""
+"""Methods of the source papers: the plane of the platform, the arm's step on a controller."""
 
 import numpy as np
 

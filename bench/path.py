@@ -1,4 +1,4 @@
-"""Paths: time to plan them, distance from their polyline, nearness to the bound of their time."""
+"""Paths: planning time, deviation from the polyline, duration against its lower bound."""
 
 import numpy as np
 

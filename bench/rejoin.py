@@ -1,4 +1,4 @@
-"""A process killed and started again: seconds until it hears the others and they hear it.
+"""A process killed and restarted: seconds until messages arrive in both directions.
 
 `python -m bench.rejoin` is the process that is killed: it sends back what it hears.
 """
@@ -15,8 +15,8 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Float64
 
-import hexarm  # noqa: F401 (it says how often processes announce themselves)
 from bench.row import Row
+from hexarm import keep_to_this_computer
 from manipulator.nodes.qos import MEASUREMENT
 
 KILLS = 12
@@ -28,7 +28,7 @@ PERIOD = 0.01
 
 def rows():
     os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    keep_to_this_computer()
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         seconds = Caller().seconds_after_kills()

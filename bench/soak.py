@@ -20,11 +20,11 @@ from std_srvs.srv import SetBool
 
 from bridge.fake.faults import Faults
 from bridge.protocol import Arm, Disarm, ResetCause, Setpoint
-from hexarm import machines
-from hexarm.rig import Rig
+from hexarm import keep_to_this_computer, machines
 from manipulator.errors import ManipulatorError
-from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.qos import COMMAND, EVERY_WORD
 from manipulator.pose import Pose
+from rig import Rig
 
 FAULTS_PER_MINUTE = 150.0
 BOOT = 2.0
@@ -45,7 +45,7 @@ class Soak:
         self.random = Random(seed)
         self.home = machines.load(machine).kinematics.home
         node = self.user.node
-        self.stops = node.create_publisher(Bool, 'emergency_stop', COMMAND)
+        self.stops = node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         self.overrides = node.create_publisher(Float64, 'speed_override', COMMAND)
         self.moves = self.enablings = 0
         self.is_calm = False
@@ -106,7 +106,7 @@ def bad_frames(rig):
     """How many frames are out of range, or far from the one before."""
     ranges = np.array(rig.calibration.count_ranges)
     speeds = np.array(rig.calibration.count_speeds)
-    frames = rig.tap.heard((Setpoint, Arm, Disarm))
+    frames = rig.tap.frames((Setpoint, Arm, Disarm))
     setpoints = [(t, np.array(m.counts)) for t, m in frames if isinstance(m, Setpoint)]
     bad = sum(bool((c < ranges[:, 0]).any() or (c > ranges[:, 1]).any()) for _, c in setpoints)
     for (before, a), (now, b) in itertools.pairwise(setpoints):
@@ -163,7 +163,7 @@ def main(arguments):
     parser.add_argument('--seconds', type=float, default=600.0, help='of both machines together')
     seconds = parser.parse_args(arguments).seconds / len(MACHINES)
     os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    keep_to_this_computer()
     results = []
     for kind in MACHINES:
         with tempfile.TemporaryDirectory() as folder:

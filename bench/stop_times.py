@@ -1,4 +1,4 @@
-"""How soon the servo targets stand still when a process dies or freezes, and after a STOP."""
+"""Seconds until the servo targets stop after a process dies or freezes, and after a STOP."""
 
 import os
 import random
@@ -14,8 +14,9 @@ from std_msgs.msg import Bool
 
 from bench.row import Row
 from bridge.protocol import Stop
-from hexarm.rig import Rig
-from manipulator.nodes.qos import COMMAND
+from hexarm import keep_to_this_computer
+from manipulator.nodes.qos import EVERY_WORD
+from rig import Rig
 
 RUNS, STOPS = 5, 20
 GOAL, STOP_GOAL_MS = 0.5, 50.0
@@ -25,8 +26,15 @@ SIGNALS = {'killed': signal.SIGKILL, 'frozen': signal.SIGSTOP}
 
 def rows():
     os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
-    with tempfile.TemporaryDirectory() as folder, Rig(Path(folder), SPACE) as rig:
+    keep_to_this_computer()
+    return [*rows_of('one process', is_separate=False), *rows_of('separate', is_separate=True)]
+
+
+def rows_of(what, is_separate):
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        Rig(Path(folder), SPACE, is_separate=is_separate) as rig,
+    ):
         rig.enable()
         times = {
             (name, how): [stop_time(rig, name, how) for _ in range(RUNS)]
@@ -36,20 +44,19 @@ def rows():
         cable = [cable_time(rig) for _ in range(RUNS)]
         stops = emergency_stops(rig)
         commands = [command_time(rig) for _ in range(STOPS)]
-        load = os.getloadavg()[0] / (os.cpu_count() or 1)
-    found = [row(f'{name} {how}', values) for (name, how), values in times.items()]
     p50, worst = 1e3 * np.median(stops), 1e3 * np.max(stops)
+    load = os.getloadavg()[0] / (os.cpu_count() or 1)
     return [
-        *found,
-        row('cable pulled', cable),
+        *(row(f'{what}: {name} {how}', values) for (name, how), values in times.items()),
+        row(f'{what}: cable pulled', cable),
         Row(
-            f'emergency_stop published to STOP frame, median, worst of {STOPS}',
+            f'{what}: emergency_stop published to STOP frame, median, worst of {STOPS}',
             f'{p50:.1f}, {worst:.1f} ms',
             f'median ≤ {STOP_GOAL_MS:g} ms',
             p50 <= STOP_GOAL_MS,
         ),
         Row(
-            f'`hexarm stop`, from its start to the STOP frame, median, worst of {STOPS}',
+            f'{what}: `hexarm stop`, from its start to the STOP frame, median, worst of {STOPS}',
             f'{np.median(commands):.3f}, {np.max(commands):.3f} s, {load:.1f} processes a core',
             f'≤ {GOAL:g} s',
             max(commands) <= GOAL,
@@ -97,7 +104,7 @@ def command_time(rig):
     subprocess.run(
         [sys.executable, '-m', 'hexarm', 'stop', SPACE], capture_output=True, check=True
     )
-    seconds = rig.tap.heard(Stop, before)[0][0] - before
+    seconds = rig.tap.frames(Stop, before)[0][0] - before
     clear(rig)
     return seconds
 
@@ -109,14 +116,14 @@ def clear(rig):
 
 
 def emergency_stops(rig):
-    publisher = rig.user.node.create_publisher(Bool, 'emergency_stop', COMMAND)
+    publisher = rig.user.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
     rig.user.wait('the bridge', lambda: publisher.get_subscription_count() == 1, 10.0)
     times = []
     for _ in range(STOPS):
         rig.circle(random.uniform(0.1, 0.3))
         before = time.monotonic()
         publisher.publish(Bool(data=True))
-        rig.user.wait('STOP', lambda t=before: rig.tap.heard(Stop, t), 5.0)
-        times.append(rig.tap.heard(Stop, before)[0][0] - before)
+        rig.user.wait('STOP', lambda t=before: rig.tap.frames(Stop, t), 5.0)
+        times.append(rig.tap.frames(Stop, before)[0][0] - before)
         clear(rig)
     return times

@@ -9,12 +9,12 @@ from bench.row import Row, best_time
 from hexapod_control.workspace import sample
 from hexarm.machines import load
 from manipulator.analysis.accuracy import JointErrors, drawn_spread, linear_spread
+from manipulator.analysis.free_paths import admits
 from manipulator.analysis.nearest import nearest_reachable
 from manipulator.analysis.reach import reach
 from manipulator.analysis.readings import displaced
 from manipulator.analysis.survey import SomeOrientation
 from manipulator.analysis.volume import bounding_box, volume, with_orientation
-from manipulator.analysis.way import admits
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.machine_limits import BodyHeight, JointRange
 from manipulator.machine import Machine
@@ -84,7 +84,7 @@ def reach_rows(machine: Machine) -> list[Row]:
             bool(np.median(times) <= 5e-3),
         ),
         Row(
-            'nearest reachable pose: what random search can better',
+            'nearest reachable pose: improvement by random search',
             f'{1e3 * max(gains):.4f} mm at most',
             '0.02 mm',
             max(gains) <= 2e-5,

@@ -15,7 +15,7 @@ COUNTS_PER_US = 2.0
 
 
 class OutOfRange(InvalidInput):
-    """A position beyond what a servo can reach; says which, and `joint` holds its name."""
+    """A position beyond the range of a servo; `joint` holds its name."""
 
     def __init__(self, message: str, joint: str) -> None:
         super().__init__(message)
@@ -73,13 +73,13 @@ class Calibration:
         InvalidInput names the joint where a position is not finite, OutOfRange where it is
         beyond the servo's pulse range.
         """
-        wanted = np.asarray(positions, dtype=np.float64)
-        if wanted.shape != (len(self.names),):
-            raise InvalidInput(f'{counted(wanted.size, "position")}, needs {len(self.names)}')
-        exact = self._exact_counts(wanted)
+        target = np.asarray(positions, dtype=np.float64)
+        if target.shape != (len(self.names),):
+            raise InvalidInput(f'{counted(target.size, "position")}, needs {len(self.names)}')
+        exact = self._exact_counts(target)
         for i, count in enumerate(exact):
             if not self.lowest[i] - 0.5 <= count <= self.highest[i] + 0.5:
-                raise self._refusal(i, float(wanted[i]))
+                raise self._refusal(i, float(target[i]))
         on_wire = [0] * len(exact)
         for i, channel in enumerate(self.channels):
             on_wire[channel] = min(max(round(exact[i]), self.lowest[i]), self.highest[i])

@@ -32,7 +32,7 @@ def decode(stuffed: bytes) -> bytes:
 
 
 def _runs(content: bytes) -> Iterator[bytes]:
-    """The stretches between zeros; a full run stands for itself, without a zero after it."""
+    """The runs between zeros; a full run has no zero after it."""
     *before, last = content.split(b'\0')
     for piece in before:
         yield from _cut(piece)

@@ -1,4 +1,4 @@
-"""What the bridge does between the graph and the board: it admits, sends, answers and tells.
+"""The bridge between the graph and the board: admits, sends, answers and reports.
 
 No ROS, no thread, no port, no clock: decoded values and times in, values out.
 """
@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from bridge.calibration import Calibration
-from bridge.command_gate import CommandGate
+from bridge.command_validator import CommandValidator
 from bridge.events import (
     Acknowledged,
     CommandFailed,
@@ -26,19 +26,20 @@ from bridge.protocol import Arm, Clear, Command, Disarm, Stop
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
 from manipulator.errors import Refused
+from manipulator.states import MachineState
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What a service has asked of the board, and what to say where it is obeyed."""
+class Request:
+    """A request to the board, and the answer for success."""
 
     done: str
     future: 'Future[None]'
 
 
 @dataclass(frozen=True)
-class MachineState:
-    """What the bridge tells of its machine; is_followed: the board has taken a joint command."""
+class MachineReport:
+    """For `machine_state`; is_followed: the board has accepted a joint command."""
 
     status: MachineStatus
     is_followed: bool
@@ -48,12 +49,12 @@ class MachineState:
 
 
 class Listener(Protocol):
-    """Who publishes what the driver announces, in the driver's thread."""
+    """Publishes the driver's reports, in the driver's thread."""
 
     def on_joints(self, joints: JointTable) -> None:
-        """After each STATE that tells where any joint is."""
+        """After each STATE with the position of any joint."""
 
-    def on_machine_state(self, state: MachineState) -> None:
+    def on_machine_state(self, state: MachineReport) -> None:
         """After every event, whether it has changed or not."""
 
     def on_trouble(self, text: str) -> None:
@@ -66,7 +67,7 @@ class Listener(Protocol):
 class BoardDriver:
     """One board and its servos.
 
-    It belongs to the thread that has the port, with its link and all that stands behind it.
+    It belongs to the thread that has the port, with its link and everything below it.
     `now` is monotonic, in seconds.
     """
 
@@ -76,9 +77,11 @@ class BoardDriver:
         listener: Listener,
         epoch: float = 0.0,
     ) -> None:
-        """`epoch` is what the system's clock says where `now` is zero, s."""
+        """`epoch` is the system's clock where `now` is zero, s."""
         self.calibration = Calibration.from_config(config.servos)
-        self.gate = CommandGate(self.calibration, 1e-3 * config.link.setpoint_deadline_ms)
+        self.validator = CommandValidator(
+            self.calibration, 1e-3 * config.link.setpoint_deadline_ms
+        )
         self._gripper = Gripper(config.servos, self.calibration)
         self.session = Session(len(self.calibration.names))
         self.monitor = LinkMonitor(self.session, self.calibration)
@@ -96,12 +99,12 @@ class BoardDriver:
         """Sends a joint command (rad or m) to the board, or raises why not.
 
         stamp: by the sender's clock, s; None means "now". A gripper that it does not name goes on
-        as it was asked.
+        as it was request.
         """
         self._refuse_unless_enabled()
         present = None if self.monitor.joints is None else self.monitor.joints.positions
         names, positions = self._gripper.joined((names, positions), now, present)
-        setpoint = self.gate.admit(names, positions, stamp, now + self._epoch, present)
+        setpoint = self.validator.admit(names, positions, stamp, now + self._epoch, present)
         self.link.put_setpoint(Ticket(setpoint, now, stamp))
 
     def aim_gripper(self, opening: float) -> None:
@@ -109,58 +112,58 @@ class BoardDriver:
         self._refuse_unless_enabled()
         self._gripper.aim(opening)
 
-    def enable(self, is_on: bool) -> Asked:
+    def enable(self, is_on: bool) -> Request:
         """Servos on, one by one, at park; or off."""
         if not is_on:
-            return self._ask(Disarm(), 'disarmed: no more pulses')
-        if self.monitor.status.word == 'enabled':
+            return self._request(Disarm(), 'disarmed: no more pulses')
+        if self.monitor.status.state is MachineState.ENABLED:
             # An ARM would hold up the setpoints of a machine that is moving.
             return _answered('enabled already')
         park = self.calibration.counts(self.calibration.park)
-        return self._ask(Arm(park), 'arming: the servos go to park one by one')
+        return self._request(Arm(park), 'arming: the servos go to park one by one')
 
-    def clear_fault(self) -> Asked:
+    def clear_fault(self) -> Request:
         """Ends a stop or a fault."""
         if self.monitor.is_clear:
             # A CLEAR would hold up the setpoints of a machine that is moving.
-            return _answered(f'nothing to clear: the machine is {self.monitor.status.word}')
-        return self._ask(Clear(), 'cleared: nothing moves until a new command')
+            return _answered(f'nothing to clear: the machine is {self.monitor.status.state}')
+        return self._request(Clear(), 'cleared: nothing moves until a new command')
 
-    def stop(self) -> Asked:
+    def stop(self) -> Request:
         """Now, or as soon as there is a board."""
-        return self._ask(Stop(), 'stopped: ~/clear_fault ends it')
+        return self._request(Stop(), 'stopped: ~/clear_fault ends it')
 
-    def answer(self, asked: Asked) -> tuple[bool, str]:
-        """Whether the board obeyed, and what to say, once the future is done.
+    def answer(self, request: Request) -> tuple[bool, str]:
+        """Whether the board obeyed, and the answer in words, once the future is done.
 
-        It is done only when machine_state shows it: who is answered may look at once.
+        It is done only when machine_state shows the effect.
         """
-        error = asked.future.exception()
+        error = request.future.exception()
         if error is None:
-            return True, asked.done
+            return True, request.done
         trouble = self.monitor.trouble
         return False, f'{error}{f": {trouble}" if trouble else ""}'
 
-    def _ask(self, command: Command, done: str) -> Asked:
-        return Asked(done, self.link.request(command))
+    def _request(self, command: Command, done: str) -> Request:
+        return Request(done, self.link.request(command))
 
     def _refuse_unless_enabled(self) -> None:
         """What comes after a refusal, or after an answer, must start where the joints are."""
         is_enabled = self.monitor.is_enabled_here and self.session.accepts_setpoints
         if self._must_restart or not is_enabled:
             self._must_restart = False
-            self.gate.restart()
+            self.validator.restart()
             self._gripper.restart()
         if not is_enabled:
             raise Refused(self._why_not_enabled())
 
     def _why_not_enabled(self) -> str:
         current = self.monitor.status
-        if current.word == 'enabled':
-            is_stopping = self.session.is_stop_wanted
-            return 'a STOP is under way' if is_stopping else 'the board takes no setpoints now'
+        if current.state is MachineState.ENABLED:
+            is_stopping = self.session.is_stop_requested
+            return 'a STOP is in progress' if is_stopping else 'the board accepts no setpoints now'
         reason = f' ({current.reason})' if current.reason else ''
-        return f'{current.word}{reason}'
+        return f'{current.state}{reason}'
 
     # From the board
 
@@ -181,20 +184,20 @@ class BoardDriver:
                 self._listener.on_trouble(reason)
         self._listener.on_machine_state(self._state())
 
-    def _state(self) -> MachineState:
+    def _state(self) -> MachineReport:
         monitor, status = self.monitor, self.monitor.status
-        self._is_followed = self._is_followed and status.word == 'enabled'
-        return MachineState(
+        self._is_followed = self._is_followed and status.state is MachineState.ENABLED
+        return MachineReport(
             status, self._is_followed, monitor.is_measured, monitor.board, monitor.unknown_joints
         )
 
     def _note_written(self, ticket: Ticket, now: float) -> None:
         self._is_followed = True
-        stamped = None if self.gate.has_notable_offset else ticket.stamped
+        stamped = None if self.validator.has_notable_offset else ticket.stamped
         self._listener.on_written(replace(ticket, stamped=stamped), now)
 
 
-def _answered(done: str) -> Asked:
+def _answered(done: str) -> Request:
     future: Future[None] = Future()
     future.set_result(None)
-    return Asked(done, future)
+    return Request(done, future)

@@ -1,4 +1,4 @@
-"""What the host's side of the line has to tell: how far it is, and what happened, in order."""
+"""The host's phases, and the events of its session, in order."""
 
 import enum
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class Opened:
 
 @dataclass(frozen=True)
 class Connected:
-    """The board has announced itself, fits, and has told its state."""
+    """The board has sent its HELLO, matches, and has sent its first STATE."""
 
     hello: Hello
 
@@ -87,8 +87,8 @@ Event: TypeAlias = (
 def without_passed_states(events: list[Event]) -> list[Event]:
     """Of STATEs that came at once and in a row, the last one of each mode.
 
-    A process that was frozen finds in its port what has piled up: told one by one, as if it were
-    news, it would have the machine driven back to where its joints were long ago.
+    A process that was frozen finds old STATEs in its port: reported one by one, as if they were
+    new, they would have the machine driven back to where its joints were long ago.
     """
     kept: list[Event] = []
     for event in events:

@@ -15,7 +15,7 @@ LONGEST_GAP = 0.05
 
 
 class Gripper:
-    """Moves towards the last opening asked for; stays where it is until one is.
+    """Moves towards the last requested opening; stays where it is until one is requested.
 
     Positions in rad (or m), times monotonic in seconds.
     """
@@ -53,17 +53,17 @@ class Gripper:
         return [*names, self._name], [*positions, self.step(now, present)]
 
     def restart(self) -> None:
-        """Begins where the joint is, and stays there until it is asked again."""
+        """Begins where the joint is, and stays there until the next request."""
         self._target = self._position = None
 
     def step(self, now: float, present: float) -> float:
-        """Where it should be now; Refused while nobody knows where it is."""
+        """The position to command now; Refused while the joint's position is unknown."""
         if self._position is None:
             if math.isnan(present):
                 raise Refused(f'the position of {self._name} is not known yet')
             self._position, self._stepped_at = present, now
         reach = self._speed * min(max(now - self._stepped_at, 0.0), LONGEST_GAP)
-        way = 0.0 if self._target is None else self._target - self._position
-        self._position += min(max(way, -reach), reach)
+        distance = 0.0 if self._target is None else self._target - self._position
+        self._position += min(max(distance, -reach), reach)
         self._stepped_at = now
         return self._position

@@ -1,4 +1,4 @@
-"""What HELLO and STATE tell: whether the board fits, has restarted, how long a frame takes."""
+"""The handshake, HELLO and STATE: mismatch, restart, and how long a frame takes."""
 
 from collections import deque
 
@@ -8,7 +8,7 @@ from manipulator.formatting import counted
 UPTIME_SLACK_MS = 250
 SHORTEST_ADVANCE_MS = 125
 LONGEST_STALL_MS = 2**26
-"""19 hours: by which a board's clock may be ahead of ours, which a sleeping computer's stands."""
+"""19 hours: lead of a board's clock over ours, which halts while the computer sleeps."""
 LONGEST_LAG_MS = 2**30
 """12 days, a quarter of the clock: a lag beyond it could as well be a lead."""
 
@@ -16,7 +16,7 @@ LONGEST_LAG_MS = 2**30
 def mismatch(hello: Hello, joint_count: int) -> str:
     """Why a board must not be talked to, '' where it fits a machine of `joint_count` joints."""
     if hello.version != PROTOCOL_VERSION:
-        return f'the board speaks protocol {hello.version}, this host {PROTOCOL_VERSION}'
+        return f'the board has protocol {hello.version}, this host {PROTOCOL_VERSION}'
     if hello.joint_count != joint_count:
         return f'the board has {counted(hello.joint_count, "joint")}, the machine {joint_count}'
     return ''
@@ -26,7 +26,7 @@ def has_restarted(before: Hello, hello: Hello, elapsed: float) -> bool:
     """Whether the board's clock (it wraps at 49.7 days) ran less than half as long as ours.
 
     elapsed: seconds that passed between the two HELLOs at least; a HELLO that waited in the port
-    until somebody read it was sent earlier than it was received. A board's resonator is off by a
+    to be read was sent earlier than it was received. A board's resonator is off by a
     percent, and a simulated board may stall: neither counts. Two HELLOs of one run are 250 ms
     apart on that clock, so less is a restart as well.
     """

@@ -1,6 +1,6 @@
-"""The host's end of the serial line without I/O: what goes out, in which order, and who is told.
+"""The host's end of the serial line without I/O: what is sent, in which order, and the callbacks.
 
-Commands go first, then the newest setpoint. Somebody else opens, reads and writes the port.
+Commands go first, then the newest setpoint. The port is opened, read and written elsewhere.
 """
 
 from collections import deque
@@ -20,7 +20,7 @@ SPACING = 0.0025
 must not queue up in the operating system, ahead of a STOP."""
 
 MOST_AT_ONCE = 2048
-"""Bytes: a read that brings more may have left some behind, which are older than they look."""
+"""Bytes: a longer read may have left some behind, which are then older than their receipt."""
 
 FASTEST_LINE = 400_000.0
 """Bytes a second that a line of 4 Mbaud carries."""
@@ -28,7 +28,7 @@ FASTEST_LINE = 400_000.0
 
 @dataclass(frozen=True)
 class Ticket:
-    """A setpoint on its way to the port.
+    """A setpoint to be written to the port.
 
     received is monotonic, `stamped` the time on the sender's clock; both in seconds.
     """
@@ -43,7 +43,7 @@ class _Outcome:
     """What happened, and the requests that it settles; `refusal` is why they are not obeyed."""
 
     event: Event | None
-    settled: tuple['Future[None]', ...]
+    futures: tuple['Future[None]', ...]
     refusal: Refused | None = None
 
 
@@ -51,8 +51,8 @@ class Link:
     """One session on a port that comes and goes; `now` is monotonic, in seconds.
 
     on_event receives all events in order, on_written each setpoint that was handed to the port;
-    both in `written`, `opened` and `lost`: what is to be sent waits for nobody who is told.
-    No more than bytes_per_second are to be read: what sends more is no serial line, and its
+    both in `written`, `opened` and `lost`: sending does not wait for callbacks.
+    No more than bytes_per_second are to be read: a faster source is no serial line, and its
     noise must not take the processor from what stops the machine.
 
     It belongs to the thread that has the port, with its session.
@@ -76,21 +76,21 @@ class Link:
         self._requests: deque[tuple[Command, Future[None]]] = deque()
         self._waiting: list[tuple[Command, Future[None]]] = []
         self._sent_ticket: Ticket | None = None
-        self._untold: deque[_Outcome] = deque()
+        self._unreported: deque[_Outcome] = deque()
 
     def put_setpoint(self, ticket: Ticket) -> None:
         """Newest wins: one that was not yet sent is forgotten."""
         self._mailbox.append(ticket)
 
     def request(self, command: Command, answer: 'Future[None] | None' = None) -> 'Future[None]':
-        """Done when the board has obeyed and on_event was told; Refused says why not.
+        """Done when the board has obeyed and on_event was called; Refused with the reason.
 
         It is always answered, by the next turn or when the session gives the command up: within
-        a second, a STOP that nobody obeys included, which goes on all the same.
+        a second, also a STOP that is not obeyed, which is still repeated.
         """
         future: Future[None] = answer or Future()
         if isinstance(command, Stop):
-            self.session.is_stop_wanted = True  # no setpoint goes out from here on
+            self.session.is_stop_requested = True  # no setpoint goes out from here on
         self._requests.append((command, future))
         return future
 
@@ -145,14 +145,14 @@ class Link:
         if received:
             self._read_at = now + len(received) / self._bytes_per_second
             self._note(without_passed_states(self.session.receive(received, now, emptied_at)))
-        # Who was held up may not call the board silent before he has listened again.
+        # After a stall the port is read before the board counts as silent.
         self._note(self.session.tick(self._listened_at))
         self._listened_at = now
         self._unsent += self.session.take_output()
         return self._unsent if self.is_open else b''
 
     def written(self, rest: bytes, now: float) -> None:
-        """The port has taken all but the `rest`: tells what happened in this turn."""
+        """The port has taken all but the `rest`: calls back with the events of this turn."""
         self._unsent = rest
         ticket, self._sent_ticket = self._sent_ticket, None
         if ticket is not None:
@@ -168,7 +168,7 @@ class Link:
                 self._note(self.session.send_command(command, now))
                 self._waiting.append((command, future))
             except Refused as error:
-                self._untold.append(_Outcome(None, (future,), error))
+                self._unreported.append(_Outcome(None, (future,), error))
 
     def _take_setpoint(self, now: float) -> None:
         """Sends the newest setpoint, unless it waited longer than it is good for."""
@@ -183,21 +183,21 @@ class Link:
         self._sent_ticket = ticket
 
     def _note(self, events: list[Event]) -> None:
-        """To be told later; whom an event answers is seen now, before he asks the same again."""
+        """Queues events; the requests that they answer are found now, before new ones come."""
         for event in events:
-            settled: tuple[Future[None], ...] = ()
+            futures: tuple[Future[None], ...] = ()
             if isinstance(event, Acknowledged | CommandFailed):
-                settled = tuple(f for command, f in self._waiting if command == event.command)
+                futures = tuple(f for command, f in self._waiting if command == event.command)
                 self._waiting = [e for e in self._waiting if e[0] != event.command]
             refusal = Refused(event.reason) if isinstance(event, CommandFailed) else None
-            self._untold.append(_Outcome(event, settled, refusal))
+            self._unreported.append(_Outcome(event, futures, refusal))
 
     def _tell(self, now: float) -> None:
-        while self._untold:
-            outcome = self._untold.popleft()
+        while self._unreported:
+            outcome = self._unreported.popleft()
             if outcome.event is not None:
-                self._on_event(outcome.event, now)  # first: who is answered may look at once
-            for future in outcome.settled:
+                self._on_event(outcome.event, now)  # first: a client may read the state at once
+            for future in outcome.futures:
                 if outcome.refusal is None:
                     future.set_result(None)
                 else:

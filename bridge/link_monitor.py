@@ -22,6 +22,7 @@ from bridge.protocol import NO_JOINT, Arm, Fault, FaultCode, Known, Mode, State
 from bridge.session import Session
 from manipulator.arrays import Array
 from manipulator.formatting import counted
+from manipulator.states import MachineState
 
 
 class Latencies:
@@ -35,7 +36,7 @@ class Latencies:
         self._seconds.append(max(seconds, 0.0))
 
     def report(self, name: str) -> dict[str, float]:
-        """p50 and p99 in milliseconds, under names that say so; empty when there are none."""
+        """p50 and p99 in milliseconds, by name; empty when there are none."""
         return percentiles_ms(name, tuple(self._seconds))
 
 
@@ -53,24 +54,24 @@ OK, WARN, ERROR = 0, 1, 2
 
 @dataclass(frozen=True)
 class MachineStatus:
-    """level is OK, WARN or ERROR; `word` one of disconnected, booting, disarmed, arming, enabled,
-    holding, unclaimed, playing, stopped, fault; `reason` is empty where all is well.
-    """
+    """level is OK, WARN or ERROR; `reason` is empty where nothing is wrong."""
 
     level: int
-    word: str
+    state: MachineState
     reason: str = ''
 
 
 _MODES = {
-    Mode.DISARMED: MachineStatus(OK, 'disarmed'),
-    Mode.ARMING: MachineStatus(OK, 'arming'),
-    Mode.ARMED: MachineStatus(OK, 'enabled'),
-    Mode.HOLDING: MachineStatus(WARN, 'holding', 'no joint command within the deadline'),
-    Mode.STOPPED: MachineStatus(WARN, 'stopped', 'until ~/clear_fault is called'),
-    Mode.FAULT: MachineStatus(ERROR, 'fault'),
-    Mode.CHECKING: MachineStatus(OK, 'playing', 'the board checks its program'),
-    Mode.PLAYING: MachineStatus(OK, 'playing', 'the board plays its program'),
+    Mode.DISARMED: MachineStatus(OK, MachineState.DISARMED),
+    Mode.ARMING: MachineStatus(OK, MachineState.ARMING),
+    Mode.ARMED: MachineStatus(OK, MachineState.ENABLED),
+    Mode.HOLDING: MachineStatus(
+        WARN, MachineState.HOLDING, 'no joint command within the deadline'
+    ),
+    Mode.STOPPED: MachineStatus(WARN, MachineState.STOPPED, 'until ~/clear_fault is called'),
+    Mode.FAULT: MachineStatus(ERROR, MachineState.FAULT),
+    Mode.CHECKING: MachineStatus(OK, MachineState.PLAYING, 'the board checks its program'),
+    Mode.PLAYING: MachineStatus(OK, MachineState.PLAYING, 'the board plays its program'),
 }
 _FAULTS = {FaultCode.UNDERVOLTAGE: 'the battery is too low'}
 
@@ -78,17 +79,19 @@ _FAULTS = {FaultCode.UNDERVOLTAGE: 'the battery is too low'}
 def machine_status(session: Session, is_enabled_here: bool, trouble: str) -> MachineStatus:
     """The state of the machine; `trouble` is why there is no board, where there is none."""
     if session.phase is Phase.INCOMPATIBLE:
-        return MachineStatus(ERROR, 'fault', trouble)
+        return MachineStatus(ERROR, MachineState.FAULT, trouble)
     state = session.state
     if session.phase is not Phase.READY or state is None:
         if trouble or session.phase is Phase.CLOSED:
-            return MachineStatus(ERROR, 'disconnected', trouble)
-        return MachineStatus(WARN, 'booting', 'waiting for the board to say HELLO')
+            return MachineStatus(ERROR, MachineState.DISCONNECTED, trouble)
+        return MachineStatus(WARN, MachineState.BOOTING, 'waiting for HELLO from the board')
     if state.mode is Mode.FAULT:
-        return MachineStatus(ERROR, 'fault', _FAULTS.get(state.fault, state.fault.name.lower()))
+        return MachineStatus(
+            ERROR, MachineState.FAULT, _FAULTS.get(state.fault, state.fault.name.lower())
+        )
     if state.mode in (Mode.ARMED, Mode.HOLDING) and not is_enabled_here:
-        reason = 'the servos are on, but this bridge was not asked: call ~/enable'
-        return MachineStatus(WARN, 'unclaimed', reason)
+        reason = 'the servos are on, but were not enabled by this bridge: call ~/enable'
+        return MachineStatus(WARN, MachineState.UNCLAIMED, reason)
     return _MODES[state.mode]
 
 
@@ -124,18 +127,23 @@ class LinkMonitor:
 
     @property
     def status(self) -> MachineStatus:
-        """The state of the machine in one word."""
+        """The machine state."""
         return machine_status(self.session, self.is_enabled_here, self.trouble)
 
     @property
     def is_clear(self) -> bool:
-        """There is a board, and no stop or fault to end, nor one that is still to be said."""
-        latched_or_unknown = ('disconnected', 'booting', 'stopped', 'fault')
-        return not self.session.is_stop_wanted and self.status.word not in latched_or_unknown
+        """There is a board, and no stop or fault to clear, nor one that is still to be sent."""
+        latched_or_unknown = (
+            MachineState.DISCONNECTED,
+            MachineState.BOOTING,
+            MachineState.STOPPED,
+            MachineState.FAULT,
+        )
+        return not self.session.is_stop_requested and self.status.state not in latched_or_unknown
 
     @property
     def board(self) -> str:
-        """What the board said of itself."""
+        """The board's firmware, from its HELLO."""
         hello = self.session.hello
         if hello is None:
             return 'none'
@@ -146,7 +154,7 @@ class LinkMonitor:
 
     @property
     def unknown_joints(self) -> tuple[str, ...]:
-        """Joints whose position nobody knows."""
+        """Joints whose position is unknown."""
         names = self.calibration.names
         if self.joints is None:
             return names
@@ -177,7 +185,7 @@ class LinkMonitor:
         self.last_refusal = reason
 
     def report(self) -> dict[str, object]:
-        """What /diagnostics tells of the link and the board."""
+        """The values of /diagnostics about the link and the board."""
         session, state = self.session, self.session.state
         values: dict[str, object] = {
             'link': session.phase.value,

@@ -39,7 +39,7 @@ class SerialPort:
     """An open port that never blocks. Opening it resets an Arduino: it boots for 1 to 2 s."""
 
     def __init__(self, name: str, baud: int) -> None:
-        """LinkError says why the port cannot be opened."""
+        """LinkError with the reason why the port cannot be opened."""
         self.name = name
         try:
             self._port = serial.Serial(name, baud, timeout=0, exclusive=True)
@@ -54,25 +54,25 @@ class SerialPort:
         return int(self._port.fileno())
 
     def read(self) -> bytes:
-        """What has arrived, once select says that something has; LinkError: it was the end."""
+        """The received bytes, once the port is readable; LinkError: it was the end."""
         try:
             received = os.read(self.fileno(), MAX_READ)
         except BlockingIOError:
             return b''
         except OSError as error:
-            raise LinkError(f'{self.name} has vanished ({_reason(error)})') from error
+            raise LinkError(f'{self.name} was disconnected ({_reason(error)})') from error
         if not received:
-            raise LinkError(f'{self.name} has vanished (unplugged?)')
+            raise LinkError(f'{self.name} was disconnected (unplugged?)')
         return received
 
     def write(self, waiting: bytes) -> bytes:
-        """Writes what fits and returns the rest; LinkError when the port has vanished."""
+        """Writes what fits and returns the rest; LinkError when the port was disconnected."""
         try:
             return waiting[os.write(self.fileno(), waiting) :]
         except BlockingIOError:
             return waiting
         except OSError as error:
-            raise LinkError(f'{self.name} has vanished ({_reason(error)})') from error
+            raise LinkError(f'{self.name} was disconnected ({_reason(error)})') from error
 
     def close(self) -> None:
         """Gives the port back; what is still in its buffers is lost."""
@@ -81,7 +81,7 @@ class SerialPort:
 
 
 def _reason(error: Exception) -> str:
-    """What the error number means; pyserial drops the one of termios, which stands behind it."""
+    """What the error number means; pyserial drops the one of termios, which is the cause."""
     behind = error.__context__
     number = getattr(error, 'errno', None) or (behind.args[0] if behind and behind.args else None)
     return _REASONS.get(number or 0) or f'cannot be used: {error}'
@@ -104,9 +104,9 @@ class Input(Protocol):
 
 
 class LinkThread(threading.Thread):
-    """Gives a link its port, from `start` to `close`; what the link tells is told in this thread.
+    """Gives a link its port, from `start` to `close`; the link's callbacks run in this thread.
 
-    Nobody else touches the link or what belongs to it: other threads `post` what is to be done.
+    No other thread touches the link or what belongs to it: others `post` calls to this one.
     """
 
     def __init__(

@@ -56,9 +56,9 @@ def count_table(times: Array, positions: Array, calibration: Calibration) -> Cou
 
 
 class Upload:
-    """`on_end` hears '' when all were obeyed, else why one was not; in the link's thread.
+    """`on_end` receives '' when all were obeyed, else the reason; in the link's thread.
 
-    No command is begun once `late` says why it is too late for it.
+    No command is begun once `late` returns a reason.
     """
 
     def __init__(

@@ -1,7 +1,7 @@
-"""What host and board say to each other, as values (docs/protocol.md has the frame table).
+"""The messages of host and board, as values (docs/protocol.md has the frame table).
 
 Counts are the position of a joint on the wire, unsigned 16 bit: for a servo, half microseconds
-of pulse. Joints stand in the order of the board's channels.
+of pulse. Joints are in the order of the board's channels.
 """
 
 import enum
@@ -71,7 +71,7 @@ class Result(enum.IntEnum):
 
 
 REASONS = {
-    Result.STALE: 'the board has heard a newer frame',
+    Result.STALE: 'the board has received a newer frame',
     Result.STOPPED: 'the board is stopped: clear the stop first',
     Result.FAULT: 'the board has a fault: clear it first',
     Result.UNDERVOLTAGE: 'the battery is too low',
@@ -91,7 +91,7 @@ class FaultCode(enum.IntEnum):
     """Why a frame was refused, or why the mode is FAULT."""
 
     NONE = 0
-    OUT_OF_RANGE = 1  # joint and value say which count
+    OUT_OF_RANGE = 1  # joint and value name the count
     WRONG_JOINTS = 2  # value: how many counts the frame held
     STALE = 3  # value: the frame's sequence
     NOT_ARMED = 4  # value: the mode
@@ -116,7 +116,7 @@ class Setpoint:
 
 @dataclass(frozen=True)
 class Arm:
-    """Host: energise servo by servo at the park counts; where all are on, stay and listen."""
+    """Host: energise servo by servo at the park counts; where all are on, stay and follow."""
 
     park: tuple[int, ...]
 
@@ -128,7 +128,7 @@ class Disarm:
 
 @dataclass(frozen=True)
 class Stop:
-    """Host: stand still where you are until CLEAR."""
+    """Host: halt, and stay halted until CLEAR."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ class Clear:
 
 @dataclass(frozen=True)
 class Hello:
-    """Board: here I am; said after the boot and while the host is silent."""
+    """Board: announces itself, after the boot and while the host is silent."""
 
     version: int
     reset_cause: ResetCause
@@ -172,7 +172,7 @@ class State:
 
 @dataclass(frozen=True)
 class Ack:
-    """Board: the answer to everything that a host says but SETPOINT."""
+    """Board: the answer to every message of a host but SETPOINT."""
 
     sequence: int
     result: Result

@@ -1,4 +1,4 @@
-"""The `servos`, `link` and `simulation` sections of a machine file, as they stand there.
+"""The `servos`, `link` and `simulation` sections of a machine file, unconverted.
 
 A machine's joints are rotary (degrees) or linear (millimetres), never both.
 """
@@ -77,7 +77,7 @@ class ServosConfig:
             problems.append(f'joints: {counted(len(self.joints), "joint")}, 1 to {MAX_JOINTS} fit')
         names = [joint.name for joint in self.joints]
         if len(set(names)) < len(names):
-            problems.append(f'joints: names stand twice in {names}')
+            problems.append(f'joints: duplicate names in {names}')
         if sum(joint.is_gripper for joint in self.joints) > 1:
             problems.append('joints: more than one is the gripper')
         channels = [joint.channel for joint in self.joints]
@@ -114,7 +114,8 @@ class LinkConfig:
 
 @dataclass(frozen=True)
 class SimulationConfig:
-    """What the fake board's servos and battery do; joints: what the board tells of them.
+    """What the fake board's servos and battery do; joints: what the board
+    reports of them.
 
     drives: servos, each at its own full speed, or steppers, which interpolate together.
     """

@@ -39,20 +39,20 @@ from bridge.protocol import (
     Stop,
     is_newer,
 )
+from manipulator.deadlines import BOARD_DEADLINE
 from manipulator.errors import Refused
 
 RETRY_AFTER = 0.1
 MAX_TRIES = 4
-BOARD_SILENCE = 0.5
 MAX_BOOT = 5.0
 MODE_AFTER: dict[type, Mode] = {Disarm: Mode.DISARMED, Stop: Mode.STOPPED}
 SHOWN_BY_STATE = (Arm, Clear, Play)
-"""Commands whose mode afterwards only the next STATE tells: they are acknowledged with it."""
+"""Commands whose resulting mode is known from the next STATE only: acknowledged with it."""
 
 
 @dataclass
 class _Pending:
-    """A command on its way; every try carries the same sequence."""
+    """An unacknowledged command; every try carries the same sequence."""
 
     command: Command
     sequence: int
@@ -63,10 +63,10 @@ class _Pending:
 
 
 class Session:
-    """One host talking to one board with `joint_count` joints.
+    """The session of one host with one board of `joint_count` joints.
 
-    A STOP is never given up: it is said again until the board stands, also to a board that was
-    away or started again, and until the board has obeyed a CLEAR no setpoint goes out.
+    A STOP is never given up: it is repeated until the board has stopped, also after the board was
+    disconnected or restarted, and until the board has obeyed a CLEAR no setpoint is sent.
     """
 
     def __init__(self, joint_count: int) -> None:
@@ -75,21 +75,21 @@ class Session:
         self.hello: Hello | None = None
         self.state: State | None = None
         self.setpoints_sent = 0
-        self.is_stop_wanted = False
+        self.is_stop_requested = False
         self.reader = FrameReader()
         self.round_trips = RoundTrips()
         self._output = bytearray()
         self._sequence = 0
         self._pending: _Pending | None = None
-        self._heard_at = self._opened_at = self._hello_at = 0.0
+        self._received_at = self._opened_at = self._hello_at = 0.0
 
     @property
     def accepts_setpoints(self) -> bool:
-        """The board would follow a setpoint now, and no command is under way."""
+        """The board would follow a setpoint now, and no command is unacknowledged."""
         return (
             self.phase is Phase.READY
             and self._pending is None
-            and not self.is_stop_wanted
+            and not self.is_stop_requested
             and self.state is not None
             and self.state.mode in (Mode.ARMED, Mode.HOLDING)
         )
@@ -111,7 +111,7 @@ class Session:
         sent_after = now if sent_after is None else sent_after
         events: list[Event] = []
         for frame in self.reader.feed(received):
-            self._heard_at = now
+            self._received_at = now
             match frame.message:
                 case Hello():
                     events += self._shake_hands(frame.message, now, sent_after)
@@ -124,14 +124,17 @@ class Session:
         return events
 
     def tick(self, now: float) -> list[Event]:
-        """Retries what was not acknowledged; notices a board that fell silent."""
-        if self.phase in (Phase.CONNECTING, Phase.READY) and now - self._heard_at > BOARD_SILENCE:
-            events = self.closed(f'the board has been silent for {BOARD_SILENCE:g} s', now)
+        """Repeats an unacknowledged command; detects a silent board."""
+        if (
+            self.phase in (Phase.CONNECTING, Phase.READY)
+            and now - self._received_at > BOARD_DEADLINE
+        ):
+            events = self.closed(f'no frame from the board for {BOARD_DEADLINE:g} s', now)
             self.phase = Phase.WAITING
             return events
         if self.phase is Phase.WAITING and now - self._opened_at > MAX_BOOT:
             self._opened_at = now
-            return [Disconnected(f'the port is open, but no board said HELLO for {MAX_BOOT:g} s')]
+            return [Disconnected(f'the port is open, but no HELLO came for {MAX_BOOT:g} s')]
         pending = self._pending
         if pending is None or pending.is_obeyed or now - pending.sent_at < RETRY_AFTER:
             return []
@@ -148,25 +151,25 @@ class Session:
         """Newest wins, never repeated; Refused where the board would not follow it."""
         if not self.accepts_setpoints:
             mode = self.state.mode.name.lower() if self.state else self.phase.value
-            raise Refused(f'the board takes no setpoints now: {mode}')
+            raise Refused(f'the board accepts no setpoints now: {mode}')
         self._send(setpoint)
         self.round_trips.note_sent(self._sequence, now)
         self.setpoints_sent += 1
 
     def send_command(self, command: Command, now: float) -> list[Event]:
-        """Repeated until acknowledged; it takes the place of one that is under way.
+        """Repeated until acknowledged; it replaces an unacknowledged one.
 
-        Refused where there is no board (a STOP is said as soon as there is one), or where a STOP
-        is still under way.
+        Refused where there is no board (a STOP is sent as soon as there is one), or where a STOP
+        is still unacknowledged.
         """
-        self.is_stop_wanted = self.is_stop_wanted or isinstance(command, Stop)
+        self.is_stop_requested = self.is_stop_requested or isinstance(command, Stop)
         if self.phase is not Phase.READY:
-            raise Refused(f'no board to talk to: {self.phase.value}')
+            raise Refused(f'no board is connected: {self.phase.value}')
         pending = self._pending
         if pending is not None and isinstance(pending.command, Stop):
             if isinstance(command, Stop):
                 return []
-            raise Refused('a STOP is under way')
+            raise Refused('a STOP is in progress')
         reason = f'{type(command).__name__.upper()} came after it'
         displaced = self._show_obeyed() or self._fail_pending(reason)
         self._begin(command, now)
@@ -178,7 +181,7 @@ class Session:
         return output
 
     def _begin(self, command: Command, now: float) -> None:
-        # The delimiter ahead ends whatever half a frame the board may have got before.
+        # The leading delimiter ends any partial frame that the board may have received.
         wire = self._send(command, ahead=DELIMITER)
         self._pending = _Pending(command, self._sequence, wire, now, tries=1)
 
@@ -191,7 +194,7 @@ class Session:
     def _forget(self, phase: Phase, now: float) -> None:
         self.phase = phase
         self.hello = self.state = self._pending = None
-        self._opened_at = self._heard_at = now
+        self._opened_at = self._received_at = now
         self.round_trips.forget_sent()
         self._output.clear()
 
@@ -229,7 +232,7 @@ class Session:
         self.phase = Phase.READY
         connected: list[Event] = [Connected(self.hello)] if is_first else []
         obeyed = self._show_obeyed()
-        if self.is_stop_wanted and self._pending is None and state.mode is not Mode.STOPPED:
+        if self.is_stop_requested and self._pending is None and state.mode is not Mode.STOPPED:
             self._begin(Stop(), now)
         return [*connected, *obeyed, StateReceived(state)]
 
@@ -240,19 +243,19 @@ class Session:
         if ack.result is not Result.OK:
             return self._fail_pending(REASONS[ack.result])
         if isinstance(pending.command, Clear):
-            self.is_stop_wanted = False
+            self.is_stop_requested = False
         if isinstance(pending.command, SHOWN_BY_STATE):
             pending.is_obeyed = True
             return []
         self._pending = None
         mode = MODE_AFTER.get(type(pending.command))
         if mode is not None and self.state is not None:
-            # Known before the next STATE tells it: no setpoint may follow.
+            # Set before the next STATE shows it: no setpoint may follow.
             self.state = replace(self.state, mode=mode)
         return [Acknowledged(pending.command)]
 
     def _show_obeyed(self) -> list[Event]:
-        """To be told with a state of after the command: who is told so can see it."""
+        """Acknowledges with a STATE later than the command, so that its effect is visible."""
         pending = self._pending
         if pending is None or not pending.is_obeyed:
             return []

@@ -21,9 +21,9 @@ def stop_address(bridge: str, domain: int) -> bytes:
 
 
 def domain_here() -> int:
-    """The ROS domain of this process, without asking ROS."""
-    words = os.environ.get('ROS_DOMAIN_ID', '')
-    return int(words) if words.isdecimal() else 0
+    """The ROS domain of this process, from the environment."""
+    text = os.environ.get('ROS_DOMAIN_ID', '')
+    return int(text) if text.isdecimal() else 0
 
 
 def send_stop(address: bytes) -> bool:
@@ -40,7 +40,7 @@ def send_stop(address: bytes) -> bool:
 class StopSocket:
     """Calls on_stop for each STOP that was sent to `address`; the link's thread waits for it.
 
-    `trouble` says why the address cannot be had, '' where it can: the other ways to stop remain.
+    `trouble`: why the address is not available, '' where it is; the other ways to stop remain.
     """
 
     def __init__(self, address: bytes, on_stop: Callable[[], object]) -> None:
@@ -58,7 +58,7 @@ class StopSocket:
         return self._socket.fileno()
 
     def receive(self) -> None:
-        """Takes one datagram, once select says that there is one."""
+        """Takes one datagram, once the socket is readable."""
         with contextlib.suppress(BlockingIOError):
             if self._socket.recv(len(STOP)) == STOP:
                 self._on_stop()

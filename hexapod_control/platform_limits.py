@@ -8,7 +8,7 @@ import numpy as np
 from hexapod_control.geometry import LEGS
 from manipulator import _kernel
 from manipulator.arrays import Array, Mask, frozen, stretched
-from manipulator.limits.limit import Bounds, Search, Ways
+from manipulator.limits.limit import Bounds, BrakingPaths, Search
 from manipulator.pose import Pose
 
 SHORTFALL, SURPLUS, JOINT, TILT, SWING, LEANING = (slice(6 * k, 6 * k + 6) for k in range(6))
@@ -16,9 +16,9 @@ HEIGHT, SIGMA = slice(36, 37), slice(37, 38)
 VALUES, RANGES = 38, 39
 """Where values stand in `limited`, and the numbers in `limit_ranges`: kernel/limits.h."""
 
-WAY = 20
+PATH = 20
 PLAIN_FRAME = frozen(np.concatenate([np.zeros(3), np.eye(3).ravel(), np.zeros(3)]))
-"""Numbers in `way`, and the `jog_frame` that changes nothing: kernel/braking.h."""
+"""Numbers in `braking_path`, and the `jog_frame` that changes nothing: kernel/braking.h."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,13 +50,13 @@ class PlatformLimits:
         )  # fmt: skip
         return Pose.unchecked(position, rotation)
 
-    def first_free_way(self, ranges: Array, ways: Ways) -> tuple[int, Array]:
+    def first_free_path(self, ranges: Array, paths: BrakingPaths) -> tuple[int, Array]:
         """See `LimitGroup`."""
-        pose, found = ways.pose, np.empty((len(ways.twists), WAY))
-        frame = PLAIN_FRAME if ways.frame is None else ways.frame
-        free = _kernel.first_free_way(
-            self.parameters, ranges, frame, ways.bounds, pose.position, pose.rotation,
-            ways.joints, ways.rates, ways.twists, found,
+        pose, found = paths.pose, np.empty((len(paths.twists), PATH))
+        frame = PLAIN_FRAME if paths.frame is None else paths.frame
+        free = _kernel.first_free_path(
+            self.parameters, ranges, frame, paths.bounds, pose.position, pose.rotation,
+            paths.joints, paths.rates, paths.twists, found,
         )  # fmt: skip
         return free, found
 

@@ -11,8 +11,8 @@ from functools import partial
 import numpy as np
 
 from hexapod_control.workspace import axis_range
+from manipulator.analysis.free_paths import is_connected
 from manipulator.analysis.readings import read_limits
-from manipulator.analysis.way import is_connected
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.machine import Machine
@@ -99,7 +99,7 @@ class Stack:
 
         That is the least sum over sections and axes of (twist from home / range)², within every
         section's limits. Found from home by a descent: a local minimum. Raises Unreachable,
-        naming section and limit, where none is found, or no free way leads there from home.
+        naming section and limit, where none is found, or no free path leads there from home.
         """
         free = np.zeros(6 * (len(self.sections) - 1))
         free = _descended(lambda x: self._relative(self._poses(x, end)), free)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from manipulator import rotation as so3
-from manipulator.analysis.way import admits
+from manipulator.analysis.free_paths import admits
 from manipulator.arrays import Array, Mask
 from manipulator.machine import Machine
 from manipulator.pose import Pose

@@ -1,15 +1,81 @@
-"""The `hexarm` command, one file per subcommand."""
+"""What a person starts: `hexarm`, the nodes, the page; and what a program imports: `Robot`.
+
+Importing it sets what Fast DDS reads from the environment, unless the user has set it.
+"""
 
 import os
+from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from hexarm.robot import Robot
+    from manipulator.errors import InvalidInput, ManipulatorError, Refused, Stopped, TimedOut
+    from manipulator.pose import Pose
+
+_HOMES = {
+    'Robot': 'hexarm.robot',
+    'Pose': 'manipulator.pose',
+    'ManipulatorError': 'manipulator.errors',
+    'InvalidInput': 'manipulator.errors',
+    'Refused': 'manipulator.errors',
+    'Stopped': 'manipulator.errors',
+    'TimedOut': 'manipulator.errors',
+}
+"""Where the names of the Python client are: imported once they are used, since Robot needs ROS."""
+
+__all__ = [
+    'InvalidInput',
+    'ManipulatorError',
+    'Pose',
+    'Refused',
+    'Robot',
+    'Stopped',
+    'TimedOut',
+]
+
+
+def __getattr__(name: str) -> Any:
+    """One of the names of the Python client."""
+    if name not in _HOMES:
+        raise AttributeError(f'module hexarm has no attribute {name!r}')
+    return getattr(import_module(_HOMES[name]), name)
+
+
+_PROFILES = 'FASTRTPS_DEFAULT_PROFILES_FILE'
+_RANGE = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
+_FAST_DDS = ('', 'rmw_fastrtps_cpp', 'rmw_fastrtps_dynamic_cpp')
+
+
+def _profile(name: str) -> str:
+    return str(Path(__file__).with_name(name))
+
+
+def use_sockets() -> None:
+    """Has Fast DDS use sockets alone, and announce processes every 0.2 s: docs/computers.md.
+
+    Its shared memory is deleted under the others' feet when a killed process is started again:
+    they find each other after 3 s, or never. With the discovery range LOCALHOST the ROS layer
+    always adds shared memory. So this range is asked for in another way, which means the same:
+    sockets of the loopback interface.
+    """
+    os.environ.setdefault('FASTDDS_BUILTIN_TRANSPORTS', 'UDPv4')
+    is_local = os.environ.get(_RANGE) == 'LOCALHOST' and not os.environ.get('ROS_STATIC_PEERS')
+    is_fast_dds = os.environ.get('RMW_IMPLEMENTATION', '') in _FAST_DDS
+    own = os.environ.get(_PROFILES) not in (None, _profile('fastdds.xml'))
+    if is_local and is_fast_dds and not own:
+        os.environ[_PROFILES] = _profile('fastdds_loopback.xml')
+        os.environ[_RANGE] = 'SUBNET'
+    os.environ.setdefault(_PROFILES, _profile('fastdds.xml'))
+
+
+def keep_to_this_computer() -> None:
+    """No message leaves this computer; before ROS is initialised."""
+    os.environ[_RANGE] = 'LOCALHOST'
+    use_sockets()
+
 
 # Before numpy is imported: for 6×6 systems BLAS threads only cost, and on busy cores a call that
 # waits for one of them can stall for a second.
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
-# Fast DDS: sockets alone. Processes that are killed leave its shared memory behind, and it is no
-# quicker for messages of this size.
-os.environ.setdefault('FASTDDS_BUILTIN_TRANSPORTS', 'UDPv4')
-# And soon found: the file says why.
-os.environ.setdefault(
-    'FASTRTPS_DEFAULT_PROFILES_FILE', str(Path(__file__).with_name('fastdds.xml'))
-)
+use_sockets()

@@ -11,7 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hexarm.board.build import chip_process
+from bridge.fake.plant import SERVO
+from hexarm.board.build import chip_command
+from manipulator.errors import Refused
 
 PATIENCE = 5.0
 """Seconds a process has for its own clean end before it is killed."""
@@ -23,8 +25,8 @@ PR_SET_PDEATHSIG = 1
 class Executable:
     """One process: the name in hexarm/nodes.py, its own parameters, the file it waits for.
 
-    `command` is what runs it when it is no node of ours; `prefix` stands before the command, as in
-    `ip netns exec far`.
+    `command` is what runs it instead of `python -m hexarm.nodes NAME`; `prefix` precedes the
+    command, as in `ip netns exec far`.
     """
 
     name: str
@@ -56,12 +58,18 @@ def node_processes(machine: str, port: str, link: Path | None = None) -> list[Ex
     return [*nodes, Executable('serial_bridge', common | {'port': str(link or port)}, link)]
 
 
-def board_process(machine: str, port: str, link: Path) -> list[Executable]:
-    """The fake board for port 'fake', the firmware on a simulated chip for 'simavr', or none."""
+def board_process(machine: str, port: str, link: Path, plant: str = SERVO) -> list[Executable]:
+    """The fake board for port 'fake', the firmware on a simulated chip for 'simavr', or none.
+
+    plant: what its pulses move, 'servo' or 'mujoco'. Refused for a device, which moves its own.
+    """
+    parameters = {'machine': machine, 'link': str(link), 'plant': plant}
     if port == 'fake':
-        return [Executable('fake_hardware', {'machine': machine, 'link': str(link)})]
+        return [Executable('fake_hardware', parameters)]
     if port == 'simavr':
-        return [Executable('chip', command=chip_process(machine, link))]
+        return [Executable('fake_hardware', parameters, command=chip_command(machine))]
+    if plant != SERVO:
+        raise Refused(f'--plant {plant}: for port fake or simavr; {port} moves a real machine')
     return []
 
 
@@ -85,12 +93,12 @@ class Graph:
                 start_new_session=True,
                 stdin=subprocess.DEVNULL,
                 preexec_fn=_die_with_parent,  # noqa: PLW1509 (one prctl call, no threads yet)
-                env=_environment(),
+                env=environment(),
             )
         return self
 
     def __exit__(self, *exception: object) -> None:
-        """Stops every node, the board last: asked first, killed where asking does not help."""
+        """Stops every node, the board last: by a signal first, killed where that does not help."""
         deadline = time.monotonic() + PATIENCE
         for process in reversed(self._processes.values()):
             process.terminate()
@@ -126,10 +134,8 @@ def wait_for(path: Path | None) -> None:
 
 
 def _command(node: Executable, namespace: str, log_level: str) -> list[str]:
-    if node.command:
-        return list(node.command)
-    arguments = ros_arguments(namespace, node.parameters)
-    return [sys.executable, '-m', 'hexarm.nodes', node.name, *arguments, '--log-level', log_level]
+    words = node.command or (sys.executable, '-m', 'hexarm.nodes', node.name)
+    return [*words, *ros_arguments(namespace, node.parameters), '--log-level', log_level]
 
 
 def ros_arguments(namespace: str, parameters: dict[str, str]) -> list[str]:
@@ -140,7 +146,7 @@ def ros_arguments(namespace: str, parameters: dict[str, str]) -> list[str]:
     return words
 
 
-def _environment() -> dict[str, str]:
+def environment() -> dict[str, str]:
     """Ours, with the source tree importable where nothing is installed."""
     here = str(Path(__file__).resolve().parent.parent)
     known = [p for p in os.environ.get('PYTHONPATH', '').split(os.pathsep) if p]
@@ -148,5 +154,5 @@ def _environment() -> dict[str, str]:
 
 
 def _die_with_parent() -> None:
-    """Asks the kernel to end the node when this process dies without stopping it."""
+    """Has the kernel end the node when this process dies without stopping it."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)

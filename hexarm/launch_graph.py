@@ -10,7 +10,7 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 from hexarm.cli.up import MACHINES, check
-from hexarm.graph import Executable, machine_graph
+from hexarm.graph import Executable, environment, machine_graph, ros_arguments
 
 PACKAGE = 'hexarm'
 PROGRAMS = {'machine': 'hexarm_machine', 'panel': 'hexarm_panel'}
@@ -18,13 +18,13 @@ PROGRAMS = {'machine': 'hexarm_machine', 'panel': 'hexarm_panel'}
 
 
 def graph(kind: str) -> LaunchDescription:
-    """The launch description of a hexapod or an arm; nothing moves before somebody enables it."""
+    """The launch description of a hexapod or an arm; nothing moves before it is enabled."""
     arguments = {
         'machine': (MACHINES[kind], 'machine file: a shipped name or a path'),
         'port': ('fake', "a device, as /dev/serial/by-id/…, or 'fake' for the fake board"),
         'namespace': (kind, 'where the graph lives'),
-        'frame_prefix': ('', 'stands before the frames of tf and markers, as in hexapod/'),
-        'panel': ('false', 'true: the page to look at it and to drive it, too'),
+        'frame_prefix': ('', 'prefix of the frames of tf and markers, as in hexapod/'),
+        'panel': ('false', 'true: also the page to watch and drive it'),
     }
     declared = [
         DeclareLaunchArgument(name, default_value=default, description=meaning)
@@ -60,7 +60,9 @@ def _nodes(context: LaunchContext, kind: str) -> list[Any]:
 
 def _process(node: Executable, namespace: str, own: dict[str, str]) -> Any:
     if node.command:
-        return ExecuteProcess(cmd=list(node.command), output='screen')
+        words = [*node.command, *ros_arguments(namespace, node.parameters | own)]
+        importable = {'PYTHONPATH': environment()['PYTHONPATH']}
+        return ExecuteProcess(cmd=words, additional_env=importable, output='screen')
     return Node(
         package=PACKAGE,
         executable=PROGRAMS.get(node.name, node.name),

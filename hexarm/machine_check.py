@@ -69,7 +69,7 @@ def report_of(content: Mapping[str, Any]) -> Report:
     """Of a machine file that could be read.
 
     The sections first, each as far as it is there; then, between those that are good, what one
-    says of another: names, units, ranges, speeds and the park position.
+    contains about another: names, units, ranges, speeds and the park position.
     """
     found = Findings()
     whole = found.of(lambda: build(MachineFile, content))
@@ -106,17 +106,17 @@ def _machine(kind: object, there: Mapping[str, Any], whole: MachineFile | None) 
 
 
 def _between(machine: Machine, calibration: Calibration) -> Iterator[str]:
-    """What servos and machine say of each other and do not agree on."""
-    wanted, names = machine.kinematics.joint_names, calibration.names
-    missing = [name for name in wanted if name not in names]
+    """Contradictions between servos and machine."""
+    expected, names = machine.kinematics.joint_names, calibration.names
+    missing = [name for name in expected if name not in names]
     for name in missing:
-        near = difflib.get_close_matches(name, set(names) - set(wanted), n=1)
+        near = difflib.get_close_matches(name, set(names) - set(expected), n=1)
         yield f'servos.joints: none is called {name!r}{f", but {near[0]!r}" if near else ""}'
     if calibration.unit != machine.kinematics.joint_unit:
         unit = 'millimetres' if calibration.unit == 'm' else 'degrees'
         yield f'servos.joints: in {unit}, which are not what the joints of this kind are in'
     elif not missing:
-        order = [names.index(name) for name in wanted]
+        order = [names.index(name) for name in expected]
         yield from _narrow_servos(machine, calibration, order)
         yield from _park_problems(machine, calibration, order)
         yield from _slow_servos(machine, calibration)
@@ -150,11 +150,11 @@ def _park_problems(machine: Machine, calibration: Calibration, order: list[int])
 
 def _slow_servos(machine: Machine, calibration: Calibration) -> Iterator[str]:
     factor, unit = _file_unit(calibration)
-    wanted = float(np.max(machine.motion.joint.speed)) * factor
+    expected = float(np.max(machine.motion.joint.speed)) * factor
     rated = calibration.speed * factor
-    if np.isfinite(wanted) and wanted > rated * (1 + 1e-9):
+    if np.isfinite(expected) and expected > rated * (1 + 1e-9):
         yield (
-            f'motion.joint_speed_{unit}_s: {wanted:g} is more than the servos do '
+            f'motion.joint_speed_{unit}_s: {expected:g} is more than the servos do '
             f'(servos.speed_{unit}_s: {rated:g})'
         )
 

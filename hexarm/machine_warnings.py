@@ -1,4 +1,4 @@
-"""What of a good machine file is doubtful all the same: a home bent the other way, odd pulses."""
+"""What is doubtful in a valid machine file: a home on the other branch, odd pulses."""
 
 from collections.abc import Iterator, Sequence
 
@@ -11,13 +11,13 @@ from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Machine
 
 LEVEL, NEARLY_LEVEL, TILTED = np.radians(2.0), np.radians(10.0), np.radians(20.0)
-"""How far a crank is from level, either way, to count as such; and to count as tilted."""
+"""How far a crank is from level, in either direction, to count as such; and as tilted."""
 
 ASIDE, FAR, NEAR = 0.2, 0.5, 0.2
 """Distances from the middle of a joint's range, as shares of half the range."""
 
 WIDEST = np.radians(270.0)
-"""Of a crank range whose middle says something of the machine: a wider one is just left open."""
+"""Of a crank range whose middle is significant: a wider one is just left open."""
 
 PULSES_US = (450.0, 2550.0)
 """What hobby servos take, about 500 to 2500 µs; other centres are counts of other drives."""
@@ -56,8 +56,9 @@ def _other_bend(machine: Machine) -> Iterator[str]:
     if legs.size:
         yield (
             f'home has {_names(kinematics.joint_names, legs.tolist())} at {_degrees(home[legs])}, '
-            f'in a range with its middle at {_degrees((limit.low + limit.high)[:1] / 2)}; bent '
-            f'the other way: {_degrees(other[legs])}. Is a crank tangent, or the whole, mirrored?'
+            f'in a range with its middle at {_degrees((limit.low + limit.high)[:1] / 2)}; '
+            f'on the other branch: {_degrees(other[legs])}. '
+            'Is a crank tangent, or the whole, mirrored?'
         )
 
 

@@ -7,16 +7,18 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from bridge.calibration import Calibration
 from bridge.servo_config import BoardConfig, ServosConfig
-from manipulator.arrays import Array, frozen
+from manipulator.arrays import frozen
 from manipulator.config import MAX_CHARACTERS, build, parse_yaml
 from manipulator.errors import ConfigError
 from manipulator.formatting import reason, shortened, shown
 from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
-from manipulator.sag import Sag
+from manipulator.static_deflection import StaticDeflection
 
 
 def _hexapod(machine_file: MachineFile) -> Machine:
@@ -53,12 +55,12 @@ def shipped() -> dict[str, Path]:
 
 
 def find(name_or_path: str) -> Path:
-    """The file of a shipped machine's name, or of a path; ConfigError says what there is."""
+    """The file of a shipped machine's name, or of a path; ConfigError names what there is."""
     path = Path(name_or_path).expanduser()
     if path.suffix in ('.yaml', '.yml') or '/' in name_or_path:
         if os.path.isfile(path):
             return path
-        fault = 'is no file' if os.path.exists(path) else 'does not exist'
+        fault = 'is not a file' if os.path.exists(path) else 'does not exist'
         raise ConfigError([f'machine file {shortened(name_or_path, 200)} {fault}'])
     known = shipped()
     if name_or_path not in known and os.path.isfile(path):
@@ -84,7 +86,7 @@ def family(name_or_path: str) -> str:
 
 
 def board_config(name_or_path: str) -> BoardConfig:
-    """What the bridge and the board need of a machine file; ConfigError says what is wrong."""
+    """What the bridge and the board need of a machine file; ConfigError with all problems."""
     return BoardConfig.from_machine(read(name_or_path), str(find(name_or_path)))
 
 
@@ -118,31 +120,32 @@ def loader(kind: str) -> Callable[[MachineFile], Machine]:
 
 
 def load(name_or_path: str) -> Machine:
-    """Kinematics, constraints and motion limits of a machine; ConfigError says what is wrong."""
+    """Kinematics, constraints and motion limits of a machine; ConfigError with all problems."""
     machine_file = read(name_or_path)
     try:
         machine = loader(machine_file.kind)(machine_file)
-        machine = replace(machine, sag=_sag(machine_file, machine.kinematics))
+        machine = replace(machine, deflection=_deflection(machine_file, machine.kinematics))
     except ConfigError as error:
         raise ConfigError(error.problems, str(find(name_or_path))) from error
-    park = _park(machine_file, machine.kinematics)
-    return replace(machine, frames=Frames.from_config(machine_file.frames), park=park)
+    machine = replace(machine, frames=Frames.from_config(machine_file.frames))
+    return _with_servos(machine, machine_file)
 
 
-def _park(machine_file: MachineFile, kinematics: Kinematics) -> Array | None:
-    """The joints at park, in the kinematics' order; None where the servos cannot be used."""
+def _with_servos(machine: Machine, machine_file: MachineFile) -> Machine:
+    """With the joints at park, and their resolution; without where the servos cannot be used."""
     try:
         calibration = Calibration.from_config(build(ServosConfig, machine_file.servos, 'servos'))
-        order = [calibration.names.index(name) for name in kinematics.joint_names]
+        order = [calibration.names.index(name) for name in machine.kinematics.joint_names]
     except (ConfigError, ValueError):
-        return None
-    return frozen(calibration.park[order])
+        return machine
+    resolution = frozen(1.0 / np.abs(calibration.scale[order]))
+    return replace(machine, park=frozen(calibration.park[order]), resolution=resolution)
 
 
-def _sag(machine_file: MachineFile, kinematics: Kinematics) -> Sag | None:
-    """What the machine's nodes compensate, where its file asks for it."""
+def _deflection(machine_file: MachineFile, kinematics: Kinematics) -> StaticDeflection | None:
+    """The static deflection that the machine's nodes compensate, where its file sets that."""
     if (machine_file.dynamics or {}).get('compensation') is not True:
         return None
-    from hexarm.simulation.compensation import sag_of  # noqa: PLC0415 (most machines need no masses)
+    from hexarm.simulation.compensation import deflection_of  # noqa: PLC0415 (most machines need no masses)
 
-    return sag_of(machine_file, kinematics)
+    return deflection_of(machine_file, kinematics)

@@ -1,10 +1,10 @@
-"""Names of namespaces on the command line, and what is said of one where nobody is."""
+"""Namespaces on the command line, and the message for one without a machine."""
 
 import argparse
 import re
 from collections.abc import Collection
 
-from manipulator.errors import ManipulatorError
+from manipulator.errors import TimedOut
 from manipulator.formatting import shown
 
 NAMESPACE = re.compile(r'/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*/?', re.ASCII)
@@ -14,22 +14,22 @@ MARK = '/machine_state'
 """The topic by which a machine's namespace is known."""
 
 
-class NobodyThere(ManipulatorError):
+class NoMachine(TimedOut):
     """No machine answers in a namespace."""
 
 
-def nobody_in(namespace: str, there: Collection[str], domain: int) -> str:
+def no_machine_in(namespace: str, there: Collection[str], domain: int) -> str:
     """That no machine is in a namespace, and where others are; `there` are published topics."""
     others = sorted(topic.removesuffix(MARK) for topic in there if topic.endswith(MARK))
     hint = f'; there are machines in {", ".join(others)}' if others else ''
     space = namespace.strip('/')
-    return f'nobody answers in /{space} on ROS domain {domain}: is a graph running there?{hint}'
+    return f'no machine found in /{space} on ROS domain {domain}: is it running there?{hint}'
 
 
-def namespace_of(word: str) -> str:
+def namespace_of(name: str) -> str:
     """Without slashes at its ends; an argument error for what ROS would not accept."""
-    if NAMESPACE.fullmatch(word) is None:
+    if NAMESPACE.fullmatch(name) is None:
         raise argparse.ArgumentTypeError(
-            f'{shown(word)} is not a ROS name: letters, digits, _ and /'
+            f'{shown(name)} is not a ROS name: letters, digits, _ and /'
         )
-    return word.strip('/')
+    return name.strip('/')

@@ -1,7 +1,7 @@
 """The executables of the nodes: `ros2 run hexarm NAME …`, `python -m hexarm.nodes NAME …`.
 
 `hexapod_…` and `arm_…` differ in the machine that they run where none is named; as `trajectory`,
-`ik` and `pose` they run either kind. An executable imports only its own node: imports stand in the
+`ik` and `pose` they run either kind. An executable imports only its own node: imports are in the
 functions.
 """
 

@@ -25,20 +25,20 @@ def panel_address(panel: Executable) -> str:
 
 
 def panel_words(panel: Executable) -> str:
-    """The address, and a word where it is not the usual one."""
+    """The address, and a remark where it is not the usual one."""
     is_usual = panel.parameters['port'] == str(FIRST_PORT)
     taken = '' if is_usual else f' ({FIRST_PORT} is taken, perhaps by another page)'
     return panel_address(panel) + taken
 
 
-def offered_panel(machine: str, say: Callable[[str], None]) -> list[Executable]:
-    """The panel and a word about it; without viser only the word."""
+def offered_panel(machine: str, echo: Callable[[str], None]) -> list[Executable]:
+    """The panel and a line about it; without viser only the line."""
     try:
         panel = panel_process(machine)
     except ModuleNotFoundError:
-        say('(with viser installed, pip install viser, you could watch this in a browser)')
+        echo('(with viser installed, pip install viser, you could watch this in a browser)')
         return []
-    say(f'watch it in a browser: {panel_words(panel)}')
+    echo(f'watch it in a browser: {panel_words(panel)}')
     return [panel]
 
 

@@ -5,7 +5,7 @@
 #include "se3.h"
 #include "vector.h"
 
-/* One tick of braking from n takes to exactly n - 1, so that a way once checked stays the same. */
+/* One tick of braking from n takes to exactly n - 1, so that a path once checked stays the same. */
 #define ROUNDING REAL(1e-9)
 
 /* In how many ticks a twist comes to rest, at least 1. */
@@ -17,8 +17,9 @@ static real braking_ticks(const struct jog_bounds *bounds, const real twist[6])
 }
 
 /* The platform's pose in the base frame, and its joints on the branch nearest to `near`. */
-static void put_joints(const struct jogged *machine, const struct way *at, const real near[LEGS],
-                       real position[3], real rotation[9], real joints[LEGS])
+static void put_joints(const struct jogged *machine, const struct braking_path *at,
+                       const real near[LEGS], real position[3], real rotation[9],
+                       real joints[LEGS])
 {
     const struct jog_frame *frame = machine->frame;
     real of_pivot[3], arm[3];
@@ -52,26 +53,27 @@ static void note(struct excess *excess, real value, real bound, int joint)
     }
 }
 
-static void judge(struct way *way, const struct excess *speed, const struct excess *acceleration)
+static void judge(struct braking_path *path, const struct excess *speed,
+                  const struct excess *acceleration)
 {
     const struct excess *worst = speed->most > 1 ? speed : acceleration;
-    if (way->obstacle != NOTHING || !(worst->most > 1))
+    if (path->obstacle != NOTHING || !(worst->most > 1))
         return;
-    way->obstacle = worst == speed ? A_SPEED : AN_ACCELERATION;
-    way->joint = worst->joint;
+    path->obstacle = worst == speed ? A_SPEED : AN_ACCELERATION;
+    path->joint = worst->joint;
 }
 
-struct way braking_way(const struct jogged *machine, const struct jog_state *from,
-                       const real twist[6])
+struct braking_path braking_path(const struct jogged *machine, const struct jog_state *from,
+                                 const real twist[6])
 {
     const struct jog_bounds *bounds = machine->bounds;
     real joints[LEGS], rates[LEGS], gone = 0, ticks = braking_ticks(bounds, twist);
     struct excess speed = {1, 0}, acceleration = {1, 0};
-    struct way way = {.obstacle = NOTHING};
+    struct braking_path path = {.obstacle = NOTHING};
     memcpy(joints, from->joints, sizeof joints);
     memcpy(rates, from->rates, sizeof rates);
     for (int tick = 0; tick <= ticks; tick++) {
-        struct way at = {.obstacle = A_LIMIT};
+        struct braking_path at = {.obstacle = A_LIMIT};
         real position[3], rotation[9], step[6];
         gone += bounds->tick * (1 - tick / ticks);
         memcpy(at.position, from->position, sizeof at.position);
@@ -91,9 +93,9 @@ struct way braking_way(const struct jogged *machine, const struct jog_state *fro
             return at;
         if (tick == 0) {
             at.obstacle = NOTHING;
-            way = at;
+            path = at;
         }
     }
-    judge(&way, &speed, &acceleration);
-    return way;
+    judge(&path, &speed, &acceleration);
+    return path;
 }

@@ -23,17 +23,17 @@ struct jog_state {
     const real *position, *rotation, *joints, *rates;
 };
 
-/* What stands in a way's way, the first of these. */
+/* What limits a braking path: the first of these. */
 enum obstacle { NOTHING, A_LIMIT, A_SPEED, AN_ACCELERATION };
 
 /* One tick at a twist (6), then braking straight ahead to rest. Of the first tick, or of the first
    that breaks a limit, are pose and joints; `joint` is the one that would be too fast. */
-struct way {
+struct braking_path {
     real obstacle, joint;
     real position[3], rotation[9], joints[LEGS];
 };
 
-struct way braking_way(const struct jogged *machine, const struct jog_state *from,
-                       const real twist[6]);
+struct braking_path braking_path(const struct jogged *machine, const struct jog_state *from,
+                                 const real twist[6]);
 
 #endif

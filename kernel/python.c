@@ -82,5 +82,8 @@ static PyModuleDef MODULE = {
 __attribute__((visibility("default"))) PyObject *PyInit__kernel(void);
 PyObject *PyInit__kernel(void)
 {
-    return PyModule_Create2(&MODULE, ABI_VERSION);
+    PyObject *module = PyModule_Create2(&MODULE, ABI_VERSION);
+    if (module && PyModule_AddFunctions(module, ARM_FUNCTIONS) < 0)
+        return NULL; /* the process will not use it: it does not start */
+    return module;
 }

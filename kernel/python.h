@@ -43,6 +43,6 @@ PyObject *python_call(const struct function *function, PyObject *const *argument
 
 #define NUMBERS(type) ((Py_ssize_t)(sizeof(type) / sizeof(real)))
 
-extern PyMethodDef PLATFORM_FUNCTIONS[];
+extern PyMethodDef PLATFORM_FUNCTIONS[], ARM_FUNCTIONS[];
 
 #endif

@@ -44,6 +44,7 @@ extern PyObject _Py_NoneStruct;
 extern PyObject *PyExc_TypeError, *PyExc_ValueError;
 
 PyObject *PyModule_Create2(PyModuleDef *definition, int version);
+int PyModule_AddFunctions(PyObject *module, PyMethodDef *functions);
 PyObject *PyLong_FromSsize_t(Py_ssize_t number);
 PyObject *PyErr_Format(PyObject *exception, const char *format, ...);
 int PyObject_GetBuffer(PyObject *exporter, Py_buffer *view, int flags);

@@ -17,6 +17,7 @@ typedef float real;
 #define real_asin asinf
 #define real_atan2 atan2f
 #define real_rint rintf
+#define real_floor floorf
 #else
 typedef double real;
 #define REAL(number) number
@@ -29,6 +30,7 @@ typedef double real;
 #define real_asin asin
 #define real_atan2 atan2
 #define real_rint rint
+#define real_floor floor
 #endif
 
 #define REAL_PI REAL(3.14159265358979323846)

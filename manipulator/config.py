@@ -22,7 +22,7 @@ T = TypeVar('T')
 U = TypeVar('U')
 MAX_CHARACTERS = 100_000
 MOST_OF_A_REASON = 200
-"""Characters of what PyYAML says, which may repeat the file."""
+"""Characters of an error of PyYAML, which may repeat the file."""
 
 IMPORTS = 'serial arms are described by dh or screws, see docs/arm-kinematics.md'
 
@@ -99,7 +99,7 @@ class _Strict(Composer):
         for key_node, _ in node.value:
             if key_node.value in seen:
                 line = key_node.start_mark.line + 1
-                raise yaml.YAMLError(f'line {line}: key {shown(key_node.value)} stands twice')
+                raise yaml.YAMLError(f'line {line}: key {shown(key_node.value)} is duplicated')
             if isinstance(key_node.value, str):
                 seen.add(key_node.value)
         mapping: dict[Any, Any] = super().construct_mapping(node, deep)  # type: ignore[misc]
@@ -107,7 +107,7 @@ class _Strict(Composer):
 
 
 class _StrictLoader(_Strict, yaml.SafeLoader):
-    """In Python, which tells best what is wrong."""
+    """In Python, which gives the best error messages."""
 
 
 _Events: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
@@ -121,11 +121,11 @@ class _QuickLoader(_Strict, _Events):  # type: ignore[misc]
         Composer.__init__(self)
 
 
-def _convert(wanted: Any, value: object, where: str, problems: list[str]) -> Any:
-    """`value` as the type `wanted`; what does not fit is added to `problems`."""
-    origin, arguments = typing.get_origin(wanted), typing.get_args(wanted)
-    if dataclasses.is_dataclass(wanted):
-        return _convert_section(wanted, value, where, problems)
+def _convert(expected: Any, value: object, where: str, problems: list[str]) -> Any:
+    """`value` as the type `expected`; what does not fit is added to `problems`."""
+    origin, arguments = typing.get_origin(expected), typing.get_args(expected)
+    if dataclasses.is_dataclass(expected):
+        return _convert_section(expected, value, where, problems)
     if origin in (typing.Union, types.UnionType):
         if value is None and type(None) in arguments:
             return None
@@ -140,13 +140,13 @@ def _convert(wanted: Any, value: object, where: str, problems: list[str]) -> Any
         return value
     if origin is tuple:
         return _convert_list(arguments, value, where, problems)
-    if wanted is Any:
+    if expected is Any:
         return value
     if origin is dict:
         if not isinstance(value, Mapping):
             problems.append(f'{where}: holds {_kind(value)}, needs a mapping of keys')
         return value
-    return _convert_scalar(wanted, value, where, problems)
+    return _convert_scalar(expected, value, where, problems)
 
 
 def _convert_section(schema: Any, value: object, where: str, problems: list[str]) -> Any:
@@ -192,16 +192,18 @@ def _convert_list(arguments: Any, value: object, where: str, problems: list[str]
     )
 
 
-def _convert_scalar(wanted: Any, value: object, where: str, problems: list[str]) -> Any:
-    if wanted is float and isinstance(value, int | float) and not isinstance(value, bool):
+def _convert_scalar(expected: Any, value: object, where: str, problems: list[str]) -> Any:
+    if expected is float and isinstance(value, int | float) and not isinstance(value, bool):
         number = _as_float(value)
         if math.isfinite(number):
             return number
         problems.append(f'{where}: {number} is not finite')
         return None
-    if type(value) is wanted:
+    if type(value) is expected:
         return value
-    problems.append(f'{where}: holds {_kind(value)}, needs {_NAMES.get(wanted, wanted.__name__)}')
+    problems.append(
+        f'{where}: holds {_kind(value)}, needs {_NAMES.get(expected, expected.__name__)}'
+    )
     return None
 
 

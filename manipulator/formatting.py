@@ -4,7 +4,7 @@ MOST_SHOWN = 80
 """Characters of an input that a message repeats."""
 
 METRES_FROM = 0.9999
-"""m. Shorter ones are told in millimetres."""
+"""m. Shorter lengths are given in millimetres."""
 
 
 def length(metres: float, digits: int = 4) -> str:

@@ -14,7 +14,7 @@ from manipulator.arrays import Array, Mask
 from manipulator.frames import Frames
 from manipulator.kinematics import ForwardSolution, Kinematics
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.limit import Bounds, LimitGroup, LimitOf, Search, Ways
+from manipulator.limits.limit import Bounds, BrakingPaths, LimitGroup, LimitOf, Search
 from manipulator.links import Link
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -138,16 +138,16 @@ class FramedGroup:
         of_pivot = replace(search, target=T_base_work @ search.target, pivot=pivot)
         return T_base_work.inverse() @ self.inner.descended(of_pivot, bounds, T_base_work @ start)
 
-    def first_free_way(self, ranges: Array, ways: Ways) -> tuple[int, Array]:
+    def first_free_path(self, ranges: Array, paths: BrakingPaths) -> tuple[int, Array]:
         """See `LimitGroup`."""
         work, pivot = self.frames.T_base_work, self.frames.T_platform_pivot.position
         frame = np.concatenate([work.position, work.rotation.ravel(), pivot])
-        return self.inner.first_free_way(ranges, replace(ways, frame=frame))
+        return self.inner.first_free_path(ranges, replace(paths, frame=frame))
 
 
 @dataclass(frozen=True, eq=False)
 class FramedLimit(LimitOf):
-    """A limit of the machine, asked with poses of the pivot in the work frame."""
+    """A limit of the machine, for poses of the pivot in the work frame."""
 
     frames: Frames
     framed_group: FramedGroup | None = None

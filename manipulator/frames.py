@@ -33,10 +33,10 @@ class Frames:
     are_plain: bool = field(init=False)
 
     def __post_init__(self) -> None:
-        """Looks once whether there is anything to convert."""
+        """Finds once whether there is anything to convert."""
         both = (self.T_base_work, self.T_platform_pivot)
-        ways = [Pose.identity().twist_to(pose) for pose in both]
-        object.__setattr__(self, 'are_plain', not np.any(ways))
+        offsets = [Pose.identity().twist_to(pose) for pose in both]
+        object.__setattr__(self, 'are_plain', not np.any(offsets))
 
     @classmethod
     def from_config(cls, config: FramesConfig) -> 'Frames':

@@ -1,4 +1,4 @@
-"""The one interface behind which crank platforms, linear platforms and serial arms stand."""
+"""The one interface of crank platforms, linear platforms and serial arms."""
 
 from dataclasses import dataclass
 from typing import Protocol

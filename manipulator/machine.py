@@ -1,4 +1,4 @@
-"""A machine as the nodes use it: its kinematics, its limits, its way of moving."""
+"""A machine as the nodes use it: its kinematics, its limits, its jogger."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import LimitOf
 from manipulator.limits.machine_limits import JointRange
 from manipulator.motion_limits import MotionConfig, MotionLimits
-from manipulator.sag import Sag
+from manipulator.static_deflection import StaticDeflection
 from manipulator.teleop.jogger import Jogger
 
 JOG_SINGULARITIES = ('stop', 'slide')
@@ -42,14 +42,14 @@ class MachineFile:
 
 @dataclass(frozen=True)
 class Machine:
-    """What trajectory, ik and pose need to know of a machine.
+    """What the nodes trajectory, ik and pose need to know of a machine.
 
     frames are those that its user works in; kinematics and constraints are in the base frame,
-    unless the machine was made by `in_frames`. make_jogger makes what follows twists with this
-    machine, or with the same in other frames. sag is what the drives stay behind by, where that is
-    to be compensated. park (n,) are the joints at which the servos are switched on and off, None
-    where the file has no usable servos. jog_singularity: what a jog does where a singular posture
-    does not let it keep its direction.
+    unless the machine was made by `in_frames`. make_jogger makes the jogger of this machine, or of
+    the same in other frames. deflection: of the drives under load, where it is to be compensated.
+    park (n,) are the joints at which the servos are switched on and off, None where the file has
+    no usable servos. resolution (n,): the steps in which joints are commanded and reported, None
+    likewise. jog_singularity: one of JOG_SINGULARITIES.
     """
 
     kinematics: Kinematics
@@ -57,8 +57,9 @@ class Machine:
     motion: MotionLimits
     make_jogger: 'Callable[[Machine], Jogger]'
     frames: Frames = field(default_factory=Frames)
-    sag: Sag | None = None
+    deflection: StaticDeflection | None = None
     park: Array | None = None
+    resolution: Array | None = None
     jog_singularity: str = JOG_SINGULARITIES[0]
 
     def __post_init__(self) -> None:

@@ -1,13 +1,14 @@
-"""What every subscription does with a message: reject the stale, count the bad, note the good.
+"""The message filter of every subscription: rejects the stale, counts the refused.
 
-Old and reordered messages are told from fresh ones whose source has another clock: the offset
-between the source's clock and ours, as observed, is taken out of stamps. Deadlines are kept on
-receipt time alone.
+Old and reordered messages are distinguished from fresh ones of a source with another clock: the
+observed offset between the source's clock and ours is subtracted from stamps. Deadlines are kept
+on receipt time alone.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from manipulator.deadlines import MESSAGE_AGE
 from manipulator.errors import InvalidInput, ManipulatorError
 
 NOTABLE_OFFSET = 0.5
@@ -19,20 +20,20 @@ class StaleMessage(InvalidInput):
 
 
 CONFIRMED_AFTER, AGREEMENT = 0.05, 0.1
-"""Seconds between messages that tell of a clock that was set; how well their offsets agree."""
+"""Seconds between messages that indicate a clock that was set; how well their offsets agree."""
 
 
 @dataclass
-class StampGate:
-    """One source's clock, learnt from its messages; all times in seconds.
+class StampFilter:
+    """One source's clock, estimated from its messages; all times in seconds.
 
     The smallest (receipt − stamp) seen is the offset of a message without delay. Two refused
     messages that agree, 0.05 s apart or more, mean that the source's clock was set, or that
-    another source took over: its offset is learnt anew, and the second is admitted. What piled up
-    while this process was frozen comes all at once, and does not agree for so long.
+    another source took over: its offset is estimated again, and the second is admitted. Messages
+    that queued while this process was frozen come all at once, and do not agree for so long.
     """
 
-    maximum_age: float = 0.5
+    maximum_age: float = MESSAGE_AGE
     offset: float | None = None
     _last_stamp: float = float('-inf')
     _refused: tuple[float, float] | None = None
@@ -66,7 +67,7 @@ class StampGate:
 
 
 LONGEST_REASON = 400
-"""Characters of a refusal that are logged and kept: a message's own words may be megabytes."""
+"""Characters of a refusal that are logged and kept: the text of a message may be megabytes."""
 
 
 class MessageFilter:
@@ -82,7 +83,7 @@ class MessageFilter:
         self.last_refusal = ''
         self.last_good = float('-inf')
         self._clock_start = clock_start
-        self._gate = StampGate()
+        self._stamps = StampFilter()
 
     def take(
         self, stamp: float, accept: Callable[[], object], now: float
@@ -93,7 +94,7 @@ class MessageFilter:
         """
         try:
             if stamp:
-                self._gate.admit(stamp, now + self._clock_start)
+                self._stamps.admit(stamp, now + self._clock_start)
             accept()
         except ManipulatorError as error:
             self.refuse(error)
@@ -113,5 +114,5 @@ class MessageFilter:
     @property
     def clock_offset(self) -> float:
         """By how much the clock of the source is ahead of ours, where that is notable; else 0."""
-        offset = -(self._gate.offset or 0.0)
+        offset = -(self._stamps.offset or 0.0)
         return offset if abs(offset) > NOTABLE_OFFSET else 0.0

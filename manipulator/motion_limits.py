@@ -10,7 +10,7 @@ from manipulator.arrays import Array, frozen
 from manipulator.config import quantity
 
 BRAKING_SHARE = 0.3
-"""The part of each acceleration limit that plans leave for slowing down along their way."""
+"""The part of each acceleration limit that plans leave for braking along their path."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class MotionLimits:
 
     @property
     def for_plans(self) -> 'MotionLimits':
-        """The limits within which plans are made, so that any of them can be braked on its way."""
+        """The limits within which plans are made, so that each can be braked on its path."""
 
         def share(limit: Derivatives) -> Derivatives:
             return replace(limit, acceleration=(1.0 - BRAKING_SHARE) * limit.acceleration)

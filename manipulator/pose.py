@@ -48,10 +48,9 @@ class Pose:
         For inner loops: the caller must not have handed either array to anyone else.
         """
         pose = object.__new__(cls)
-        position.flags.writeable = False
-        rotation.flags.writeable = False
-        object.__setattr__(pose, 'position', position)
-        object.__setattr__(pose, 'rotation', rotation)
+        position.setflags(write=False)
+        rotation.setflags(write=False)
+        pose.__dict__.update(position=position, rotation=rotation)
         return pose
 
     @classmethod

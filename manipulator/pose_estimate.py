@@ -6,7 +6,7 @@ from manipulator.arrays import Array
 from manipulator.errors import NoSolution
 from manipulator.kinematics import ForwardSolution
 from manipulator.machine import Machine
-from manipulator.sag import settled
+from manipulator.static_deflection import deflected
 
 AFRESH = 'the last pose does not lead to the present one: afresh'
 
@@ -18,7 +18,7 @@ class PoseEstimate:
     """
 
     def __init__(self, machine: Machine, note: Callable[[str], object] = str) -> None:
-        """note: is told when the last pose did not lead to the present one."""
+        """note: is called when the last pose did not lead to the present one."""
         self.solution: ForwardSolution | None = None
         self._machine = machine
         self._note = note
@@ -33,7 +33,9 @@ class PoseEstimate:
         if joints is None:
             return None
         found = self.solution = self._warm(joints, near) or self._cold(joints)
-        self.solution = settled(self._machine.sag, self._machine.kinematics, joints, found)
+        self.solution = deflected(
+            self._machine.deflection, self._machine.kinematics, joints, found
+        )
         return self.solution
 
     def _warm(self, joints: Array, near: ForwardSolution | None) -> ForwardSolution | None:

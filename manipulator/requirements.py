@@ -1,4 +1,4 @@
-"""What to say when a library that only some commands need is not installed."""
+"""Messages for libraries that only some commands need, where they are not installed."""
 
 INSTALL = {
     'ruckig': 'python3 -m pip install ruckig',
@@ -17,7 +17,7 @@ INSTALL = {
 
 
 def missing(error: ModuleNotFoundError) -> str:
-    """One sentence with the way out; a module that is not ours to name is raised again."""
+    """One sentence with the remedy; the error of any other module is raised again."""
     name = (error.name or '').split('.')[0]
     if name not in INSTALL:
         raise error

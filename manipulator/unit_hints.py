@@ -1,4 +1,4 @@
-"""Numbers that look as if they were meant in another unit: the hint that a refusal ends with."""
+"""Numbers that were probably meant in another unit: the hint at the end of a refusal."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager

@@ -1,7 +1,7 @@
 """New values in the text of a YAML file, with every other character left as it was.
 
-Comments, order, spacing and quotes survive because the file is never written anew: PyYAML says
-from where to where each value stands, and only those characters are exchanged.
+Comments, order, spacing and quotes survive because the file is never rewritten: PyYAML knows
+the span of each value, and only those characters are replaced.
 """
 
 import re
@@ -69,7 +69,7 @@ def _node(root: Any, place: Place) -> Any:
 
 
 def _span(node: Any) -> tuple[int, int]:
-    """From where to where a value stands in the text, in characters."""
+    """The span of a value in the text, in characters."""
     if not isinstance(node, yaml.ScalarNode) and not node.flow_style:
         raise ConfigError([f'line {node.start_mark.line + 1}: a value over several lines'])
     return node.start_mark.index, node.end_mark.index

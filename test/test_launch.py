@@ -68,6 +68,7 @@ class Node:
 @dataclass(kw_only=True)
 class ExecuteProcess:
     cmd: list[str]
+    additional_env: dict[str, str]
     output: str
 
 
@@ -136,9 +137,9 @@ def test_arguments_are_those_of_the_document(kind):
     text = (ROOT / 'docs' / 'viewers.md').read_text()
     rows = re.findall(r'^\| `(\w+)` \| (\S*) \|', text.split('## ros2 launch')[1], re.MULTILINE)
     machine = {'hexapod': 'robocake', 'arm': 'arm_6r'}[kind]
-    told = dict(rows) | {'machine': machine, 'namespace': kind}
-    told['frame_prefix'] = ''
-    assert {a.name: a.default_value for a in declared} == told
+    reported = dict(rows) | {'machine': machine, 'namespace': kind}
+    reported['frame_prefix'] = ''
+    assert {a.name: a.default_value for a in declared} == reported
     assert all(a.description for a in declared)
 
 
@@ -194,7 +195,8 @@ def test_arguments_that_do_not_fit_start_nothing(chosen, error, reason):
 def test_chip_on_a_simulator_is_a_process_of_its_own():
     nodes = started('hexapod', port='simavr')
     (chip,) = (n for n in nodes if isinstance(n, ExecuteProcess))
-    assert chip.cmd
+    assert {'__ns:=/hexapod', 'machine:=robocake'} <= set(chip.cmd)
+    assert str(ROOT) in chip.additional_env['PYTHONPATH']
     assert {n.executable for n in nodes if n is not chip} == {MACHINE}
 
 

@@ -14,8 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.chain import Chain
-from arm_control.subproblems import perpendicular
+from arm_control.chain import JOINTS, Chain
 from manipulator.analysis.measurements import Parameter
 from manipulator.arrays import Array
 from manipulator.pose import Pose
@@ -79,7 +78,7 @@ def _of_link(chain: Chain, i: int) -> Iterator[LinkError]:
     arm = point - chain.points[i]
     arm = arm - (arm @ axis) * axis
     length = float(np.linalg.norm(arm))
-    normal = arm / length if length > COAXIAL else perpendicular(axis)
+    normal = arm / length if length > COAXIAL else _perpendicular(axis)
     yield LinkError(i + 1, 'length', normal, point)
     yield LinkError(i + 1, 'twist', normal, point)
     yield LinkError(i + 1, 'skew', np.cross(axis, normal), point)
@@ -108,7 +107,13 @@ def _list(numbers: Array, digits: int = POINT_DIGITS) -> str:
     return f'[{", ".join(str(float(np.round(n, digits) + 0.0)) for n in numbers)}]'
 
 
-JOINTS = 6
+def _perpendicular(axis: Array) -> Array:
+    """Some unit vector (3,) at a right angle to an axis."""
+    across: Array = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    result: Array = across / np.linalg.norm(across)
+    return result
+
+
 GROUPS = {'offset': 'lengths', 'length': 'lengths', 'twist': 'twists', 'skew': 'twists'}
 
 

@@ -1,4 +1,4 @@
-"""Our UR5's inverses, on the problems that the other libraries get."""
+"""Our inverses of the UR5, on the problems of the other libraries."""
 
 from bench.peers.arm_library import our_rows
 from bench.row import Row

@@ -3,10 +3,11 @@
 import numpy as np
 import pinocchio as pin
 
-from bench.peers.arm_library import ArmLibrary, compared
+from bench.peers.arm_library import ArmLibrary, compared, compared_without_closed_form
 from bench.peers.published_arms import links
 from bench.row import Row
 from manipulator.arrays import Array
+from manipulator.pose import Pose
 
 STEPS, TOLERANCE = 100, 1e-8
 
@@ -26,6 +27,10 @@ class PinocchioArm:
 
     def forward(self, joints: Array) -> Array:
         return self._placed(joints).homogeneous
+
+    def pose(self, joints: Array) -> Pose:
+        placed = self._placed(joints)
+        return Pose.unchecked(placed.translation.copy(), placed.rotation.copy())
 
     def jacobian(self, joints: Array) -> Array:
         frame = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
@@ -53,4 +58,5 @@ class PinocchioArm:
 def rows() -> list[Row]:
     arm = PinocchioArm('ur5')
     name = f'Pinocchio {pin.__version__}'
-    return compared(ArmLibrary(name, arm.forward, arm.jacobian, arm.inverse))
+    found = compared(ArmLibrary(name, arm.forward, arm.jacobian, arm.inverse, arm.pose))
+    return found + compared_without_closed_form(name, PinocchioArm('skew_puma').inverse)

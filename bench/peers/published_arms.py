@@ -26,7 +26,10 @@ PUMA560 = (  # P. Corke, B. Armstrong-Hélouvry, ICRA 1994
     (0.0, -QUARTER, 0.0),
     (0.0, 0.0, 0.0),
 )
-TABLES = {'ur5': UR5, 'puma560': PUMA560}
+SKEW_PUMA = (*PUMA560[:4], (0.01, -QUARTER, 0.0), PUMA560[5])
+"""No three axes meet, none but two are parallel: without a closed form."""
+
+TABLES = {'ur5': UR5, 'puma560': PUMA560, 'skew_puma': SKEW_PUMA}
 
 
 @dataclass(frozen=True)

@@ -107,10 +107,10 @@ def speed_rows(
     three_off = np.median([error(poses[k], stepped(theirs, angles[k], home)) for k in some])
     return [
         against('inverse', inverse, their_inverse, 0.5),
-        against('forward from home, until it rests', forward, to_rest, 0.15),
+        against('forward from home, until converged', forward, to_rest, 0.15),
         against(f'forward from home, their {OWN_STEPS} steps', forward, three),
         Row(
-            f'pose error: ours, theirs at rest, theirs after {OWN_STEPS} steps',
+            f'pose error: ours, theirs converged, theirs after {OWN_STEPS} steps',
             f'{ours_off:.0e} (worst), {rest_off:.0e}, {three_off:.0e} (medians) m or rad',
         ),
     ]
@@ -145,5 +145,5 @@ def honesty_rows(
     return [
         Row(f'{where}: theirs wrong', f'{percent * silent:.2f} %'),
         Row(f'{where}: ours wrong', f'{percent * wrong:.2f} %', '0 %', wrong == 0),
-        Row(f'{where}: ours refused, and said so', f'{percent * refused:.2f} %'),
+        Row(f'{where}: ours rejected', f'{percent * refused:.2f} %'),
     ]

@@ -5,19 +5,19 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from bridge.calibration import COUNTS_PER_US, Calibration
-from bridge.fake.board import Board
-from bridge.fake.board_courses import Solver
+from bridge.fake.board import AnyBoard, Board, MakeBoard
 from bridge.fake.board_faults import BoardFaults
 from bridge.fake.board_settings import BoardSettings
 from bridge.fake.fake_line import FakeLine
 from bridge.fake.faults import Faults
 from bridge.fake.plant import Plant
+from bridge.fake.program import CrankHexapod
 from bridge.fake.servo import Servos
 from bridge.fake.steppers import Steppers
 from bridge.protocol import ResetCause
@@ -34,7 +34,7 @@ class BoardMachine(Protocol):
     """What the thread steps: a FakeMachine, or what watches one."""
 
     @property
-    def board(self) -> Board:
+    def board(self) -> AnyBoard:
         """Its brain."""
 
     @property
@@ -49,25 +49,30 @@ class BoardMachine(Protocol):
 class FakeMachine:
     """Board and servos of one machine, before they are put on a line.
 
-    is_measured: the board has encoders and tells what they read.
+    is_measured: the board has encoders and reports what they read.
     """
 
-    board: Board
+    board: AnyBoard
     servos: Plant
     calibration: Calibration
     is_measured: bool = False
 
     @classmethod
     def from_config(
-        cls, config: BoardConfig, boot_s: float, hysteresis: float, solve: Solver | None = None
+        cls,
+        config: BoardConfig,
+        boot_s: float,
+        hysteresis: float,
+        hexapod: CrankHexapod | None = None,
+        make_board: MakeBoard = Board,
     ) -> 'FakeMachine':
-        """Unpowered at park; hysteresis in rad (or m); `solve` is what cycles are played by."""
+        """Unpowered at park; hysteresis in rad (or m); `hexapod` is what cycles are played by."""
         calibration = Calibration.from_config(config.servos)
         dead_band = COUNTS_PER_US * config.simulation.dead_band_us / np.abs(calibration.scale)
         drives = DRIVES[config.simulation.drives]
         servos = drives.at_rest(calibration.park, calibration.speed, dead_band, hysteresis)
-        settings = replace(BoardSettings.from_config(config, boot_s), solve=solve)
-        board = Board(settings, round(1000 * config.simulation.battery_v))
+        settings = BoardSettings.from_config(config, boot_s, hexapod)
+        board = make_board(settings, round(1000 * config.simulation.battery_v))
         return cls(board, servos, calibration, config.simulation.joints == 'measured')
 
     def step(self, dt: float, stuck_channel: int | None = None) -> None:
@@ -78,14 +83,14 @@ class FakeMachine:
             pulses[stuck_channel] = np.nan
         self.servos.step(self.calibration.positions(pulses), dt)
         if self.is_measured:
-            self.board.measured = self.calibration.nearest_counts(self.servos.positions)
+            self.board.measure(self.calibration.nearest_counts(self.servos.positions))
 
 
 class BoardThread(threading.Thread):
     """Steps the machine at 100 Hz and whenever bytes arrive.
 
-    Board and line are touched in this thread alone; `do` hands a wish into it. on_positions
-    hears the true joint positions 50 times a second, in this thread.
+    Board and line are touched in this thread alone; `do` hands a request into it. on_positions
+    receives the true joint positions 50 times a second, in this thread.
     """
 
     def __init__(
@@ -103,15 +108,15 @@ class BoardThread(threading.Thread):
         self._machine = machine
         self._line: FakeLine | None = line
         self._on_positions = on_positions
-        self._wishes: deque[Callable[[], None]] = deque()
+        self._requests: deque[Callable[[], None]] = deque()
         self._is_stopping = False
 
-    def do(self, wish: Callable[[], None]) -> None:
+    def do(self, request: Callable[[], None]) -> None:
         """Has it done before the next step."""
-        self._wishes.append(wish)
+        self._requests.append(request)
 
     def plug(self, line: FakeLine | None) -> None:
-        """Pulls the plug, and puts it into another line if there is one; a wish."""
+        """Pulls the plug, and puts it into another line if there is one; a request."""
         if self._line is not None:
             self._line.close()
         self._line = line
@@ -130,8 +135,8 @@ class BoardThread(threading.Thread):
         steps = 0
         while not self._is_stopping:
             has_input = self._wait(start + steps * STEP)
-            while self._wishes:
-                self._wishes.popleft()()
+            while self._requests:
+                self._requests.popleft()()
             now = time.monotonic()
             self._faults.advance(now)
             self._machine.step(min(now - last, LONGEST_STEP), self._faults.stuck_channel)
@@ -158,7 +163,7 @@ class BoardThread(threading.Thread):
         if self._line is None:
             return
         received = self._line.read() if has_input else b''
-        board.feed(self._faults.heard(received, now))
-        output = self._faults.said(output + board.take_output(), now)
+        board.feed(self._faults.to_board(received, now))
+        output = self._faults.to_host(output + board.take_output(), now)
         if output and not self.is_mute:
             self._line.write(output)

@@ -4,6 +4,9 @@ from typing import Protocol
 
 from manipulator.arrays import Array
 
+PLANTS = SERVO, MUJOCO = 'servo', 'mujoco'
+"""By name: each servo by itself, or the machine as rigid bodies."""
+
 
 class Plant(Protocol):
     """Positions in rad (or m), one a servo, in the calibration's order."""

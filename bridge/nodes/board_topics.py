@@ -7,7 +7,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-from bridge.driver import MachineState
+from bridge.driver import MachineReport
 from bridge.link import Ticket
 from bridge.link_monitor import JointTable, Latencies, MachineStatus
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, status
@@ -18,7 +18,7 @@ WARN_AGAIN_AFTER = 2.0
 
 
 class BoardTopics:
-    """The driver's listener; in the link's thread alone."""
+    """The driver's listener; in the link's thread only."""
 
     def __init__(self, node: Node, names: Sequence[str], port: str) -> None:
         """`names` are those of the calibration, `port` what `machine_state` names."""
@@ -40,7 +40,7 @@ class BoardTopics:
         message.effort = [0.0] * len(known)
         self._joint_states.publish(message)
 
-    def on_machine_state(self, state: MachineState) -> None:
+    def on_machine_state(self, state: MachineReport) -> None:
         """Publishes it when it has changed."""
         current = state.status
         values: dict[str, object] = {
@@ -55,10 +55,10 @@ class BoardTopics:
             return
         if self._state is None or self._state[0] != current:
             reason = f' ({current.reason})' if current.reason else ''
-            self._node.get_logger().info(f'machine {current.word}{reason}')
+            self._node.get_logger().info(f'machine {current.state}{reason}')
         self._state = current, values
         name = f'{self._node.get_name()}: machine state'
-        self._message = status(LEVELS[current.level], name, current.word, values)
+        self._message = status(LEVELS[current.level], name, current.state, values)
         self._states.publish(self._message)
 
     def on_trouble(self, text: str) -> None:

@@ -24,7 +24,7 @@ AXES = 'x, y, z, roll, pitch, yaw'
 ANSWER_WITHIN = 5.0
 MOST_BYTES = 100_000
 """Of a joint_table: twice what a board holds, and decoded in 6 ms."""
-BUSY = 'another upload is under way'
+BUSY = 'another upload is in progress'
 
 
 class ProgramTopics:

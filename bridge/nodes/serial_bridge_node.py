@@ -17,13 +17,14 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from bridge.calibration import Calibration
-from bridge.driver import Asked, BoardDriver
+from bridge.driver import BoardDriver, Request
 from bridge.link_thread import LinkThread, SerialPort
 from bridge.nodes.board_topics import LEVELS, BoardTopics
 from bridge.nodes.program_topics import ProgramTopics
 from bridge.nodes.stop_node import StopNode
 from bridge.servo_config import BoardConfig
 from bridge.stop_socket import StopSocket, stop_address
+from manipulator.deadlines import STATE_PERIOD
 from manipulator.errors import ManipulatorError
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.graph_check import received_by
@@ -34,14 +35,12 @@ from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.subscriptions import decoded
 
-HEARTBEAT = 0.5
-"""Seconds between two `machine_state`; who needs it gives up after three (trajectory/pilot.py)."""
 MOST_BYTES = 10_000
 """Of a joint_command: that of seven joints has less than 500."""
 
 
 class SerialBridge(Node):
-    """`serial_bridge`; its topics, services and parameters stand in docs/interfaces.md."""
+    """`serial_bridge`; its topics, services and parameters are in docs/interfaces.md."""
 
     def __init__(self, board_config: Callable[[str], BoardConfig]) -> None:
         super().__init__('serial_bridge')
@@ -50,7 +49,7 @@ class SerialBridge(Node):
             self, 'port', '/dev/ttyACM0', 'serial port of the board; /dev/serial/by-id/… is best'
         )
         baud = declare(
-            self, 'baud', 0, 'bits per second; 0: the machine file says', (0, 4_000_000)
+            self, 'baud', 0, 'bits per second; 0: that of the machine file', (0, 4_000_000)
         )
         config = board_config(machine)
         line = dataclasses.replace(config.link, baud=baud or config.link.baud)
@@ -77,7 +76,7 @@ class SerialBridge(Node):
         self._stop_node.start()
 
     def close(self) -> None:
-        """Gives the port back; the board's deadline does what the machine file says."""
+        """Closes the port; the board's deadline then has the effect set by `on_link_loss`."""
         self._stop_node.close()
         self._link.close()
         self._stop_socket.close()
@@ -87,7 +86,7 @@ class SerialBridge(Node):
         self.create_subscription(Float64, 'gripper', self._on_gripper, COMMAND)
         create_late_service(self, Trigger, '~/clear_fault', self._on_clear_fault)
         create_late_service(self, SetBool, '~/enable', self._on_enable)
-        self._heartbeat = SteadyTimer(self, HEARTBEAT, lambda: self._link.post(self._beat))
+        self._heartbeat = SteadyTimer(self, STATE_PERIOD, lambda: self._link.post(self._beat))
         received_beside = received_by(self._stop_node)
         self._diagnostics = Diagnostics(
             self, self._report, ('joint_command',), list(received_beside)
@@ -111,15 +110,15 @@ class SerialBridge(Node):
     def _on_enable(self, call: Call) -> None:
         self._answer(call, partial(self._driver.enable, call.request.data))
 
-    def _answer(self, call: Call, ask: Callable[[], Asked]) -> None:
-        """Has it asked in the link's thread, and answered there as soon as the board has."""
+    def _answer(self, call: Call, send: Callable[[], Request]) -> None:
+        """Sends the request in the link's thread, and answers there as soon as the board has."""
 
         def begin() -> None:
-            asked = ask()
-            asked.future.add_done_callback(lambda done: answer(asked))
+            request = send()
+            request.future.add_done_callback(lambda done: answer(request))
 
-        def answer(asked: Asked) -> None:
-            call.response.success, call.response.message = self._driver.answer(asked)
+        def answer(request: Request) -> None:
+            call.response.success, call.response.message = self._driver.answer(request)
             call.send()
 
         self._link.post(begin)
@@ -167,7 +166,7 @@ class SerialBridge(Node):
         self._reported = self._report_of_link()
 
     def _report_of_link(self) -> Report:
-        monitor, gate = self._driver.monitor, self._driver.gate
+        monitor, validator = self._driver.monitor, self._driver.validator
         current = monitor.status
         age = time.monotonic() - self._command_at if self._command_at is not None else None
         values: dict[str, object] = {
@@ -176,6 +175,6 @@ class SerialBridge(Node):
             'last_command_age_s': 'none yet' if age is None else age,
             **monitor.report(),
         }
-        if gate.has_notable_offset:
-            values['joint_command_clock_offset_s'] = gate.clock_offset
-        return LEVELS[current.level], current.reason or current.word, values
+        if validator.has_notable_offset:
+            values['joint_command_clock_offset_s'] = validator.clock_offset
+        return LEVELS[current.level], current.reason or current.state, values

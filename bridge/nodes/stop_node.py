@@ -22,7 +22,7 @@ from manipulator.nodes.qos import EVERY_WORD
 class StopNode(Node):
     """`emergency_stop` and `~/stop`, as a node beside its `owner`; spun from `start` to `close`.
 
-    Where its thread dies of an error the process ends: it would look alive, and obey no STOP.
+    Where its thread dies of an error the process ends: it would seem alive, and obey no STOP.
     """
 
     def __init__(

@@ -1,21 +1,14 @@
 """The simulated chip behind the fake board's three methods: feed, step, take_output."""
 
-import functools
-from pathlib import Path
-
 import numpy as np
 
-from bridge.calibration import Calibration
 from bridge.fake.board_settings import BoardSettings
 from bridge.protocol import ResetCause
-from bridge.servo_config import BoardConfig
 from firmware.simulator.chip import CLOCK_HZ, CYCLES_A_COUNT, Chip
-from hexarm import machines
 from hexarm.board import build as firmware_build
 from hexarm.board.header import header
-from hexarm.board.kinematics import WITHOUT, kinematics_of
+from hexarm.board.table import flash_text
 
-BAUD = 250_000
 CHANNELS = 8
 OFF_AFTER = 21 * CLOCK_HZ // 1000
 """A channel without a pulse for so long is off: a period is 20 ms."""
@@ -26,13 +19,9 @@ DIVIDER = 2
 class SimulatedBoard:
     """The firmware for these settings, on a chip, its boot loader's silence included."""
 
-    def __init__(
-        self, settings: BoardSettings, battery_mv: int = 7600, table: Path | None = None
-    ) -> None:
-        kinematics = WITHOUT if settings.solve is None else _kinematics()
-        self.program = firmware_build.firmware(header(settings, BAUD, 'a test', kinematics), table)
-        self.chip = Chip(firmware_build.simulator() / 'chip.so', self.program, BAUD)
+    def __init__(self, settings: BoardSettings, battery_mv: int = 7600) -> None:
         self.settings = settings
+        self._flash()
         self.battery_mv = battery_mv
         self.is_stop_open = self.is_start_closed = False
         self.reset(ResetCause.POWER_ON)
@@ -85,11 +74,16 @@ class SimulatedBoard:
 
     def reset(self, cause: ResetCause) -> None:
         """Starts again, after the boot loader's silence."""
+        if self.settings is not self._flashed:
+            self._flash()
         self._boot_left = self.settings.boot_us * CLOCK_HZ // 1_000_000
         self._cause = cause
         self._widths = np.zeros(len(self.settings.count_ranges), np.int64)
         self._risen = self._widths.copy()
         self.chip.reset(cause)
+
+    def measure(self, counts: tuple[int, ...]) -> None:
+        """Nothing: the chip has no encoders, and reports what it puts out."""
 
     def feed(self, received: bytes) -> None:
         """Bytes from the host; during the boot they are lost."""
@@ -108,6 +102,14 @@ class SimulatedBoard:
         """The bytes for the host since the last call."""
         return self.chip.take()
 
+    def _flash(self) -> None:
+        """Another program for other settings, on a chip that was never used."""
+        table = _flash_table(self.settings)
+        self.program = firmware_build.firmware(header(self.settings), table)
+        library = firmware_build.simulator() / 'chip.so'
+        self.chip = Chip(library, self.program, self.settings.baud)
+        self._flashed = self.settings
+
     def _read_edges(self) -> None:
         for cycle, channel, level in self.chip.edges().tolist():
             if level:
@@ -116,8 +118,7 @@ class SimulatedBoard:
                 self._widths[channel] = cycle - self._risen[channel]
 
 
-@functools.cache
-def _kinematics() -> dict[str, object]:
-    """RoboCake's: the settings say the rest."""
-    config = BoardConfig.from_machine(machines.read('robocake'))
-    return kinematics_of(machines.load('robocake'), Calibration.from_config(config.servos))
+def _flash_table(settings: BoardSettings) -> str:
+    if settings.table is None:
+        return ''
+    return flash_text(settings.table, 'a test', settings.can_loop)

@@ -7,11 +7,17 @@
 
 enum { CLOCK_HZ = 16000000, CHANNELS = 8, LOG = 1 << 18 };
 
-/* What a servo pin's callback is told: which pin of which chip. */
+/* What a servo pin's callback receives: which pin of which chip. */
 typedef struct {
     Chip *chip;
     uint8_t channel;
 } Tap;
+
+/* What libsimavr does when a compare register is written. */
+typedef struct {
+    avr_io_write_t write;
+    void *param;
+} Compare;
 
 struct Chip {
     avr_t *avr;
@@ -24,6 +30,7 @@ struct Chip {
     Edge *edges;
     uint32_t edge_count;
     Tap taps[CHANNELS];
+    Compare compares[CHANNELS];
     uint8_t level[CHANNELS];
     uint32_t lost_bytes, watchdog_resets;
     uint32_t battery_pin_mv;

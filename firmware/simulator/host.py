@@ -1,7 +1,5 @@
 """A host that talks to the simulated board, and looks at its servo pins."""
 
-from pathlib import Path
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,8 +27,8 @@ Cycles = NDArray[np.int64]
 class Host:
     """Talks to one board of six joints; times in seconds."""
 
-    def __init__(self, settings: BoardSettings = SETTINGS, table: Path | None = None) -> None:
-        self.board = SimulatedBoard(settings, table=table)
+    def __init__(self, settings: BoardSettings = SETTINGS) -> None:
+        self.board = SimulatedBoard(settings)
         self.chip = self.board.chip
         self.reader = FrameReader()
         self.sequence = 0
@@ -51,7 +49,7 @@ class Host:
         since = (self.chip.cycle - self._risen) % PERIOD
         self.run((CYCLES_A_COUNT * count - since) % PERIOD / CLOCK_HZ)
 
-    def say(self, message: Setpoint | Command) -> int:
+    def send(self, message: Setpoint | Command) -> int:
         """Under the next sequence number, which is the result."""
         self.sequence = (self.sequence + 1) & 0xFFFF
         self.board.feed(encode(message, self.sequence))
@@ -59,7 +57,7 @@ class Host:
 
     def ask(self, message: Command) -> Result:
         """The board's answer."""
-        sequence = self.say(message)
+        sequence = self.send(message)
         answers = [m for m in self.run(0.04) if isinstance(m, Ack) and m.sequence == sequence]
         return answers[0].result
 

@@ -9,11 +9,16 @@
 
 enum { GPIOR0_ADDRESS = 0x3E, MARKS = 255 };
 
-/* The pins of servo.c's channels. */
+/* The channels of pulses.c: their pins, and the low bytes of their compare registers. */
 static const struct {
     char port;
     uint8_t bit;
-} PINS[CHANNELS] = {{'H', 3}, {'H', 4}, {'H', 5}, {'L', 3}, {'L', 4}, {'L', 5}, {'B', 5}, {'B', 6}};
+    uint16_t compare;
+} PINS[CHANNELS] = {
+    {'H', 3, 0xA8}, {'H', 4, 0xAA}, {'H', 5, 0xAC}, /* OCR4A to C */
+    {'L', 3, 0x128}, {'L', 4, 0x12A}, {'L', 5, 0x12C}, /* OCR5A to C */
+    {'B', 5, 0x88}, {'B', 6, 0x8A}, /* OCR1A, B */
+};
 
 static void on_pin(Chip *chip, uint8_t channel, uint8_t level)
 {
@@ -40,6 +45,24 @@ static void on_mark(avr_t *avr, avr_io_addr_t address, uint8_t value, void *para
         chip->edges[chip->edge_count++] = (Edge){avr->cycle, MARKS, value};
 }
 
+/* libsimavr takes a compare value for no news where only its high byte has changed: let the low one
+ * change as well, and change back. */
+static void on_compare(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    const Compare *compare = param;
+    compare->write(avr, address, value ^ 1, compare->param);
+    compare->write(avr, address, value, compare->param);
+}
+
+static void watch_compare(Chip *chip, uint8_t channel)
+{
+    Compare *compare = &chip->compares[channel];
+    uint16_t io = AVR_DATA_TO_IO(PINS[channel].compare);
+    *compare = (Compare){chip->avr->io[io].w.c, chip->avr->io[io].w.param};
+    chip->avr->io[io].w.c = on_compare;
+    chip->avr->io[io].w.param = compare;
+}
+
 void pins_connect(Chip *chip)
 {
     chip->edges = malloc(LOG * sizeof *chip->edges);
@@ -50,6 +73,7 @@ void pins_connect(Chip *chip)
         avr_irq_t *irq = avr_io_getirq(chip->avr, port, PINS[channel].bit);
         chip->taps[channel] = (Tap){chip, channel};
         avr_irq_register_notify(irq, on_servo_pin, &chip->taps[channel]);
+        watch_compare(chip, channel);
     }
 }
 

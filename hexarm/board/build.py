@@ -12,9 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from bridge.servo_config import BoardConfig
-from hexarm import machines
-from hexarm.board.header import header_of
+from hexarm.board.header import header, settings_of
 from manipulator.errors import ManipulatorError
 
 FIRMWARE = Path(__file__).resolve().parents[2] / 'firmware'
@@ -45,35 +43,27 @@ def missing_tools() -> list[str]:
 
 
 def simulator() -> Path:
-    """The folder of chip.so and pty_chip, up to date."""
+    """The folder of chip.so, up to date."""
     with _alone():
         _make('simulator')
     return FIRMWARE / 'build' / 'simulator'
 
 
-def firmware(header: str, table: Path | None = None) -> Path:
-    """The program for a machine.h, up to date; `table` is a CSV for robocake's flash."""
-    if table is None:
-        return _built(header, 'firmware.elf')
-    return _built(header + f'/* {table.read_text()} */\n', 'firmware.elf', f'TABLE={table}')
+def firmware(header: str, flash_table: str = '') -> Path:
+    """The program for a parameters.h, and a flash_table.h if it has one, up to date."""
+    return _built('firmware.elf', {'parameters.h': header, 'flash_table.h': flash_table})
 
 
 def bench(header: str) -> Path:
     """The program that marks how long the kinematics take."""
-    return _built(header, 'bench.elf')
+    return _built('bench.elf', {'parameters.h': header})
 
 
-def host_library(header: str) -> Path:
-    """The parts of that program that know no hardware, as a library for this computer."""
-    return _built(header, 'host.so')
-
-
-def chip_process(machine: str, link: Path) -> tuple[str, ...]:
-    """The command that runs a machine's board in real time, its port at `link`."""
-    config = BoardConfig.from_machine(machines.read(machine), str(machines.find(machine)))
-    battery_mv = round(1000 * config.simulation.battery_v)
-    program, pty_chip = firmware(header_of(machine)), simulator() / 'pty_chip'
-    return str(pty_chip), str(program), str(config.link.baud), str(link), str(battery_mv)
+def chip_command(machine: str) -> tuple[str, ...]:
+    """What runs fake_hardware with a machine's board on a simulated chip; builds both first."""
+    firmware(header(settings_of(machine)))
+    simulator()
+    return sys.executable, '-m', 'firmware.simulator.node'
 
 
 def step_times() -> dict[str, float]:
@@ -89,22 +79,27 @@ def step_times() -> dict[str, float]:
 
 def sizes(program: Path) -> Sizes:
     """How much of the chip a program takes."""
-    command = ['avr-size', str(program)]
+    command = ['avr-size', '-A', str(program)]
     table = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    text, initialised, zeroed = (int(number) for number in table.splitlines()[1].split()[:3])
-    return Sizes(text + initialised, initialised + zeroed)
+    rows = (line.split() for line in table.splitlines() if line.startswith('.'))
+    size = {name: int(number) for name, number, _ in rows}
+    variables = size['.bss'] + size.get('.noinit', 0)
+    return Sizes(size['.text'] + size['.data'], size['.data'] + variables)
 
 
-def _built(header: str, what: str, *words: str) -> Path:
-    """A file made with this header, in a folder of its own: machines never mix."""
-    out = f'build/{hashlib.sha256(header.encode()).hexdigest()[:12]}'
-    machine_h = FIRMWARE / out / 'machine.h'
+def _built(what: str, headers: dict[str, str]) -> Path:
+    """A file made with these headers, in a folder of its own: machines never mix."""
+    headers = {name: text for name, text in headers.items() if text}
+    out = f'build/{hashlib.sha256(repr(headers).encode()).hexdigest()[:12]}'
+    words = ['TABLE=given'] if 'flash_table.h' in headers else []
     with _alone():
-        if not machine_h.exists():
-            machine_h.parent.mkdir(parents=True, exist_ok=True)
-            machine_h.write_text(header)
-        # -o: the header is as it shall be, whatever stands in config/.
-        _make(f'OUT={out}', '-o', f'{out}/machine.h', *words, f'{out}/{what}')
+        for name, text in headers.items():
+            path = FIRMWARE / out / name
+            if not path.exists():
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text)
+            words += ['-o', f'{out}/{name}']  # as it shall be, whatever stands in config/
+        _make(f'OUT={out}', *words, f'{out}/{what}')
     return FIRMWARE / out / what
 
 

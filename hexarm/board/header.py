@@ -1,24 +1,24 @@
 """`hexarm firmware-header`: what the board's program takes from a machine file, as a C header."""
 
 import argparse
-from collections.abc import Iterable, Mapping
+import ctypes
 from pathlib import Path
 
 from bridge.calibration import Calibration
-from bridge.fake.board_modes import PULSE_PERIOD_US
 from bridge.fake.board_settings import BoardSettings
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.board.kinematics import WITHOUT, kinematics_of
+from hexarm.board.kinematics import crank_hexapod
 from hexarm.board.table import flash_header, read_table
 from manipulator.errors import ConfigError
 
 WIDEST_COUNT = 36_000
-"""18 ms: a wider pulse would still be under way when the board prepares the next one."""
+"""18 ms: a wider pulse would still be in progress when the board prepares the next one."""
 BAUD_STEP, WORST_BAUD = 2_000_000, 0.025
 """Bits per second at the chip's fastest; 115200 is 2.1 % off, and still understood."""
 HIGHEST_BATTERY_MV = 9_990
 BOOT_S = 0.0
+A_MACHINE = "a machine's settings"
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -30,7 +30,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Prints machine.h, or flash_table.h where a table is given."""
+    """Prints parameters.h, or flash_table.h where a table is given."""
     if arguments.table is None:
         print(header_of(arguments.machine), end='')
     else:
@@ -41,41 +41,47 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def header_of(machine: str) -> str:
-    """machine.h of a machine file; ConfigError where the machine does not fit the board."""
+    """parameters.h of a machine file; ConfigError where the machine does not fit the board."""
+    return header(settings_of(machine), machines.find(machine).name)
+
+
+def settings_of(machine: str) -> BoardSettings:
+    """What the board has from a machine file; it starts at once."""
     config = _board_config(machine)
     calibration = Calibration.from_config(config.servos)
-    kinematics = kinematics_of(machines.load(machine), calibration)
-    settings = BoardSettings.from_config(config, BOOT_S)
-    return header(settings, config.link.baud, machines.find(machine).name, kinematics)
+    hexapod = crank_hexapod(machines.load(machine), calibration)
+    return BoardSettings.from_config(config, BOOT_S, hexapod)
 
 
 def _board_config(machine: str) -> BoardConfig:
     return BoardConfig.from_machine(machines.read(machine), str(machines.find(machine)))
 
 
-def header(
-    settings: BoardSettings, baud: int, name: str, kinematics: Mapping[str, object] = WITHOUT
-) -> str:
-    """machine.h; counts are half microseconds of pulse, by channel."""
+def header(settings: BoardSettings, name: str = A_MACHINE) -> str:
+    """parameters.h: the program's structure of its machine (firmware/core/machine.h)."""
     _refuse_wide_pulses(settings)
-    _refuse_baud(baud)
+    _refuse_baud(settings.baud)
     _refuse_battery(settings)
-    lows, highs = zip(*settings.count_ranges, strict=True)
-    steps = (f'{speed * PULSE_PERIOD_US * 1e-6:.8e}f' for speed in settings.count_speeds)
-    definitions = {
-        'JOINT_COUNT': len(lows),
-        'BAUD': f'{baud}UL',
-        'LOWEST_COUNTS': _row(lows),
-        'HIGHEST_COUNTS': _row(highs),
-        'STEP_COUNTS': _row(steps),
-        'ARM_INTERVAL_MS': settings.arm_interval_us // 1000,
-        'MINIMUM_BATTERY_MV': settings.minimum_battery_mv,
-        'RELEASE_ON_LINK_LOSS': int(settings.on_link_loss == 'release'),
-        **kinematics,
-    }
-    lines = [f'#define {key} {value}' for key, value in definitions.items()]
     top = f'/* Made by `hexarm firmware-header` from {name}: change that file instead. */'
-    return '\n'.join([top, '#pragma once', '', *lines, ''])
+    fields = ''.join(f'    {field}, \\\n' for field in _fields(settings.machine))
+    return f'{top}\n#pragma once\n\n#define MACHINE_PARAMETERS {{ \\\n{fields}}}\n'
+
+
+def _fields(structure: ctypes.Structure) -> list[str]:
+    """Each field by its name, so that the compiler notices one that is called otherwise."""
+    names = (field[0] for field in structure._fields_)
+    return [f'.{name} = {_initialiser(getattr(structure, name))}' for name in names]
+
+
+def _initialiser(value: object) -> str:
+    """In C; floats to the last bit."""
+    if isinstance(value, ctypes.Structure):
+        return f'{{{", ".join(_fields(value))}}}'
+    if isinstance(value, ctypes.Array):
+        return f'{{{", ".join(map(_initialiser, value))}}}'
+    if isinstance(value, float):
+        return f'{value:.9e}f'
+    return str(value).lower()
 
 
 def _refuse_wide_pulses(settings: BoardSettings) -> None:
@@ -105,7 +111,3 @@ def _refuse_battery(settings: BoardSettings) -> None:
                 f'measures below {HIGHEST_BATTERY_MV / 1000:g} V and would never arm'
             ]
         )
-
-
-def _row(values: Iterable[object]) -> str:
-    return f'{{{", ".join(map(str, values))}}}'

@@ -5,18 +5,18 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from bridge.calibration import Calibration
+from bridge.fake.board import Board, MakeBoard
 from bridge.fake.board_thread import FakeMachine
-from bridge.fake.plant import Plant
+from bridge.fake.plant import PLANTS, SERVO, Plant
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.board.solver import board_solver
+from hexarm.board.kinematics import crank_hexapod
 from hexarm.simulation.model import mechanism
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.formatting import shown
 
 TELL_EVERY = 10.0
-PLANTS = ('servo', 'mujoco')
 
 
 def fake_machine(
@@ -26,16 +26,16 @@ def fake_machine(
     hysteresis: float,
     plant: str,
     tell: Callable[[str], object],
+    make_board: MakeBoard = Board,
 ) -> FakeMachine:
     """The fake machine of a file; `tell` receives the real-time factor of a simulated plant.
 
     Hysteresis in rad (or m). Raises InvalidInput for another plant than PLANTS, ConfigError where
     the machine file has no masses for MuJoCo.
     """
-    solve = board_solver(machines.load(name), Calibration.from_config(config.servos))
-    return _with_plant(
-        plant, name, FakeMachine.from_config(config, boot_s, hysteresis, solve), tell
-    )
+    hexapod = crank_hexapod(machines.load(name), Calibration.from_config(config.servos))
+    machine = FakeMachine.from_config(config, boot_s, hysteresis, hexapod, make_board)
+    return _with_plant(plant, name, machine, tell)
 
 
 def _with_plant(
@@ -43,7 +43,7 @@ def _with_plant(
 ) -> FakeMachine:
     if kind not in PLANTS:
         raise InvalidInput(f'parameter plant: {shown(kind)} is not one of {list(PLANTS)}')
-    if kind == 'servo':
+    if kind == SERVO:
         return machine
     from hexarm.simulation.plant import MujocoPlant  # noqa: PLC0415 (needs mujoco)
 

@@ -55,13 +55,19 @@ def flash_header(table: CountTable, name: str, calibration: Calibration) -> str:
         problem = _too_fast(before, after, table.step_ms, calibration)
         if problem:
             raise ConfigError([f'row {k} to {k + 1}: {problem}'], name)
-    loops = not _too_fast(table.rows[-1], table.rows[0], table.step_ms, calibration)
+    can_loop = not _too_fast(table.rows[-1], table.rows[0], table.step_ms, calibration)
+    return flash_text(table, name, can_loop)
+
+
+def flash_text(table: CountTable, name: str, can_loop: bool) -> str:
+    """The same of a table that is known to fit."""
     rows = '\n'.join(f'    {_braces(row)}, \\' for row in table.rows)
     return (
         f'/* Made by `hexarm firmware-header --table` from {name}. */\n#pragma once\n\n'
         f'#define FLASH_TABLE_ROWS {len(table.rows)}\n'
+        f'#define FLASH_TABLE_JOINTS {len(table.rows[0])}\n'
         f'#define FLASH_TABLE_STEP_MS {table.step_ms}\n'
-        f'#define FLASH_TABLE_LOOPS {int(loops)}\n'
+        f'#define FLASH_TABLE_LOOPS {int(can_loop)}\n'
         f'#define FLASH_TABLE {{ \\\n{rows}\n}}\n'
     )
 

@@ -1,1 +1,1 @@
-"""What stands behind `hexarm calibrate`: screens, files and the serial line."""
+"""The parts of `hexarm calibrate`: screens, files and the serial line."""

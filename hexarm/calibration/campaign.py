@@ -73,9 +73,9 @@ class Campaign:
         free |= set() if are_frames_known else {'device', 'marker'}
         measured = Measurements(self.joints, seen.moved(noise))
         found = identify(self.model, measured, NOISE, self.poses, free)
-        truth, told, plain = self._unseen(true, found, frames)
+        truth, predicted, plain = self._unseen(true, found, frames)
         law = self._law(found)
-        return Run(_rms(truth - plain), _rms(truth - told), law, found)
+        return Run(_rms(truth - plain), _rms(truth - predicted), law, found)
 
     def _unseen(self, true: Array, found: Identification, frames: DeviceFrames) -> list[Array]:
         """Positions of the marker in the device's frame: true, identified, by the file."""
@@ -88,8 +88,8 @@ class Campaign:
             raise NoSolution(f'closes at {len(kept)} of {len(self.unseen_joints)} poses only')
         joints, near = self.unseen_joints[kept], self.unseen[kept]
         truth = self.model.predict(true, joints, near)
-        told = self.model.predict(found.model_values, joints, near)
-        seen = (frames.seen(truth), found.frames.seen(told), frames.seen(near))
+        predicted = self.model.predict(found.model_values, joints, near)
+        seen = (frames.seen(truth), found.frames.seen(predicted), frames.seen(near))
         return [pose.position for pose in seen]
 
     def _law(self, found: Identification) -> Array:

@@ -47,9 +47,9 @@ def add_parser(parts: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> 
     """Declares the part."""
     parser = parts.add_parser('geometry', help='joints, lengths and zeros from measured poses')
     add_machine(parser)
-    parser.add_argument('measurements', metavar='CSV', help='docs/calibration.md says what is in')
+    parser.add_argument('measurements', metavar='CSV', help='see docs/calibration.md')
     parser.add_argument('--output', metavar='FILE', help='write a copy instead of MACHINE')
-    parser.add_argument('--dry-run', action='store_true', help='only say what was found')
+    parser.add_argument('--dry-run', action='store_true', help='only print the result')
     parser.add_argument(
         '--free', nargs='+', metavar='GROUP',
         help='what is sought (default: all that the machine has): anchors, joints, cranks, rods, '
@@ -65,7 +65,7 @@ def add_parser(parts: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> 
 
 
 def answer(arguments: argparse.Namespace) -> Answer:
-    """What was found, in words and numbers; written unless that is not wanted."""
+    """Prints the result, and writes it unless --dry-run is given."""
     writer = None if arguments.dry_run else MachineWriter(arguments.machine, arguments.output)
     file, machine = read(arguments.machine), load(arguments.machine)
     kinematics = machine.kinematics
@@ -94,7 +94,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
 
 
 def centres(file: MachineFile, names: tuple[str, ...], offsets: Array) -> dict[Place, str]:
-    """The servos' centres, in the file's unit, where each stands by its offset (rad or m)."""
+    """The servos' centres, in the file's unit, each moved by its offset (rad or m)."""
     found: dict[Place, str] = {}
     servos = BoardConfig.from_machine(file).servos.joints
     by_name = {servo.name: (i, servo) for i, servo in enumerate(servos)}
@@ -111,7 +111,7 @@ def centres(file: MachineFile, names: tuple[str, ...], offsets: Array) -> dict[P
 
 
 def _nominal(kinematics: Kinematics, table: Measurements) -> Pose:
-    """Where the machine of the file stands with the commanded joints."""
+    """The pose of the file's machine with the commanded joints."""
     poses = []
     for row, joints in enumerate(table.joints, start=1):
         try:

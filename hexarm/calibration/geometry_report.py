@@ -93,7 +93,7 @@ def _warnings(found: Identification, noise: Noise, free: int) -> list[str]:
         worst = int(np.argmax((weighted**2).sum(axis=1))) + 1
         lines.append(
             f'  the errors that are left are {ratio:.1f} times the noise (worst: measured pose '
-            f'{worst}): play in the joints, a mistake in a row, or more noise than was said'
+            f'{worst}): play in the joints, a mistake in a row, or more noise than given'
         )
     return lines
 

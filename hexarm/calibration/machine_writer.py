@@ -12,7 +12,8 @@ from typing import Protocol
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.identification.arm_model import JOINTS, ArmModel
+from arm_control.chain import JOINTS
+from arm_control.identification.arm_model import ArmModel
 from arm_control.identification.arm_model import geometry_lines as arm_lines
 from hexapod_control.identification.leg_model import LegModel, Tolerances
 from hexapod_control.identification.models import geometry_lines, model_of
@@ -27,7 +28,7 @@ from manipulator.machine import Machine
 from manipulator.pose import Pose
 
 SHARE_OF_RANGE = 0.8
-"""Of an arm's joint ranges: near their ends a joint may stand at its stop."""
+"""Of an arm's joint ranges: near their ends a joint may be at its stop."""
 
 
 class MachineModel(Model, Protocol):
@@ -58,7 +59,7 @@ def random_poses(
 ) -> tuple[Array, Pose]:
     """Joints (count, m) and poses over the whole workspace.
 
-    Of an arm those above its base plane; where it would touch itself or a table nobody knows.
+    Of an arm those above its base plane; where it would touch itself or a table is unknown.
     """
     kinematics = machine.kinematics
     if not isinstance(kinematics, SerialArm):
@@ -76,7 +77,7 @@ class MachineWriter:
     """The file that a calibration reads, and the one that it writes to."""
 
     def __init__(self, machine: str, output: str | None) -> None:
-        """ConfigError where it could not be written later: said before anybody does any work."""
+        """ConfigError where it could not be written later: checked before any work is done."""
         self.source = find(machine).resolve()
         self.target = Path(output).expanduser() if output else self.source
         self.text = text_of(self.source)
@@ -91,16 +92,16 @@ class MachineWriter:
             raise ConfigError([f'{self.target} exists already: it is not overwritten'])
         folder = self.target.parent
         if not folder.is_dir():
-            raise ConfigError([f'{folder} is no folder'])
+            raise ConfigError([f'{folder} is not a folder'])
         if not os.access(folder, os.W_OK) or (
             output is None and not os.access(self.target, os.W_OK)
         ):
             raise ConfigError([f'{self.target} cannot be written: name another with --output'])
 
     def write(self, text: str) -> list[str]:
-        """Puts the new text in place at once; returns what `hexarm check` would say of it.
+        """Puts the new text in place at once; returns the findings of `hexarm check`.
 
-        ConfigError where somebody else has changed the file meanwhile.
+        ConfigError where the file was changed meanwhile.
         """
         if text_of(self.source) != self.text:
             raise ConfigError([f'{self.source} was changed meanwhile: nothing was written'])

@@ -1,6 +1,6 @@
 """`hexarm calibrate poses MACHINE`: which poses to measure, as a table to be filled in.
 
-CSV files of commanded joints and measured poses: what stands in which column, in which unit.
+CSV files of commanded joints and measured poses: the columns and their units.
 
 The names of the joints with their unit (`crank_1_deg`, `leg_1_mm`; also `_rad`, `_m`), then x, y,
 z (`_mm` or `_m`) and an orientation: `qx,qy,qz,qw`, or `roll,pitch,yaw` (`_deg` or `_rad`).
@@ -91,11 +91,11 @@ def _read(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
 
 
 def _column(header: Sequence[str], name: str, units: Sequence[str]) -> tuple[int, float]:
-    """Where a quantity stands, and how much its unit is."""
+    """The column of a quantity, and its unit in SI."""
     found = [unit for unit in units if f'{name}_{unit}' in header]
     if len(found) != 1:
-        wanted = ' or '.join(f'{name}_{unit}' for unit in units)
-        raise InvalidInput(f'needs one column {wanted}; there are {", ".join(header)}')
+        alternatives = ' or '.join(f'{name}_{unit}' for unit in units)
+        raise InvalidInput(f'needs one column {alternatives}; there are {", ".join(header)}')
     return header.index(f'{name}_{found[0]}'), UNITS[found[0]]
 
 
@@ -175,6 +175,6 @@ def telling_poses(machine: Machine, model: Model, noise: Noise, count: int) -> t
     scale = scales((*model.parameters, *DeviceFrames.parameters()))
     weighted = slopes * noise.weights[:, None]
     chosen = np.array(most_telling(weighted, scale, count))
-    ways = kinematics.home.twist_to(poses[chosen]) * ([1.0] * 3 + [length] * 3)
-    order = chosen[in_driving_order(ways)]
+    offsets = kinematics.home.twist_to(poses[chosen]) * ([1.0] * 3 + [length] * 3)
+    order = chosen[in_driving_order(offsets)]
     return joints[order], poses[order]

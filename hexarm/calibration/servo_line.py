@@ -68,7 +68,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 class ServoLine:
     """A context manager: connects when it is entered, and takes the power from the servos at exit.
 
-    is_off says afterwards whether the board has confirmed that. Where nobody asked to energise
+    is_off: afterwards, whether the board has confirmed that. Where nothing was energised
     them, they are left as they were: a board may be holding a platform up.
     """
 
@@ -86,7 +86,7 @@ class ServoLine:
         self._thread = LinkThread(self._open_once, self._link)
 
     def __enter__(self) -> 'ServoLine':
-        """LinkError where no board answers."""
+        """LinkError where the board does not answer."""
         self._thread.start()
         try:
             self._await_board()
@@ -103,7 +103,7 @@ class ServoLine:
                 try:
                     self._ask(Disarm())
                     self.is_off = True
-                except Refused:  # a STOP is under way, or a frame was lost
+                except Refused:  # a STOP is in progress, or a frame was lost
                     time.sleep(LOOK_EVERY)
             self._thread.close()
 
@@ -118,7 +118,7 @@ class ServoLine:
         return self.is_in_use and not self.is_off and self.mode is not None
 
     @property
-    def has_let_go(self) -> bool:
+    def has_released(self) -> bool:
         """The servos had power and have it no more."""
         return self._is_energised and self.mode in (Mode.DISARMED, Mode.FAULT)
 
@@ -133,13 +133,13 @@ class ServoLine:
     def energise(self, counts: tuple[int, ...]) -> None:
         """Servo by servo, each at its count; where all are on already, they stay where they are.
 
-        Refused says why the board does not: stopped, a fault, the battery.
+        Refused with the reason of the board: stopped, a fault, the battery.
         """
         self.is_in_use = True
         self._ask(Arm(counts))
         until = time.monotonic() + ARM_WITHIN
         while self.mode not in (Mode.ARMED, Mode.HOLDING):
-            if self.mode is Mode.ARMING:  # takes as long as the machine file says, and ends
+            if self.mode is Mode.ARMING:  # takes as long as set in the machine file, and ends
                 until = time.monotonic() + ARM_WITHIN
             if self.trouble or time.monotonic() > until:
                 raise Refused(f'the servos were not energised: {self.trouble or "no answer"}')
@@ -153,15 +153,15 @@ class ServoLine:
         self._thread.post(lambda: self._link.put_setpoint(ticket))
 
     def stop(self) -> None:
-        """At once; repeated until the board has heard it."""
+        """At once; repeated until the board has acknowledged it."""
         self._thread.request(Stop())
 
     def clear(self) -> None:
-        """Forget the stop; nothing moves. Refused says why not."""
+        """Clears the stop; nothing moves. Refused with the reason."""
         self._ask(Clear())
 
     def _ask(self, command: Command) -> None:
-        """Asks again where it failed: a computer that is busy may lose an answer."""
+        """Repeats a failed request: a busy computer may lose an answer."""
         for tries_left in reversed(range(TRIES)):
             try:
                 self._thread.request(command).result(ANSWER_WITHIN)
@@ -174,10 +174,10 @@ class ServoLine:
 
     def _await_board(self) -> None:
         if not self._is_ready.wait(CONNECT_WITHIN):
-            reason = self.trouble or 'no board answers: is its firmware on it?'
+            reason = self.trouble or 'the board does not answer: is its firmware on it?'
             raise LinkError(reason)
         if self.mode is None:
-            raise LinkError(self.trouble or 'the board has fallen silent')
+            raise LinkError(self.trouble or 'no frame comes from the board any more')
 
     def _open_once(self) -> SerialPort:
         port, self._port = self._port, None

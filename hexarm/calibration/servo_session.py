@@ -1,16 +1,46 @@
 """One servo calibration session: keys in, setpoints out, and the display, until it is over."""
 
+import re
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from bridge.protocol import Mode
 from bridge.servo_config import ServoConfig
-from bridge.servo_walk import ServoWalk, Stage
+from bridge.servo_wizard import ServoWizard, Stage
 from hexarm.calibration.servo_line import ServoLine
 from manipulator.errors import LinkError, ManipulatorError, Refused
 from manipulator.nodes.terminal import Terminal
-from manipulator.teleop.key_names import key_names
+
+ARROWS = {'A': 'up', 'B': 'down', 'C': 'right', 'D': 'left'}
+CONTROLS = {'\r': 'enter', '\n': 'enter', '\x7f': 'backspace', '\x08': 'backspace'}
+UNKNOWN = '?'
+MOST_AT_ONCE = 12
+"""Keys in one reading; more are a paste or a cat, not a hand."""
+
+_KEY = re.compile('\x1b[\\[O](?P<arrow>[A-D])|\x1b(\\[[0-?]*[ -/]*[@-~]|O.)|.', re.DOTALL)
+
+
+def key_names(characters: bytes) -> tuple[str, ...]:
+    """The keys that were pressed, in order; none for a paste, unless a space is in it.
+
+    Letters and signs are named by themselves, a space is 'space'. It is the key that stops, so
+    it is never lost: a paste with one in it is one 'space'.
+    """
+    names = tuple(map(_name, _KEY.finditer(characters.decode(errors='replace'))))
+    if len(names) > MOST_AT_ONCE:
+        return ('space',) if 'space' in names else ()
+    return names
+
+
+def _name(found: 're.Match[str]') -> str:
+    text = found[0]
+    if found['arrow']:
+        return ARROWS[found['arrow']]
+    if text[0] == '\x1b':
+        return 'escape' if len(text) == 1 else UNKNOWN
+    return 'space' if text == ' ' else CONTROLS.get(text, text)
+
 
 HELP = """\
  →/← or d/a  longer, shorter pulse     +/-  step    s  skip    b  this servo again
@@ -27,22 +57,22 @@ FOUND = {
     Mode.ARMED: 'The servos have power already and stay where they are.\n',
     Mode.HOLDING: 'The servos have power already and stay where they are.\n',
 }
-"""What is said before anything is energised, by the mode that the board is found in."""
+"""Printed before anything is energised, by the board's mode."""
 
 POSITIVE = {
     'rotary_hexapod': ' (the crank turns from its tangent upwards)',
     'linear_hexapod': ' (the leg grows longer)',
     'serial_arm': ' (a right-hand turn about the axis)',
 }
-"""Which way is positive, by the kind of machine."""
+"""The positive direction, by the kind of machine."""
 
 
-def question(walk: ServoWalk, positive: str) -> str:
-    """What is asked in the present stage."""
-    servo, unit = walk.servo, 'mm' if walk.servo.is_linear else '°'
+def question(wizard: ServoWizard, positive: str) -> str:
+    """The question of the present stage."""
+    servo, unit = wizard.servo, 'mm' if wizard.servo.is_linear else '°'
     centre = servo.centre_mm if servo.centre_mm is not None else servo.centre_deg
     low, high = servo.pulse_range_us
-    told = {
+    question_text = {
         Stage.DIRECTION: f'jog it. Does a longer pulse (→) move it towards positive{positive}? '
         'y or n',
         Stage.CENTRE: f'bring it to {centre:g} {unit} and press ENTER; '
@@ -53,17 +83,19 @@ def question(walk: ServoWalk, positive: str) -> str:
         'end and press [ or ]; ENTER goes on',
         Stage.RETURN: 'goes back to its centre',
         Stage.REVIEW: 'w: servos off and write, q: servos off and leave',
-    }.get(walk.stage, '')
-    name = 'end' if walk.stage is Stage.REVIEW else f'{servo.name}, {walk.stage.value}'
-    return f'{name}: {told}\n'
+    }.get(wizard.stage, '')
+    name = 'end' if wizard.stage is Stage.REVIEW else f'{servo.name}, {wizard.stage.value}'
+    return f'{name}: {question_text}\n'
 
 
-def status(walk: ServoWalk, stopped: bool, seen: str) -> str:
+def status(wizard: ServoWizard, stopped: bool, seen: str) -> str:
     """The line that is rewritten all the time."""
-    typed = '' if walk.typed is None else f'  ={walk.typed}_'
-    notice = 'STOPPED, c clears it' if stopped else walk.notice
-    told = f'  {notice}' if notice else ''
-    return f' {walk.servo.name}  {walk.pulse:7.1f} µs  step {walk.step:g}{seen}{typed}{told}'
+    typed = '' if wizard.typed is None else f'  ={wizard.typed}_'
+    notice = 'STOPPED, c clears it' if stopped else wizard.notice
+    notice = f'  {notice}' if notice else ''
+    return (
+        f' {wizard.servo.name}  {wizard.pulse:7.1f} µs  step {wizard.step:g}{seen}{typed}{notice}'
+    )
 
 
 TICK, LONGEST_TICK = 0.02, 0.1
@@ -71,22 +103,22 @@ LATCHED = (Mode.STOPPED, Mode.FAULT)
 
 
 class TerminalGone(ManipulatorError):
-    """Nobody is there any more to watch the machine."""
+    """The terminal has closed: the machine is not watched any more."""
 
 
 @dataclass(frozen=True)
-class Sitting:
-    """Terminal and board of one machine; `look` tells where a fake servo stands."""
+class CalibrationSession:
+    """Terminal and board of one machine; `display` returns the position of a fake servo."""
 
     terminal: Terminal
     line: ServoLine
     servos: tuple[ServoConfig, ...]
     chosen: tuple[int, ...]
     positive: str
-    look: Callable[[int], str]
+    display: Callable[[int], str]
 
-    def run(self) -> ServoWalk | None:
-        """The walk at its end, None where the person did not want to begin.
+    def run(self) -> ServoWizard | None:
+        """The wizard at its end, None where the user did not begin.
 
         TerminalGone, LinkError: it cannot go on; Refused: the board does not energise.
         """
@@ -95,17 +127,17 @@ class Sitting:
         centres = tuple(servo.centre_us for servo in self.servos)
         if self.line.mode in LATCHED:
             self.line.clear()
-        self.line.energise(ServoWalk.begin(self.servos, centres, self.chosen).counts)
-        walk = ServoWalk.begin(self.servos, self._pulses(), self.chosen)
-        self.terminal.show(f'\n{HELP}{question(walk, self.positive)}')
+        self.line.energise(ServoWizard.begin(self.servos, centres, self.chosen).counts)
+        wizard = ServoWizard.begin(self.servos, self._pulses(), self.chosen)
+        self.terminal.show(f'\n{HELP}{question(wizard, self.positive)}')
         last = time.monotonic()
-        while not walk.is_over:
+        while not wizard.is_over:
             time.sleep(TICK)
             now = time.monotonic()
-            before, walk = walk, self._turn(walk, min(now - last, LONGEST_TICK))
+            before, wizard = wizard, self._turn(wizard, min(now - last, LONGEST_TICK))
             last = now
-            self._show(before, walk)
-        return walk
+            self._show(before, wizard)
+        return wizard
 
     def _has_consent(self) -> bool:
         found = '' if self.line.mode is None else FOUND.get(self.line.mode, '')
@@ -116,20 +148,20 @@ class Sitting:
             if 'enter' in keys or 'q' in keys:
                 return 'q' not in keys
 
-    def _turn(self, walk: ServoWalk, dt: float) -> ServoWalk:
+    def _turn(self, wizard: ServoWizard, dt: float) -> ServoWizard:
         keys = self._keys()
         if 'space' in keys:
             self.line.stop()
-            return walk
+            return wizard
         if self.line.mode is Mode.STOPPED:
             if 'c' in keys:
                 self._clear()
-            return walk.stood(self._pulses())
+            return wizard.stopped_at(self._pulses())
         for key in keys:
-            walk = walk.press(key)
-        walk = walk.advance(dt)
-        self.line.move(walk.counts)
-        return walk
+            wizard = wizard.press(key)
+        wizard = wizard.advance(dt)
+        self.line.move(wizard.counts)
+        return wizard
 
     def _clear(self) -> None:
         try:
@@ -138,13 +170,13 @@ class Sitting:
             self.terminal.show(f'\r\x1b[Knot cleared: {error}\n')
 
     def _keys(self) -> tuple[str, ...]:
-        """What was pressed since the last call, as long as there is a person and a board."""
+        """The keys since the last call; raises where terminal or board have gone."""
         characters = self.terminal.read()
         if characters is None:
-            raise TerminalGone('the terminal has gone')
+            raise TerminalGone('the terminal was closed')
         if self.line.trouble:
             raise LinkError(self.line.trouble)
-        if self.line.has_let_go:
+        if self.line.has_released:
             raise LinkError('the board has taken the power from the servos')
         return key_names(characters)
 
@@ -152,10 +184,10 @@ class Sitting:
         by_channel = self.line.pulses
         return tuple(by_channel[servo.channel] for servo in self.servos)
 
-    def _show(self, before: ServoWalk, walk: ServoWalk) -> None:
-        """The question where there is a new one, and the line that is always new."""
-        if (before.stage, before.at) != (walk.stage, walk.at) and not walk.is_over:
-            self.terminal.show(f'\r\x1b[K{question(walk, self.positive)}')
+    def _show(self, before: ServoWizard, wizard: ServoWizard) -> None:
+        """The question where there is a new one, and the status line."""
+        if (before.stage, before.at) != (wizard.stage, wizard.at) and not wizard.is_over:
+            self.terminal.show(f'\r\x1b[K{question(wizard, self.positive)}')
         is_stopped = self.line.mode is Mode.STOPPED
-        seen = '' if walk.stage is Stage.REVIEW else self.look(walk.index)
-        self.terminal.show(f'\r\x1b[K{status(walk, is_stopped, seen)}')
+        seen = '' if wizard.stage is Stage.REVIEW else self.display(wizard.index)
+        self.terminal.show(f'\r\x1b[K{status(wizard, is_stopped, seen)}')

@@ -1,7 +1,7 @@
 """`hexarm calibrate servos MACHINE`: signs and centres, one servo at a time, by the keyboard.
 
 Without a board it uses a fake one in this process, whose servos are mounted otherwise than the
-file says; what one would see on a machine stands on the screen.
+file says; what one would see on a machine is shown on the screen.
 """
 
 import argparse
@@ -18,10 +18,10 @@ from pathlib import Path
 from bridge.fake.board_thread import BoardThread, FakeMachine
 from bridge.fake.fake_line import FakeLine
 from bridge.servo_config import BoardConfig, ServoConfig
-from bridge.servo_walk import ServoWalk, Stage
+from bridge.servo_wizard import ServoWizard, Stage
 from hexarm.calibration.machine_writer import MachineWriter
 from hexarm.calibration.servo_line import SIGNALS, ServoLine, changed_values, in_words
-from hexarm.calibration.servo_session import POSITIVE, Sitting
+from hexarm.calibration.servo_session import POSITIVE, CalibrationSession
 from hexarm.cli.statuses import INTERRUPTED
 from hexarm.machines import read
 from manipulator.arrays import Array
@@ -35,7 +35,7 @@ BOOT_S = 0.3
 
 
 def mounted_wrongly(config: BoardConfig, seed: int) -> BoardConfig:
-    """The same board with some servos the other way round, and all centres off by up to 60 µs."""
+    """The same board with some servos reversed, and all centres off by up to 60 µs."""
     luck = random.Random(seed)
 
     def wrong(servo: ServoConfig) -> ServoConfig:
@@ -44,7 +44,7 @@ def mounted_wrongly(config: BoardConfig, seed: int) -> BoardConfig:
         centre = min(max(centre, low), high)
         return replace(servo, sign=luck.choice((-1, 1)), centre_us=centre)
 
-    # Nothing is asked of the true park position: the board only ever gets pulses.
+    # The true park position does not matter: the board only ever gets pulses.
     joints = tuple(map(wrong, config.servos.joints))
     centres = tuple(joint.centre_mm or joint.centre_deg or 0.0 for joint in joints)
     if joints[0].is_linear:
@@ -62,7 +62,7 @@ class FakeServos:
         self.port = str(Path(self._folder.name) / 'board')
         machine = FakeMachine.from_config(truth, BOOT_S, truth.hysteresis)
         self.positions = machine.servos.positions
-        self._board = BoardThread(machine, FakeLine(Path(self.port)), self._look)
+        self._board = BoardThread(machine, FakeLine(Path(self.port)), self._display)
 
     def __enter__(self) -> 'FakeServos':
         """Powers the board."""
@@ -74,7 +74,7 @@ class FakeServos:
         self._board.close()
         self._folder.cleanup()
 
-    def _look(self, positions: Array) -> None:
+    def _display(self, positions: Array) -> None:
         self.positions = positions
 
 
@@ -101,16 +101,16 @@ def run(arguments: argparse.Namespace) -> int:
     config = BoardConfig.from_machine(file, str(writer.source))
     chosen = chosen_servos(config.servos.joints, arguments.only)
     try:
-        walk = _sit(arguments.port, config, chosen, POSITIVE.get(file.kind, ''))
+        wizard = _run_session(arguments.port, config, chosen, POSITIVE.get(file.kind, ''))
     except KeyboardInterrupt:
         print('interrupted: nothing was written')
         return INTERRUPTED
     before = config.servos.joints
-    if walk is None or walk.stage is not Stage.WRITE or walk.servos == before:
+    if wizard is None or wizard.stage is not Stage.WRITE or wizard.servos == before:
         print('nothing was written')
         return 0
-    values = changed_values(before, walk.servos)
-    print('\n'.join(in_words(before, walk.servos)))
+    values = changed_values(before, wizard.servos)
+    print('\n'.join(in_words(before, wizard.servos)))
     problems = writer.write(with_values(writer.text, values))
     print(f'{writer.target}: {counted(len(values), "value")} written')
     for problem in problems:
@@ -119,7 +119,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def chosen_servos(servos: tuple[ServoConfig, ...], names: list[str] | None) -> tuple[int, ...]:
-    """Which servos to walk through; InvalidInput names one that there is not."""
+    """The servos to calibrate; InvalidInput names an unknown one."""
     known = [servo.name for servo in servos]
     for name in names or ():
         if name not in known:
@@ -129,21 +129,21 @@ def chosen_servos(servos: tuple[ServoConfig, ...], names: list[str] | None) -> t
     return tuple(known.index(name) for name in names or known)
 
 
-def _sit(
+def _run_session(
     port: str, config: BoardConfig, chosen: tuple[int, ...], positive: str
-) -> ServoWalk | None:
+) -> ServoWizard | None:
     with ExitStack() as stack:
         terminal = stack.enter_context(Terminal())
         stack.enter_context(_signals_interrupt())
-        look: Callable[[int], str] = lambda i: ''  # noqa: E731
+        display: Callable[[int], str] = lambda i: ''  # noqa: E731
         if port == 'fake':
             fake = stack.enter_context(FakeServos(mounted_wrongly(config, SEED)))
-            port, look = fake.port, _eyes(fake, config)
+            port, display = fake.port, _eyes(fake, config)
         line = ServoLine(port, config)
         try:
             with line:
                 servos = config.servos.joints
-                return Sitting(terminal, line, servos, chosen, positive, look).run()
+                return CalibrationSession(terminal, line, servos, chosen, positive, display).run()
         finally:
             terminal.show(f'\r\x1b[K{_farewell(line)}\n')
 

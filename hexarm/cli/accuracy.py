@@ -14,8 +14,8 @@ from hexapod_control.parallel_platform import ParallelPlatform
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.machines import load, read
 from manipulator.analysis.accuracy import JointErrors, Spread, drawn_spread, linear_spread
+from manipulator.analysis.free_paths import admits
 from manipulator.analysis.volume import bounding_box, with_orientation
-from manipulator.analysis.way import admits
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.kinematics import Kinematics
@@ -94,7 +94,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
 
 
 def servo_errors(kinematics: Kinematics, file: MachineFile, noise: float) -> JointErrors:
-    """The noise asked for, dead band and play of the machine file's simulated servos."""
+    """The requested noise, dead band and play of the machine file's simulated servos."""
     config = BoardConfig.from_machine(file)
     count = len(kinematics.joint_names)
     servos = config.servos.joints[:count]  # an arm's gripper comes after its joints

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from hexarm import keep_to_this_computer
 from hexarm.cli.answers import picture_file
 from hexarm.cli.statuses import INTERRUPTED
 from hexarm.cli.up import Interrupted, StopSignal, check_alive
@@ -18,9 +19,10 @@ from hexarm.demo.report import Curve, Observation, Result, measure
 from hexarm.graph import Executable, Graph, link_folder, machine_graph
 from hexarm.machines import load
 from hexarm.panel_process import offered_panel
-from manipulator.errors import Refused
+from manipulator.errors import Refused, Stopped, TimedOut
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.states import MotionMode
 
 if TYPE_CHECKING:
     from hexarm.client import Client
@@ -37,9 +39,7 @@ Observed = TypeVar('Observed')
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser(
-        'demo', help='drive the RoboCake and an arm on fake boards, within a minute'
-    )
+    parser = commands.add_parser('demo')
     parser.add_argument(
         '--picture', type=picture_file, default=Path('demo.png'), help='where to save it'
     )
@@ -52,23 +52,24 @@ def run(arguments: argparse.Namespace) -> int:
     from hexarm.demo import arm_report as demo_arm_report  # noqa: PLC0415
 
     picture: Path = arguments.picture
-    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    if 'ROS_AUTOMATIC_DISCOVERY_RANGE' not in os.environ:
+        keep_to_this_computer()
     os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
     stop = StopSignal()
     try:
-        say('starting the graph: fake_hardware, serial_bridge, ik, trajectory, pose')
+        echo('starting the graph: fake_hardware, serial_bridge, ik, trajectory, pose')
         observation = on_graph('hexapod', MACHINE, [], stop, tour)
         arm = load(demo_arm.MACHINE)
-        say('starting the same graph for the arm, and joy_teleop')
+        echo('starting the same graph for the arm, and joy_teleop')
         arm_observation = on_graph(
             'arm',
             demo_arm.MACHINE,
             [demo_arm.teleop()],
             stop,
-            lambda client: demo_arm.arm_tour(client, arm, say),
+            lambda client: demo_arm.arm_tour(client, arm, echo),
         )
     except Interrupted:
-        say('interrupted: stopping the graph')
+        echo('interrupted: stopping the graph')
         return INTERRUPTED
     result = measure(observation, load(MACHINE).kinematics)
     report(result, demo_arm_report.measure_arm(arm_observation, arm.kinematics), arm, picture)
@@ -88,7 +89,7 @@ def on_graph(
     with link_folder() as folder:
         nodes = machine_graph(machine, 'fake', Path(folder) / 'board')
         with Graph(
-            [*nodes, *others, *offered_panel(machine, say)], kind, log_level='error'
+            [*nodes, *others, *offered_panel(machine, echo)], kind, log_level='error'
         ) as graph:
 
             def interrupt() -> None:
@@ -103,9 +104,7 @@ def on_graph(
 
 def put_away(client: 'Client') -> None:
     """Parks, where the computer lets it, and switches the servos of the fake board off."""
-    from hexarm.client import NotReady, Stopped  # noqa: PLC0415 (needs ROS)
-
-    with contextlib.suppress(Refused, Stopped, NotReady):
+    with contextlib.suppress(Refused, Stopped, TimedOut):
         client.park()
     client.disable()
 
@@ -114,40 +113,38 @@ def tour(client: 'Client') -> Observation:
     """Goal moves, a goal out of reach and a circle with a tilt, from outside as a user would."""
     from hexarm.demo.recording import Recorder  # noqa: PLC0415 (needs ROS)
 
-    say('waiting for the board, then energising the servos one by one')
+    echo('waiting for the board, then energising the servos one by one')
     client.enable()
     recorder = Recorder(client)
     for text, goal in moves():
-        say(text)
+        echo(text)
         recorder.line_to(goal)
         drive(client, goal)
         client.spin(PAUSE)
     try:
-        say('a goal out of reach: x = 40 mm')
+        echo('a goal out of reach: x = 40 mm')
         drive(client, Pose.from_xyz_rpy((0.04, 0.0, 0.045)), is_possible=False)
     except Refused as refusal:
-        say(f'  {refusal}')
-    say(f'a circle of {RADIUS * 1e3:g} mm with a turning tilt of {math.degrees(TILT):g}°')
+        echo(f'  {refusal}')
+    echo(f'a circle of {RADIUS * 1e3:g} mm with a turning tilt of {math.degrees(TILT):g}°')
     stream(client, recorder)
     return recorder.observation(load(MACHINE).kinematics)
 
 
 def drive(client: 'Client', goal: Pose, *, is_possible: bool = True) -> None:
-    """Goes to the goal; again where a busy computer stopped the machine, on the way or before.
+    """Goes to the goal; again where a busy computer stopped the machine, in motion or before.
 
     A goal that is possible is refused only by a machine that is not ready.
     """
-    from hexarm.client import NotReady, Stopped  # noqa: PLC0415 (needs ROS)
-
-    busy = (Stopped, NotReady, Refused) if is_possible else (Stopped, NotReady)
+    busy = (Stopped, TimedOut, Refused) if is_possible else (Stopped, TimedOut)
     for tries_left in (2, 1, 0):
-        client.wait('the machine', lambda: client.motion('mode') != 'disabled', 10.0)
+        client.wait('the machine', lambda: client.motion('mode') != MotionMode.DISABLED, 10.0)
         try:
             client.go_to(goal)
         except busy as reason:
             if not tries_left:
                 raise
-            say(f'  {reason}: once more')
+            echo(f'  {reason}: once more')
         else:
             return
 
@@ -175,7 +172,7 @@ def stream(client: 'Client', recorder: 'Recorder') -> None:
         client.spin(begin + k * STREAM_PERIOD - time.time())
         client.publish_goal(circle(k * STREAM_PERIOD))
         if k % (count // 8) == 0:
-            say(f'  {100 * k // count} %')
+            echo(f'  {100 * k // count} %')
     client.spin(0.5)
 
 
@@ -192,6 +189,6 @@ def report(result: Result, arm_result: 'ArmResult', arm: Machine, picture: Path)
     print('To drive it yourself, in a browser: hexarm up hexapod --panel')
 
 
-def say(text: str) -> None:
+def echo(text: str) -> None:
     """Prints one line of progress at once."""
     print(text, flush=True)

@@ -86,13 +86,13 @@ def simulated(machine: Machine, legs: float | None, to: list[float], steps: int)
 
 
 def first_violation(machine: Machine, motion: LegMotion) -> str | None:
-    """The first limit that is broken on the way, and where."""
+    """The first limit that is broken on the path, and where."""
     outside = ~machine.constraints.admits(motion.poses, motion.lengths)
     if not outside.any():
         return None
     step = int(np.argmax(outside))
     violation = machine.constraints.violations(motion.poses[step], motion.lengths[step])[0]
-    return f'after {100 * motion.share[step]:.0f} % of the way: {violation}'
+    return f'after {100 * motion.share[step]:.0f} % of the path: {violation}'
 
 
 def axis_deviation(motion: LegMotion) -> float:
@@ -112,7 +112,7 @@ def table(motion: LegMotion) -> list[str]:
             np.degrees(motion.angle_deviation),
         ]
     )
-    names = ['way (%)', 'x (mm)', 'y (mm)', 'z (mm)', 'α (°)', 'β (°)', 'γ (°)']
+    names = ['path (%)', 'x (mm)', 'y (mm)', 'z (mm)', 'α (°)', 'β (°)', 'γ (°)']
     names += ['rx (°)', 'ry (°)', 'rz (°)', 'off (mm)', 'off (°)']
     chosen = np.unique(np.linspace(0, len(columns) - 1, SHOWN + 1).round().astype(int))
     rows = np.round(columns[chosen], 4) + 0.0

@@ -1,4 +1,4 @@
-"""`hexarm monitor`: what the nodes of a machine say of themselves, live in the terminal."""
+"""`hexarm monitor`: the diagnostics of a machine's nodes, live in the terminal."""
 
 import argparse
 import contextlib
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from hexarm.cli.up import Interrupted, StopSignal
-from hexarm.namespaces import namespace_of, nobody_in
+from hexarm.namespaces import namespace_of, no_machine_in
 from manipulator.nodes.terminal import Terminal
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 REDRAW = 0.25
 SILENT = 3.0
-"""Seconds after which a node that reports every second is said to be silent."""
+"""Seconds after which a node that reports every second is shown as silent."""
 
 COLOURS = {b'\0': 'green', b'\1': 'yellow', b'\2': 'red', b'\3': 'red'}
 """By the level of a DiagnosticStatus: OK, WARN, ERROR, STALE."""
@@ -25,7 +25,7 @@ COLOURS = {b'\0': 'green', b'\1': 'yellow', b'\2': 'red', b'\3': 'red'}
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('monitor', help='show live what the nodes say of themselves')
+    parser = commands.add_parser('monitor')
     parser.add_argument(
         'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
     )
@@ -59,14 +59,14 @@ class View:
     """The last report of each node in `namespace`, and when it came (s, monotonic)."""
 
     namespace: str
-    heard: dict[str, tuple[Any, float]] = field(default_factory=dict)
+    reports: dict[str, tuple[Any, float]] = field(default_factory=dict)
 
     def note(self, client: 'Client', now: float) -> None:
         """Keeps the reports that are new."""
         for name, report in client.diagnostics.items():
             space, _, node = name.rpartition('/')
-            if space == self.namespace and self.heard.get(node, (None,))[0] is not report:
-                self.heard[node] = report, now
+            if space == self.namespace and self.reports.get(node, (None,))[0] is not report:
+                self.reports[node] = report, now
 
     def drawn(self, client: 'Client', now: float) -> 'Group':
         """One head line for the machine, then a block for each node."""
@@ -78,14 +78,14 @@ class View:
             Text(f'/{self.namespace}: {client.summary}', style='bold'),
             Text('q or Ctrl-C ends this', style='dim'),
         ]
-        for node, (report, at) in sorted(self.heard.items()):
+        for node, (report, at) in sorted(self.reports.items()):
             age = now - at
-            said = f'silent for {age:.0f} s' if age > SILENT else report.message
+            message = f'silent for {age:.0f} s' if age > SILENT else report.message
             colour = 'red' if age > SILENT else COLOURS[bytes(report.level)]
-            blocks.append(Text.assemble('\n', (node, f'bold {colour}'), f'  {said}'))
+            blocks.append(Text.assemble('\n', (node, f'bold {colour}'), f'  {message}'))
             values = [f'{pair.key} {pair.value}' for pair in report.values if pair.value]
             blocks.append(Columns([Text(value) for value in values], equal=True, padding=(0, 3)))
-        if not self.heard:
-            said = nobody_in(self.namespace, client.topics, client.domain)
-            blocks.append(Text(f'\nnothing heard yet: {said}'))
+        if not self.reports:
+            message = no_machine_in(self.namespace, client.topics, client.domain)
+            blocks.append(Text(f'\nnothing received yet: {message}'))
         return Group(*blocks)

@@ -1,4 +1,4 @@
-"""`hexarm plot FILE`: what a recording tells, as a picture or as tables; needs no ROS."""
+"""`hexarm plot FILE`: a recording as a picture or as tables; needs no ROS."""
 
 import argparse
 from pathlib import Path
@@ -9,11 +9,12 @@ from hexarm.cli.answers import Answer, answering, picture_file
 from hexarm.namespaces import namespace_of
 from manipulator.errors import InvalidInput
 from manipulator.formatting import counted
+from manipulator.states import MotionResult
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('plot', help='draw what a recording tells')
+    parser = commands.add_parser('plot')
     parser.add_argument('file', type=Path, metavar='FILE', help='an MCAP recording, or its folder')
     parser.add_argument(
         '-o', '--output', type=picture_file, metavar='PICTURE', help='default: FILE with .png'
@@ -32,24 +33,24 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 
 def answer(arguments: argparse.Namespace) -> Answer:
     """Writes picture or tables; the answer is the figures of the recording, and where it is."""
+    from hexarm.recording.log_parser import is_needed, summarise  # noqa: PLC0415
     from hexarm.recording.reading import messages, write  # noqa: PLC0415 (needs mcap)
-    from hexarm.recording.telling import is_wanted, tell  # noqa: PLC0415
 
-    story = tell(messages(arguments.file, is_wanted), arguments.namespace)
-    begin, end = _span(arguments.begin, arguments.end, story.duration)
-    part = story.between(begin, end)
+    summary = summarise(messages(arguments.file, is_needed), arguments.namespace)
+    begin, end = _span(arguments.begin, arguments.end, summary.duration)
+    part = summary.between(begin, end)
     if arguments.csv is not None:
         files = write(part, arguments.csv)
     else:
         from hexarm.recording.picture import draw  # noqa: PLC0415 (needs matplotlib)
 
         picture = arguments.output or arguments.file.with_suffix('.png')
-        draw(story, begin, end, picture)
+        draw(summary, begin, end, picture)
         files = [picture]
     distance, angle = part.pose_error.values.T
-    refused = sum(e.count for e in part.events if e.what == 'refused')
+    refused = sum(e.count for e in part.events if e.what == MotionResult.REFUSED)
     figures = {
-        'namespace': story.namespace,
+        'namespace': summary.namespace,
         'seconds': round(end - begin, 3),
         'setpoints': len(part.setpoint),
         'poses': len(part.pose),
@@ -58,7 +59,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
         'error_rms_deg': _rms(np.degrees(angle)),
     }
     lines = [
-        f'/{story.namespace}, {end - begin:.1f} s: {counted(len(part.setpoint), "setpoint")}, '
+        f'/{summary.namespace}, {end - begin:.1f} s: {counted(len(part.setpoint), "setpoint")}, '
         f'{counted(len(part.pose), "pose")}, {refused} refused',
         *([f'pose behind setpoint: {figures["error_rms_mm"]:.3f} mm rms, '
            f'{figures["error_rms_deg"]:.3f}° rms'] if len(distance) else []),

@@ -1,24 +1,27 @@
 """`hexarm record [NAMESPACE]`: every message of a machine into an MCAP file, until Ctrl-C."""
 
 import argparse
+import json
 import math
+import sys
 import time
+from collections.abc import Collection
 from pathlib import Path
 
 from hexarm.cli.up import StopSignal
 from hexarm.namespaces import namespace_of
-from hexarm.recording.topics import Wanted, nothing, unheard
+from hexarm.recording.topics import TopicSelection, missing_topics, nothing_recorded
 from manipulator.errors import ManipulatorError
 from manipulator.formatting import counted
 
 
-class NothingHeard(ManipulatorError):
+class NothingRecorded(ManipulatorError):
     """A recording without a single message."""
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('record', help="write a machine's messages into an MCAP file")
+    parser = commands.add_parser('record')
     parser.add_argument(
         'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
     )
@@ -37,25 +40,26 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
         '--commands', action='store_true',
         help='commands that are published only once, too; see docs/recording.md, "Commands"',
     )  # fmt: skip
+    parser.add_argument('--json', action='store_true', help='answer for programs, at the end')
     parser.set_defaults(run=run)
 
 
-def mcap_file(word: str) -> Path:
-    """A path that ends in .mcap: by it Foxglove and `ros2 bag` tell what the file is."""
-    path = Path(word).expanduser()
+def mcap_file(name: str) -> Path:
+    """A path that ends in .mcap: by it Foxglove and `ros2 bag` recognise the file."""
+    path = Path(name).expanduser()
     if path.suffix != '.mcap':
-        raise argparse.ArgumentTypeError(f'{word}: a recording ends in .mcap')
+        raise argparse.ArgumentTypeError(f'{name}: a recording ends in .mcap')
     return path
 
 
-def positive(word: str) -> float:
+def positive(name: str) -> float:
     """A number of seconds."""
     try:
-        number = float(word)
+        number = float(name)
     except ValueError:
         number = math.nan
     if not number > 0:
-        raise argparse.ArgumentTypeError(f'{word}: needs a number of seconds above 0')
+        raise argparse.ArgumentTypeError(f'{name}: needs a number of seconds above 0')
     return number
 
 
@@ -67,29 +71,33 @@ def run(arguments: argparse.Namespace) -> int:
     namespace = arguments.namespace
     when = time.strftime('%Y%m%d-%H%M%S')
     path = arguments.output or Path(f'{namespace.replace("/", "_")}-{when}.mcap')
-    wanted = Wanted(namespace, arguments.topics, arguments.commands)
+    selection = TopicSelection(namespace, arguments.topics, arguments.commands)
     stop = StopSignal()
     begin = time.monotonic()
     with Bag(path) as bag:
-        _say(f'waiting for publishers of {_asked(wanted)}')
+        _say(f'waiting for publishers of {_requested(selection)}')
         control = Control(
             begin + arguments.seconds,
             stop.check,
             lambda: _say(f'recording /{namespace} into {path}; Ctrl-C ends it'),
             lambda there, domain: _say(
-                f'{nothing(namespace, unheard(wanted.names, (), there), there, domain)}; '
-                'still waiting, Ctrl-C ends it'
+                f'{_reason(selection, [], there, domain)}; still waiting, Ctrl-C ends it'
             ),
         )
-        there, domain = record(bag, namespace, wanted, control)
-    lines = unheard(wanted.names, bag.counts, there)
+        there, domain = record(bag, namespace, selection, control)
+    lines = missing_topics(selection.names, bag.counts, there)
     space = f'/{namespace}/'
-    if not any(topic.startswith(space) or topic in wanted.names for topic in bag.counts):
+    if not any(topic.startswith(space) or topic in selection.names for topic in bag.counts):
         path.unlink()
-        raise NothingHeard(nothing(namespace, lines, there, domain))
-    for line in lines:
-        print(line)
+        raise NothingRecorded(_reason(selection, bag.counts, there, domain))
     took = time.monotonic() - begin
+    if arguments.json:
+        counts = dict(bag.counts)
+        print(
+            json.dumps({'file': str(path), 'seconds': took, 'bytes': bag.size, 'counts': counts})
+        )
+        return 0
+    print(*lines, sep='\n', end='\n' if lines else '')
     print(
         f'{path}: {counted(bag.counts.total(), "message")} of '
         f'{counted(len(bag.counts), "topic")} in {took:.1f} s, {bag.size / 1e6:.1f} MB'
@@ -97,9 +105,18 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _asked(wanted: Wanted) -> str:
-    return ', '.join(wanted.names) or f'/{wanted.namespace}'
+def _reason(
+    selection: TopicSelection, received: Collection[str], there: set[str], domain: int
+) -> str:
+    """Why nothing is recorded."""
+    lines = missing_topics(selection.names, received, there)
+    return nothing_recorded(selection.namespace, lines, there, domain)
+
+
+def _requested(selection: TopicSelection) -> str:
+    return ', '.join(selection.names) or f'/{selection.namespace}'
 
 
 def _say(line: str) -> None:
-    print(line, flush=True)
+    """On the error output: the other one is for the answer."""
+    print(line, file=sys.stderr, flush=True)

@@ -27,17 +27,17 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Writes the report, its figures and its numbers; says what contradicts."""
+    """Writes the report, its figures and its numbers; prints contradictions."""
     from hexarm.papers import crank_dynamics, pictures  # noqa: PLC0415 (needs mujoco)
 
     output: Path = arguments.output
     if output.suffix != '.md':
         raise InvalidInput(f'--output {output}: the name must end in .md')
     folder = output.parent / 'figures'
-    with progress() as tell:
+    with progress() as on_progress:
         dynamics = crank_dynamics.reproduced()
-        tell('simulation and limits', 1.0)
-        found = [*computed(arguments.quick, tell, dynamics.findings)]
+        on_progress('simulation and limits', 1.0)
+        found = [*computed(arguments.quick, on_progress, dynamics.findings)]
         figures = [(f'figures/{name}', caption) for name, caption in pictures.NAMES.items()]
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
             output.with_suffix('.json').write_text(to_json(found), encoding='utf-8')
         except OSError as error:
             raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
-        tell('report', 1.0)
+        on_progress('report', 1.0)
     for finding in found:
         if finding.verdict == 'contradicts':
             print(f'{finding.source}, {finding.topic}: {finding.paper}; ours {finding.ours}')
@@ -54,14 +54,14 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def computed(quick: bool, tell: OnProgress, simulated: list[Finding]) -> Iterator[Finding]:
+def computed(quick: bool, on_progress: OnProgress, simulated: list[Finding]) -> Iterator[Finding]:
     """All findings in the report's order; those of the simulation are made before."""
     from hexarm.papers import arm_modes, crank_kinematics, linear_platforms  # noqa: PLC0415
 
     draws, points = (FEW_DRAWS, FEW_POINTS) if quick else (DRAWS, POINTS)
-    yield from crank_kinematics.findings(draws, points, not quick, tell)
+    yield from crank_kinematics.findings(draws, points, not quick, on_progress)
     yield from simulated
     yield from linear_platforms.findings()
-    tell('linear platforms', 1.0)
+    on_progress('linear platforms', 1.0)
     yield from arm_modes.findings()
-    tell('arm', 1.0)
+    on_progress('arm', 1.0)

@@ -9,7 +9,7 @@ import numpy as np
 
 from hexarm import machines
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
-from hexarm.cli.mjcf import modelled
+from hexarm.cli.export import modelled
 from hexarm.simulation.compensation import Compensation
 from hexarm.simulation.limit_search import (
     PAPER_AMPLITUDE,
@@ -35,7 +35,7 @@ G = 9.80665
 
 @dataclass(frozen=True)
 class Experiment:
-    """A machine, its model, and the cycle that it is to do: `part` of what was asked for.
+    """A machine, its model, and the cycle that it is to do: `part` of the requested one.
 
     corners_out is how many of the 64 poses with every amplitude at + or − are out of reach.
     """
@@ -65,7 +65,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument('--torque', type=float, metavar='NM', help='of each drive, N·m or N')
     parser.add_argument(
         '--compensate', action=argparse.BooleanOptionalAction, default=None,
-        help='add what the drives sag by under gravity (default: as the machine file says)',
+        help='compensate the static deflection of the drives (default: see the machine file)',
     )  # fmt: skip
     parser.add_argument(
         '--picture', type=picture_file, metavar='FILE', help='plots of the sensors'
@@ -120,10 +120,10 @@ def prepared(arguments: argparse.Namespace) -> Experiment:
     load = static_load(machine.kinematics, dynamics)
     joints = machine.kinematics.inverse(poses)
     check_holds(load, mechanism.drives, mechanism.joints, poses, joints)
-    told = dynamics.compensation if arguments.compensate is None else arguments.compensate
+    chosen = dynamics.compensation if arguments.compensate is None else arguments.compensate
     out = corners_out(machine, amplitude)
     compensation = Compensation(load, mechanism.drives)
-    return Experiment(machine, mechanism, cycle, part, out, compensation, told)
+    return Experiment(machine, mechanism, cycle, part, out, compensation, chosen)
 
 
 def summary(this: Experiment, recording: Any) -> dict[str, Any]:

@@ -1,11 +1,12 @@
-"""`hexarm stop [NAMESPACE]`: the emergency stop, on its way before anything else is asked.
+"""`hexarm stop [NAMESPACE]`: the emergency stop, sent before anything else.
 
 First to a bridge of this computer, for which nothing has to be found. Then over ROS, as soon as a
-subscriber is there; what the machine says is only its confirmation. Modules are imported as late
+subscriber is there; the machine's state is only the confirmation. Modules are imported as late
 as can be: a busy computer takes a second for ROS alone, and discovery goes on meanwhile.
 """
 
 import argparse
+import json
 import sys
 import time
 from collections.abc import Callable
@@ -13,31 +14,32 @@ from typing import TYPE_CHECKING, Protocol
 
 from bridge.stop_socket import domain_here, send_stop, stop_address
 from hexarm.cli.statuses import REFUSED
-from hexarm.namespaces import NobodyThere, namespace_of, nobody_in
+from hexarm.namespaces import NoMachine, namespace_of, no_machine_in
+from manipulator.states import MachineState
 
 if TYPE_CHECKING:
     from diagnostic_msgs.msg import DiagnosticStatus
 
 FOUND_WITHIN = 8.0
-"""Seconds in which a machine that is there is found and says its state."""
+"""Seconds in which a running machine is found and its state received."""
 
 OBEYED_WITHIN = 3.0
-"""Seconds from the first STOP until the machine must have said that it stands."""
+"""Seconds from the first STOP until the machine must have confirmed it."""
 
 AGAIN_AFTER = 0.1
 """Seconds from one STOP to the next, as long as it has not."""
 
-STOPPED = 'stopped'
+STOPPED = MachineState.STOPPED
 
 
 class Button(Protocol):
-    """A node that publishes `emergency_stop` and hears `machine_state`."""
+    """A node that publishes `emergency_stop` and receives `machine_state`."""
 
     @property
     def subscribers(self) -> int: ...  # noqa: D102
     @property
     def state(self) -> tuple[str, str] | None:
-        """The state's word and its reason; None before the first."""
+        """The machine state and its reason; None before the first."""
 
     def publish(self) -> None: ...  # noqa: D102
     def wait(self) -> None: ...  # noqa: D102
@@ -45,28 +47,31 @@ class Button(Protocol):
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser(
-        'stop', help='emergency stop: the board holds at once, until `hexarm clear`'
-    )
+    parser = commands.add_parser('stop')
     parser.add_argument(
         'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
     )
+    parser.add_argument('--json', action='store_true', help='answer for programs')
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Stops; status 0 when the machine stands, 2 when it does not say so, 1 for nobody there."""
+    """Stops; status 0 when that is confirmed, 2 when it is not, 1 without a machine."""
     space = arguments.namespace
     send_stop(stop_address(f'/{space}/serial_bridge', domain_here()))
     with StopNode(space) as button:
-        if press(button):
-            print(f'/{space}: machine stopped. Look at the machine, then: hexarm clear {space}')
-            return 0
+        is_confirmed = press(button)
         if button.state is None:
-            raise NobodyThere(button.nobody())
-    word, reason = button.state
+            raise NoMachine(button.no_machine())
+    state, reason = button.state
+    if arguments.json:
+        print(json.dumps({'namespace': f'/{space}', 'state': state, 'reason': reason}))
+        return 0 if is_confirmed else REFUSED
+    if is_confirmed:
+        print(f'/{space}: machine stopped. Inspect the machine, then: hexarm clear {space}')
+        return 0
     print(
-        f'hexarm: STOP is sent, but not confirmed within {OBEYED_WITHIN:g} s: machine {word}'
+        f'hexarm: STOP is sent, but not confirmed within {OBEYED_WITHIN:g} s: machine {state}'
         f'{f": {reason}" if reason else ""}. The bridge repeats it until the board has obeyed; '
         "switch off the servos' supply",
         file=sys.stderr,
@@ -75,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def press(button: Button, now: Callable[[], float] = time.monotonic) -> bool:
-    """Publishes STOP until the machine has said that it stands; False where it does not in time.
+    """Publishes STOP until the machine has confirmed it; False where it does not in time.
 
     At once to each subscriber that appears, since the first may be a recorder. A machine that was
     stopped before is stopped once more.
@@ -147,7 +152,7 @@ class StopNode:
 
     @property
     def state(self) -> tuple[str, str] | None:
-        """The word and the reason of the machine's last state; None before the first."""
+        """The machine's last state and its reason; None before the first."""
         if self._state is None:
             return None
         reason = {pair.key: pair.value for pair in self._state.values}.get('reason', '')
@@ -158,15 +163,15 @@ class StopNode:
         self._stops.publish(self._stop)
 
     def wait(self) -> None:
-        """Hears messages for a moment."""
+        """Receives messages for a moment."""
         self._executor.spin_once(timeout_sec=0.005)
 
-    def nobody(self) -> str:
+    def no_machine(self) -> str:
         """That no machine is here, and where others are."""
         names = [name for name, _ in self._node.get_topic_names_and_types()]
         there = [name for name in names if self._node.count_publishers(name)]
         domain = int(self._node.context.get_domain_id())
-        return nobody_in(self._node.get_namespace(), there, domain)
+        return no_machine_in(self._node.get_namespace(), there, domain)
 
     def _note(self, state: 'DiagnosticStatus') -> None:
         self._state = state

@@ -2,12 +2,15 @@
 
 import argparse
 import contextlib
+import glob
+import os
 import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bridge.fake.plant import PLANTS, SERVO
 from hexarm.graph import (
     Executable,
     Graph,
@@ -20,20 +23,25 @@ from hexarm.graph import (
 from hexarm.machines import described, family, load, read
 from hexarm.namespaces import NAMESPACE
 from hexarm.panel_process import panel_process, panel_words
-from manipulator.errors import ManipulatorError, Refused
+from manipulator.errors import ManipulatorError, Refused, TimedOut
+from manipulator.states import UNKNOWN, MachineState, MotionMode
 
 if TYPE_CHECKING:
     from hexarm.client import Client
 
 SETTLES = 1.0
-"""Seconds within which a STOP from before is said to the board, and obeyed."""
-LOOKS = 1.0
-"""Seconds in which a graph that runs already is found."""
-OURS = ('trajectory', 'ik', 'pose', 'serial_bridge')
-"""Nodes of which a namespace has one; a fake board may be there for `--port` to name."""
-SERVOS_OFF = ('not heard of', 'disconnected', 'booting', 'disarmed')
+"""Seconds within which an earlier STOP is sent to the board, and obeyed."""
+SERVOS_OFF = (
+    UNKNOWN,
+    MachineState.DISCONNECTED,
+    MachineState.BOOTING,
+    MachineState.DISARMED,
+)
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
+BOARDS = ('fake', 'simavr')
+"""In place of a port."""
 NAME = 'a shipped name or the path of a machine file'
+PLANT = 'what a simulated board moves: servos, or rigid bodies with loads (mujoco)'
 SHORT = ', '.join(f'{kind} is short for {name}' for kind, name in MACHINES.items())
 
 
@@ -42,18 +50,19 @@ class NodeDied(ManipulatorError):
 
 
 class Interrupted(ManipulatorError):
-    """Somebody pressed Ctrl-C, or asked the process to end."""
+    """Ctrl-C, or a signal to end the process."""
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('up', help='start a whole graph and enable the servos')
+    parser = commands.add_parser('up')
     parser.add_argument('name', metavar='MACHINE', help=f'{NAME}; {SHORT}')
     parser.add_argument('--machine', help=f'{NAME}, after hexapod or arm')
     parser.add_argument('--port', default='fake', help="a device, 'fake' (default) or 'simavr'")
+    parser.add_argument('--plant', choices=PLANTS, default=SERVO, help=PLANT)
     parser.add_argument('--namespace', help='default: hexapod or arm, as the machine is')
     parser.add_argument('--separate', action='store_true', help='one process for each node')
-    parser.add_argument('--panel', action='store_true', help='with a web page to look and drive')
+    parser.add_argument('--panel', action='store_true', help='with a web page to watch and drive')
     parser.set_defaults(run=run)
 
 
@@ -63,9 +72,11 @@ def run(arguments: argparse.Namespace) -> int:
 
     machine = arguments.machine or MACHINES.get(arguments.name, arguments.name)
     check(arguments.name, machine, arguments.namespace)
+    check_port(arguments.port)
     namespace = arguments.namespace or family(machine)
     pages = [panel_process(machine)] if arguments.panel else []
-    stop, parts = StopSignal(), Parts(machine, namespace, arguments.port)
+    stop = StopSignal()
+    parts = Parts(machine, namespace, arguments.port, arguments.plant)
 
     def interrupt() -> None:
         stop.check()
@@ -73,7 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     with parts, Client(namespace, interrupt) as client:
         parts.start_processes([*parts.board, *pages])
-        refuse_second(client, namespace)
+        client.refuse_second()
         print(described(machine), flush=True)
         parts.start_nodes(arguments.separate)
         try:
@@ -95,9 +106,10 @@ class Parts:
     made when it is entered.
     """
 
-    def __init__(self, machine: str, namespace: str, port: str) -> None:
+    def __init__(self, machine: str, namespace: str, port: str, plant: str) -> None:
         self._stack = contextlib.ExitStack()
         self._machine, self._namespace, self._port = machine, namespace, port
+        self._plant = plant
         self._link: Path | None = None
         self._graphs: list[Graph] = []
         self._are_nodes_alive: Callable[[], bool] = lambda: True
@@ -108,7 +120,7 @@ class Parts:
         from manipulator.nodes.run import context  # noqa: PLC0415 (needs ROS)
 
         link = Path(self._stack.enter_context(link_folder())) / 'board'
-        self.board = board_process(self._machine, self._port, link)
+        self.board = board_process(self._machine, self._port, link, self._plant)
         self._link = link if self.board else None
         parameters = {'machine': self._machine, 'port': str(self._link or self._port)}
         self._stack.enter_context(context(ros_arguments(self._namespace, parameters)))
@@ -155,15 +167,18 @@ def check(name: str, machine: str, namespace: str | None) -> None:
         raise Refused(f'{machine} is a {read(machine).kind}: hexarm up {machine}')
 
 
-def refuse_second(client: 'Client', namespace: str) -> None:
-    """Raises Refused where a graph runs in this namespace: both would receive every call."""
-    client.spin(LOOKS)
-    found = client.node.get_node_names_and_namespaces()
-    if any(name in OURS and space.strip('/') == namespace.strip('/') for name, space in found):
+def check_port(port: str) -> None:
+    """Raises Refused for a port that does not exist, or that this user may not open."""
+    if port in BOARDS:
+        return
+    if not os.path.exists(port):
+        there = sorted(glob.glob('/dev/serial/by-id/*') + glob.glob('/dev/tty[AU][CS][MB]*'))
         raise Refused(
-            f'a graph runs in /{namespace.strip("/")} already: end it, or take another '
-            '--namespace or ROS_DOMAIN_ID (other computers on the network count)'
+            f'port {port} does not exist: is the board connected? '
+            f'Ports: {", ".join(there) or "none"}, or {" or ".join(BOARDS)}'
         )
+    if not os.access(port, os.R_OK | os.W_OK):
+        raise Refused(f'port {port} is not permitted: add yourself to the group dialout')
 
 
 class StopSignal:
@@ -191,7 +206,7 @@ def check_alive(graph: Graph) -> None:
 
 
 def enable(client: 'Client', namespace: str) -> None:
-    """Energises the servos; a machine that is stopped waits until somebody has cleared it."""
+    """Energises the servos; a machine that is stopped waits until it is cleared."""
     space = namespace.strip('/')
     while True:
         print('energising the servos, one by one', flush=True)
@@ -200,7 +215,7 @@ def enable(client: 'Client', namespace: str) -> None:
             return
         except Refused:
             client.spin(SETTLES)
-            if client.machine_state.message != 'stopped':
+            if client.machine_state.message != MachineState.STOPPED:
                 raise
         print(
             f'{client.summary}. It is enabled once you have looked at it and called\n'
@@ -208,15 +223,15 @@ def enable(client: 'Client', namespace: str) -> None:
             f'or  ros2 service call /{space}/serial_bridge/clear_fault std_srvs/srv/Trigger',
             flush=True,
         )
-        while client.machine_state.message == 'stopped':
+        while client.machine_state.message == MachineState.STOPPED:
             client.spin(0.2)
 
 
 def park(client: 'Client', stop: StopSignal) -> None:
-    """Goes to park and switches the servos off; where it cannot, asks before it lets go.
+    """Goes to park and switches the servos off; where it cannot, the user confirms the release.
 
     In a terminal the answer is another Ctrl-C. Without one the servos stay on: what the board then
-    does is what the machine file says of a lost link.
+    does is set by `on_link_loss` of the machine file.
     """
     if client.machine_state.message in SERVOS_OFF:
         return
@@ -236,21 +251,21 @@ def park(client: 'Client', stop: StopSignal) -> None:
 
 
 def _go_to_park(client: 'Client') -> None:
-    """Raises Refused, Stopped or NotReady where it does not get there."""
-    from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
-
-    if client.machine_state.message != 'enabled':
+    """Raises Refused, Stopped or TimedOut where it does not get there."""
+    if client.machine_state.message != MachineState.ENABLED:
         raise Refused(f'the machine is {client.machine_state.message}')
     print('parking; Ctrl-C again switches the servos off where they are', flush=True)
-    with contextlib.suppress(NotReady):
-        client.wait('the pose', lambda: client.motion('mode') not in ('', 'disabled'), 1.0)
+    with contextlib.suppress(TimedOut):
+        client.wait(
+            'the pose', lambda: client.motion('mode') not in ('', MotionMode.DISABLED), 1.0
+        )
     client.park()
 
 
 def _may_let_go(client: 'Client', stop: StopSignal) -> bool:
-    """Whether somebody at a terminal confirms that the servos may be switched off here."""
+    """Whether a user at a terminal confirms that the servos may be switched off here."""
     if not sys.stdin.isatty():
-        print('the servos stay on: the board does what on_link_loss says', flush=True)
+        print('the servos stay on: the board acts as set by on_link_loss', flush=True)
         return False
     print('The servos hold. Ctrl-C switches them off here: an arm may fall.', flush=True)
     stop.is_set = False

@@ -11,10 +11,10 @@ from arm_control.arm import SerialArm
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.cli.progress import progress
 from hexarm.machines import load
+from manipulator.analysis.free_paths import is_joint_box
 from manipulator.analysis.inside import conditions
 from manipulator.analysis.survey import Survey, survey
 from manipulator.analysis.volume import Box, Volume
-from manipulator.analysis.way import is_joint_box
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.formatting import counted
@@ -81,7 +81,7 @@ def default_points(machine: Machine) -> int:
 
 
 def _for_programs(found: Survey) -> dict[str, Any]:
-    def told(volume: Volume) -> dict[str, Any]:
+    def described(volume: Volume) -> dict[str, Any]:
         return {
             'value': volume.value,
             'error': volume.error,
@@ -94,11 +94,11 @@ def _for_programs(found: Survey) -> dict[str, Any]:
         'ranges': {name: list(ends) for name, ends in found.ranges.items()},
         'volumes': {
             'constant_orientation': {
-                **told(found.constant_orientation),
+                **described(found.constant_orientation),
                 'connected_share': found.connected_share,
             },
             'some_orientation': {
-                **told(found.some_orientation),
+                **described(found.some_orientation),
                 'tilt': found.tilt,
                 'search_gain': found.search_gain,
             },

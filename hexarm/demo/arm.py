@@ -44,7 +44,7 @@ class ScriptedPad:
         self.rest(0.2)
 
     def rest(self, seconds: float) -> None:
-        """Nobody touches the pad."""
+        """The pad is not touched."""
         self._play(seconds, {}, is_held=False)
 
     def drive(self, seconds: float, **sticks: float) -> None:
@@ -83,9 +83,9 @@ def teleop() -> Executable:
     return Executable('joy_teleop', {'scale': '3.0'})
 
 
-def arm_tour(client: 'Client', machine: Machine, say: 'Callable[[str], None]') -> ArmObservation:
-    """Drives the arm by a scripted pad; true joint angles are heard all the while."""
-    say('the arm: energising its drives, then a gamepad takes it over')
+def arm_tour(client: 'Client', machine: Machine, echo: 'Callable[[str], None]') -> ArmObservation:
+    """Drives the arm by a scripted pad; true joint angles are received throughout."""
+    echo('the arm: energising its drives, then a gamepad takes over')
     client.enable()
     pad = ScriptedPad(client)
     messages: list[JointState] = []
@@ -100,19 +100,19 @@ def arm_tour(client: 'Client', machine: Machine, say: 'Callable[[str], None]') -
         phases.append(Phase(name, begin, time.time()))
         pad.rest(SETTLED)
 
-    say('a goal 0.35 m away; on its way the stick pulls the arm back')
+    echo('a goal 0.35 m away; before it arrives the stick pulls the arm back')
     client.publish_goal(kinematics.home.moved([-0.35, 0.0, 0.0, 0.0, 0.0, 0.0]))
     pad.rest(0.7)
     phase('override', {'seconds': 2.0, 'forward': 1.0})
     pad.next_mode(1)
-    say('a square with the orientation held')
+    echo('a square with the orientation held')
     sides = ({'left': -1.0}, {'up': 1.0}, {'left': 1.0}, {'up': -1.0})
     phase('square', *({'seconds': 1.5} | side for side in sides))
     tool = kinematics.forward(joints_of(messages[-1], names)).pose
     point = tool.position + SIGHT * tool.rotation[:, 2]
     look_at(client, point)
     pad.next_mode(-2)
-    say('to and fro, looking at one point')
+    echo('to and fro, looking at one point')
     phase('look', *({'seconds': s, 'forward': f} for s, f in ((1.0, 1), (2.0, -1), (1.0, 1))))
     return ArmObservation(
         times=np.array([seconds(m.header.stamp) for m in messages]),
@@ -123,9 +123,9 @@ def arm_tour(client: 'Client', machine: Machine, say: 'Callable[[str], None]') -
 
 
 def look_at(client: 'Client', point: np.ndarray) -> None:
-    """Tells the arm what to look at."""
+    """Publishes the point to look at."""
     publisher = client.node.create_publisher(PointStamped, 'look_at', COMMAND)
-    client.wait('a listener', lambda: publisher.get_subscription_count() > 0, 5.0)
+    client.wait('a subscriber on look_at', lambda: publisher.get_subscription_count() > 0, 5.0)
     message = PointStamped()
     message.point.x, message.point.y, message.point.z = point.tolist()
     publisher.publish(message)

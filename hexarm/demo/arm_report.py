@@ -42,21 +42,21 @@ class ArmObservation:
 @dataclass(frozen=True, eq=False)
 class ArmResult:
     """turned (n,) in radians while the orientation is held, missed (n,) in metres while the tool
-    looks at the point, NaN elsewhere; way and stop of the joystick's motions.
+    looks at the point, NaN elsewhere; travel and stop of the joystick's motions.
     """
 
     observation: ArmObservation
     poses: Pose
     turned: Array
     missed: Array
-    way: float
+    travel: float
     stop: float
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """The table, a line each."""
         degrees, millimetres = np.degrees(self.turned), 1e3 * self.missed
         for name, values, unit in (
-            (f'turned, over {self.way:.2f} m: end, rms, max', degrees, '°'),
+            (f'turned, over {self.travel:.2f} m: end, rms, max', degrees, '°'),
             ('point missed by: end, rms, max', millimetres, ' mm'),
         ):
             kept = values[np.isfinite(values)]

@@ -66,7 +66,7 @@ def _posture(axes: Axes3D, result: ArmResult, machine: Machine, k: int, name: st
 mpl.use('Agg')
 
 
-ASKED, DONE = '#9aa5b1', '#0b6e99'
+COMMANDED, DONE = '#9aa5b1', '#0b6e99'
 CRANKS = ('#0b6e99', '#3aa6b9', '#6a994e', '#d4a017', '#d1603d', '#8e4162')
 
 
@@ -97,13 +97,13 @@ def _angles(result: Result | ArmResult) -> tuple[Array, Array]:
 
 def _path(axes: Axes3D, result: Result) -> None:
     curve = result.observation.curve
-    asked = [curve.pose_at(t).position for t in np.linspace(0, curve.duration, 400)]
+    commanded = [curve.pose_at(t).position for t in np.linspace(0, curve.duration, 400)]
     corners = [result.poses.position[0], *(g.position for _, g in result.observation.corners)]
-    for points in (asked, corners):
-        axes.plot(*(1e3 * np.array(points).T), color=ASKED, lw=5, solid_capstyle='round')
+    for points in (commanded, corners):
+        axes.plot(*(1e3 * np.array(points).T), color=COMMANDED, lw=5, solid_capstyle='round')
     done = 1e3 * result.poses.position
     axes.plot(*done.T, color=DONE, lw=1.2)
-    axes.plot([], [], color=ASKED, lw=5, label='asked for')
+    axes.plot([], [], color=COMMANDED, lw=5, label='commanded')
     axes.plot([], [], color=DONE, lw=1.2, label='done')
     axes.plot(*done[0], 'o', color='#d1603d', ms=6, label='park')
     axes.set(

@@ -1,4 +1,4 @@
-"""What the demonstration hears while it runs: true joint angles, and what was asked when."""
+"""What the demonstration records: true joint angles, and what was commanded when."""
 
 from typing import TYPE_CHECKING
 
@@ -14,11 +14,9 @@ from manipulator.pose import Pose
 if TYPE_CHECKING:
     from hexarm.client import Client
 
-LONGEST_LAG, LAG_STEP = 0.3, 0.001
-
 
 class Recorder:
-    """Everything that the fake board's joints really did, and what was asked of them."""
+    """Everything that the fake board's joints really did, and their commands."""
 
     def __init__(self, client: 'Client') -> None:
         self._client = client
@@ -30,12 +28,12 @@ class Recorder:
         )
 
     def line_to(self, goal: Pose) -> None:
-        """Notes that a straight move to `goal` is asked for now."""
+        """Notes that a straight move to `goal` is commanded now."""
         now = seconds(self._client.node.get_clock().now().to_msg())
         self._corners.append((now, goal))
 
     def follow(self, curve: Curve) -> None:
-        """Notes that a curve is asked for."""
+        """Notes that a curve is commanded."""
         self._curve = curve
 
     def observation(self, kinematics: Kinematics) -> Observation:

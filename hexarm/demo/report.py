@@ -1,4 +1,4 @@
-"""What the demonstration measured: the board's true joint angles against what was asked for."""
+"""What the demonstration measured: the board's true joint angles against the commands."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ LONGEST_LAG, LAG_STEP = 0.3, 0.001
 
 @dataclass(frozen=True)
 class Curve:
-    """The pose asked for, as a function of the time since `begin` (Unix time)."""
+    """The commanded pose, as a function of the time since `begin` (Unix time)."""
 
     pose_at: Callable[[float], Pose]
     begin: float
@@ -24,7 +24,7 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Observation:
-    """True joints (n, 6) at Unix times (n,), straight moves asked for at their times, a curve."""
+    """True joints (n, 6) at Unix times (n,), straight moves commanded at their times, a curve."""
 
     times: Array
     joints: Array
@@ -68,8 +68,8 @@ def measure(observation: Observation, kinematics: Kinematics) -> Result:
     dense = _stacked([curve.pose_at(t) for t in np.arange(0.0, curve.duration, 0.005)])
     contour[on_curve] = _distance_to_polyline(poses.position[on_curve], dense.position)
     lag = _lag(observation, poses.position, on_curve)
-    asked = [curve.pose_at(t - curve.begin - lag) for t in observation.times[on_curve]]
-    turns = so3.log(np.swapaxes(poses.rotation[on_curve], -1, -2) @ _stacked(asked).rotation)
+    commanded = [curve.pose_at(t - curve.begin - lag) for t in observation.times[on_curve]]
+    turns = so3.log(np.swapaxes(poses.rotation[on_curve], -1, -2) @ _stacked(commanded).rotation)
     orientation[on_curve] = np.linalg.norm(turns, axis=-1)
     return Result(observation, poses, contour, lag, orientation)
 
@@ -88,10 +88,10 @@ def _lag(observation: Observation, positions: Array, chosen: Mask) -> float:
     """The delay at which the positions come closest to the curve."""
     times, curve = observation.times[chosen] - observation.curve.begin, observation.curve
     grid = np.arange(-LONGEST_LAG, curve.duration + LAG_STEP, LAG_STEP)
-    asked = _stacked([curve.pose_at(t) for t in grid]).position
+    commanded = _stacked([curve.pose_at(t) for t in grid]).position
     lags = np.arange(0.0, LONGEST_LAG, LAG_STEP)
     indices = np.round((times[None, :] - lags[:, None] - grid[0]) / LAG_STEP).astype(int)
-    errors = np.linalg.norm(positions[chosen] - asked[indices.clip(0, len(grid) - 1)], axis=-1)
+    errors = np.linalg.norm(positions[chosen] - commanded[indices.clip(0, len(grid) - 1)], axis=-1)
     return float(lags[np.argmin((errors**2).mean(axis=-1))])
 
 

@@ -1,1 +1,1 @@
-"""One local web page to look at a machine and to hold it: docs/panel.md."""
+"""One local web page to watch and drive a machine: docs/panel.md."""

@@ -25,7 +25,7 @@ STILL = 2e-5
 """Metres and radians below which a change is not drawn."""
 
 PLATE, PLATE_OPACITY = 0.02, 0.6
-"""Thickness by the machine's size; the way driven and the reach are seen through it."""
+"""Thickness by the machine's size; the trail and the reach are seen through it."""
 
 HALF_OPEN = 0.5
 """How a gripper is drawn of which nothing is known."""
@@ -55,27 +55,27 @@ class Body:
         home = kinematics.home
         joints = kinematics.inverse(home)
         found = self._pieces(Stance(home, joints))
-        look: dict[str, Any] = {'opacity': GHOST_OPACITY if is_ghost else None, 'lod': 'off'}
-        look |= {'cast_shadow': not is_ghost, 'receive_shadow': not is_ghost}
+        style: dict[str, Any] = {'opacity': GHOST_OPACITY if is_ghost else None, 'lod': 'off'}
+        style |= {'cast_shadow': not is_ghost, 'receive_shadow': not is_ghost}
         vertices, faces = bar()
         self._bars = scene.add_batched_meshes_simple(
             f'{name}/bars', vertices, faces, found.bars.wxyz, found.bars.starts,
             batched_scales=found.bars.sizes.astype(np.float32),
-            batched_colors=self._bar_colours(found, {}), **look,
+            batched_colors=self._bar_colours(found, {}), **style,
         )  # fmt: skip
         ball, ball_faces = hull(sphere(9, 14))
         count = len(found.balls)
         self._balls = scene.add_batched_meshes_simple(
             f'{name}/balls', ball, ball_faces, np.tile([1.0, 0.0, 0.0, 0.0], (count, 1)),
             found.balls, batched_scales=found.ball_radii.astype(np.float32),
-            batched_colors=self._ball_colours(found, {}), **look,
+            batched_colors=self._ball_colours(found, {}), **style,
         )  # fmt: skip
-        self._plate = self._add_plate(scene, name, Stance(home, joints), look)
+        self._plate = self._add_plate(scene, name, Stance(home, joints), style)
 
     def show(self, stance: Stance, left: dict[str, float]) -> None:
         """Moves every piece to a stance; `left` is the share of room left by owner.
 
-        Nothing is sent for a machine that stands still: pages draw only what changes.
+        Nothing is sent for a machine at rest: pages draw only what changes.
         """
         if self._shown is not None and _are_alike(stance, self._shown):
             return
@@ -117,11 +117,11 @@ class Body:
         return colours(('link',) * len(found.balls), found.ball_owners, left)
 
     @staticmethod
-    def _recolour(handle: Any, wanted: Colours) -> None:
-        if not np.array_equal(handle.batched_colors, wanted):
-            handle.batched_colors = wanted
+    def _recolour(handle: Any, new: Colours) -> None:
+        if not np.array_equal(handle.batched_colors, new):
+            handle.batched_colors = new
 
-    def _add_plate(self, scene: Any, name: str, stance: Stance, look: dict[str, Any]) -> Any:
+    def _add_plate(self, scene: Any, name: str, stance: Stance, style: dict[str, Any]) -> Any:
         """The platform as a plate, where the machine has one."""
         strokes = self._kinematics.skeleton(stance.pose, stance.joints)
         outline = next((s.points[:-1] for s in strokes if s.part == 'platform'), None)
@@ -129,15 +129,15 @@ class Body:
             return None
         inside = stance.pose.inverse().transform(outline) * self._scale
         vertices, faces = plate(inside, PLATE)
-        look = {key: value for key, value in look.items() if key != 'lod'}
-        look['opacity'] = GHOST_OPACITY if self._is_ghost else PLATE_OPACITY
+        style = {key: value for key, value in style.items() if key != 'lod'}
+        style['opacity'] = GHOST_OPACITY if self._is_ghost else PLATE_OPACITY
         tint = GHOST if self._is_ghost else PLAIN['platform']
         return scene.add_mesh_simple(f'{name}/plate', vertices, faces, color=tint, side='double',
-                                     flat_shading=True, **look)  # fmt: skip
+                                     flat_shading=True, **style)  # fmt: skip
 
 
 def _are_alike(a: Stance, b: Stance) -> bool:
-    """Whether nobody could see the difference."""
-    way = np.abs(a.pose.twist_to(b.pose)).max()
+    """Whether the difference is invisible."""
+    offsets = np.abs(a.pose.twist_to(b.pose)).max()
     is_grip_alike = a.opening == b.opening
-    return is_grip_alike and bool(max(way, np.abs(a.joints - b.joints).max()) < STILL)
+    return is_grip_alike and bool(max(offsets, np.abs(a.joints - b.joints).max()) < STILL)

@@ -16,6 +16,7 @@ from hexarm.panel.view import View
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.states import MachineState
 
 UNITS = np.array([1e3] * 3 + [180.0 / np.pi] * 3)
 NAMES = tuple(f'{axis} [{unit}]' for axis, unit in zip(AXES, ['mm'] * 3 + ['°'] * 3, strict=True))
@@ -23,12 +24,12 @@ STEP = 0.1
 
 
 class GoalSliders:
-    """What a person asks for; `wish` is called with the pose at every move of a slider by hand."""
+    """The user's goal; `request` is called with the pose at every move of a slider by hand."""
 
-    def __init__(self, gui: Any, machine: Machine, wish: Callable[[Pose], None]) -> None:
+    def __init__(self, gui: Any, machine: Machine, request: Callable[[Pose], None]) -> None:
         home = coordinates(machine.kinematics.home)
         limits = np.round(bounds(machine) * UNITS[:, None], 1)
-        self._wish = wish
+        self._request = request
         self._low, self._high = limits[:, 0], limits[:, 1]
         self._centre = home
         self._sliders = [
@@ -48,7 +49,7 @@ class GoalSliders:
         return pose_at(self._values)
 
     def follow(self, pose: Pose) -> None:
-        """Shows another pose without asking for it: the machine went there by other means."""
+        """Shows another pose without a request: the machine went there by other means."""
         values = coordinates(pose, self._centre)
         shown = np.clip(np.round(values * UNITS, 1), self._low, self._high)
         self._values = values
@@ -72,7 +73,7 @@ class GoalSliders:
             values = self._values.copy()
             values[axis] = event.target.value / UNITS[axis]
             self._values = values
-            self._wish(pose_at(values))
+            self._request(pose_at(values))
 
         return on_update
 
@@ -85,17 +86,17 @@ def slider_marks(marks: tuple[tuple[float, str], ...]) -> tuple[Any, ...]:
 
 
 RED, GREEN, GREY = (218, 54, 51), (46, 160, 67), (68, 76, 86)
-STATE_COLOURS = {
-    'enabled': '#40c08c',
-    'arming': '#f5b041',
-    'holding': '#f5b041',
-    'stopped': '#e74c3c',
-    'fault': '#e74c3c',
+STATE_COLOURS: dict[str, str] = {
+    MachineState.ENABLED: '#40c08c',
+    MachineState.ARMING: '#f5b041',
+    MachineState.HOLDING: '#f5b041',
+    MachineState.STOPPED: '#e74c3c',
+    MachineState.FAULT: '#e74c3c',
 }
 DIM = '#8b949e'
 
 STOP_AGAIN = 1.0
-"""How often STOP is said while it is held, Hz."""
+"""How often STOP is sent while it is held, Hz."""
 
 IN_SIGHT = """
 <style>
@@ -109,7 +110,7 @@ What hides its overflow would be what a button sticks to; what clips it is not."
 
 
 @dataclass(frozen=True)
-class Wishes:
+class Requests:
     """What the buttons call; each returns at once, from any thread."""
 
     emergency_stop: Callable[[], None]
@@ -127,50 +128,50 @@ class Wishes:
 class Buttons:
     """State line, STOP, servos, motion and speed."""
 
-    def __init__(self, gui: Any, wishes: Wishes) -> None:
-        self._wishes = wishes
+    def __init__(self, gui: Any, requests: Requests) -> None:
+        self._requests = requests
         self._line = gui.add_html(state_line(View(), ''))
         stop = gui.add_button('STOP', color=RED, icon='hand-stop')
 
         async def on_stop(event: Any) -> None:
-            wishes.emergency_stop()
+            requests.emergency_stop()
 
         # Coroutines run in the server's own loop: they wait for no thread.
-        stop.on_hold(on_stop, callback_hz=STOP_AGAIN)  # said as the finger comes down …
+        stop.on_hold(on_stop, callback_hz=STOP_AGAIN)  # sent on press …
         stop.on_click(on_stop)  # … and by the keyboard
         gui.add_html(IN_SIGHT.format(stop._impl.uuid))
         self._group(gui, 'Servos', {
-            'Enable': lambda: wishes.enable(True),
-            'Disable': lambda: wishes.enable(False),
-            'Clear fault': wishes.clear_fault,
+            'Enable': lambda: requests.enable(True),
+            'Disable': lambda: requests.enable(False),
+            'Clear fault': requests.clear_fault,
         })  # fmt: skip
         self._group(gui, 'Motion', {
-            'Home': wishes.home,
-            'Cycle': wishes.start_cycle,
-            'Brake': wishes.brake,
+            'Home': requests.home,
+            'Cycle': requests.start_cycle,
+            'Brake': requests.brake,
         })  # fmt: skip
         self._group(gui, 'Pause', {
-            'Pause': lambda: wishes.pause(True),
-            'Go on': lambda: wishes.pause(False),
+            'Pause': lambda: requests.pause(True),
+            'Go on': lambda: requests.pause(False),
         })  # fmt: skip
         self._speed = gui.add_slider('speed [%]', 0, 100, 1, 100)
         self._speed.on_update(self._on_speed)
 
-    def show(self, view: View, said: str) -> None:
+    def show(self, view: View, notice: str) -> None:
         """The machine's state, and the last answer to a button."""
-        line = state_line(view, said)
+        line = state_line(view, notice)
         if self._line.content != line:
             self._line.content = line
 
     def show_speed(self, share: float) -> None:
-        """The override that somebody set."""
+        """The override that is set."""
         percent = round(100 * share)
         if self._speed.value != percent:
             self._speed.value = percent
 
     def _on_speed(self, event: Any) -> None:
         if event.client_id is not None:
-            self._wishes.set_speed(event.target.value / 100)
+            self._requests.set_speed(event.target.value / 100)
 
     @staticmethod
     def _group(gui: Any, label: str, actions: dict[str, Callable[[], None]]) -> None:
@@ -182,7 +183,7 @@ class Buttons:
         group.on_click(on_press)
 
 
-def state_line(view: View, said: str) -> str:
+def state_line(view: View, notice: str) -> str:
     """The state in colour, the motion beside it, reasons below; as HTML."""
     colour = STATE_COLOURS.get(view.machine_state, DIM)
     motion = f' · {_escaped(view.motion or view.mode)}' if view.mode else ''
@@ -190,7 +191,7 @@ def state_line(view: View, said: str) -> str:
         f'<b style="color:{colour}">{_escaped(view.machine_state)}</b>'
         f'<span style="color:{DIM}">{motion}</span>'
     ]
-    lines += [f'<span>{_escaped(text)}</span>' for text in (view.machine_reason, said) if text]
+    lines += [f'<span>{_escaped(text)}</span>' for text in (view.machine_reason, notice) if text]
     inner = '<br>'.join(lines)
     return f'<div id="state" style="padding:2px 12px 8px;font-size:13px">{inner}</div>'
 

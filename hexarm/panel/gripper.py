@@ -22,7 +22,7 @@ PAST_TOOL = 0.02
 
 @dataclass(frozen=True)
 class GripperJoint:
-    """A joint outside the kinematics: where it stands when closed and when open, in rad (or m)."""
+    """A joint outside the kinematics: its positions closed and open, in rad (or m)."""
 
     name: str
     closed: float
@@ -34,7 +34,7 @@ class GripperJoint:
 
 
 def gripper_of(name_or_path: str) -> GripperJoint | None:
-    """The joint that a machine file marks as its gripper; ConfigError says what is wrong."""
+    """The joint that a machine file marks as its gripper; ConfigError with all problems."""
     servos = board_config(name_or_path).servos
     calibration = Calibration.from_config(servos)
     for joint in servos.joints:
@@ -59,20 +59,20 @@ STEP = 1
 
 
 class GripperSlider:
-    """Shows where the gripper is; a hand's move calls `wish` with 0 (closed) to 1 (open)."""
+    """Shows where the gripper is; a hand's move calls `request` with 0 (closed) to 1 (open)."""
 
-    def __init__(self, gui: Any, wish: Callable[[float], None]) -> None:
-        self._wish = wish
+    def __init__(self, gui: Any, request: Callable[[float], None]) -> None:
+        self._request = request
         marks = ((0, 'closed'), (100, 'open'))
         self._slider = gui.add_slider('gripper [%]', 0, 100, STEP, 50, marks=marks)
         self._slider.on_update(self._on_update)
 
     def follow(self, opening: float) -> None:
-        """Shows an opening without asking for it."""
+        """Shows an opening without a request."""
         percent = round(100 * opening)
         if self._slider.value != percent:
             self._slider.value = percent
 
     def _on_update(self, event: Any) -> None:
         if event.client_id is not None:  # a hand's, not `follow`'s
-            self._wish(event.target.value / 100)
+            self._request(event.target.value / 100)

@@ -1,14 +1,14 @@
 """Who holds the joystick of the pages, and whether a hand is still on it.
 
-Every open page shows the joystick; whoever presses it first has it until it lets go. A press
+Every open page shows the joystick; the first page to press it owns it until release. A press
 lives on its beats alone: a release, a page that is gone, frozen or late ends it, and an ended
 press never comes to life again, whatever beats still arrive; only a new press does.
 
 Each beat is answered with a tick, the time of the answer, and the page puts the newest tick that
-it has seen into its next beat: so a beat tells how long ago page and line were both alive.
+it has seen into its next beat: so a beat shows how long ago page and line were both alive.
 Nothing moves before the first tick came back. Times are monotonic, in seconds.
 
-What pages and the joystick say to each other, as JSON text; bad words raise InvalidInput.
+The messages of pages and joystick are JSON text; malformed ones raise InvalidInput.
 """
 
 import json
@@ -17,23 +17,18 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from manipulator.arrays import Array, frozen
+from manipulator.deadlines import RELEASE
 from manipulator.errors import InvalidInput
 
-SILENCE = 0.25
-"""Without a beat for longer than this, nobody is holding."""
-
-LATE = 0.25
-"""A beat that answers an older tick comes from a page or a line that stands still."""
-
 ANOTHER = 'another page has the joystick'
-LAPSED = 'the page was silent: press again'
+LAPSED = 'no heartbeat came from the page: press again'
 STALE = 'the page or the line is slow: press again'
 STOPPED = 'the machine was stopped: press again'
 
 
 @dataclass(frozen=True, eq=False)
 class Beat:
-    """A page says that press number `press` is still held, the stick (6,) in −1 to 1.
+    """A page's heartbeat: press number `press` is still held, the stick (6,) in −1 to 1.
 
     tick is the newest that the page has seen during this press, None before the first.
     """
@@ -49,7 +44,7 @@ class _Hold:
 
     page: int
     press: int
-    heard_at: float
+    received_at: float
     stick: Array | None = None
 
 
@@ -61,17 +56,17 @@ class Joystick:
     _over: dict[int, int] = field(default_factory=dict)
     _reasons: dict[int, str] = field(default_factory=dict)
 
-    def hear(self, page: int, beat: Beat, now: float) -> None:
+    def receive(self, page: int, beat: Beat, now: float) -> None:
         """A beat of one page has come."""
         self._expire(now)
         if beat.press <= self._over.get(page, -1):
             return
         if self._hold is not None and self._hold.page != page:
             self._end(page, beat.press, ANOTHER)
-        elif beat.tick is not None and not 0.0 <= now - beat.tick <= LATE:
+        elif beat.tick is not None and not 0.0 <= now - beat.tick <= RELEASE:
             self._end(page, beat.press, STALE)
         elif self._hold is not None and self._hold.press == beat.press:
-            self._hold.heard_at = now
+            self._hold.received_at = now
             self._hold.stick = None if beat.tick is None else beat.stick
         elif beat.tick is None:
             self._reasons.pop(page, None)
@@ -80,7 +75,7 @@ class Joystick:
             self._end(page, beat.press, LAPSED)
 
     def release(self, page: int, press: int) -> None:
-        """The page says that this press, and every one before it, is over."""
+        """The page has released this press, and every one before it."""
         self._end(page, press, '')
 
     def leave(self, page: int) -> None:
@@ -91,7 +86,7 @@ class Joystick:
             self._hold = None
 
     def stop(self) -> None:
-        """Takes the joystick from whoever has it; only a new press moves again."""
+        """Takes the joystick from its owner; only a new press moves again."""
         if self._hold is not None:
             self._end(self._hold.page, self._hold.press, STOPPED)
 
@@ -110,7 +105,7 @@ class Joystick:
         return self._reasons.get(page, '')
 
     def _expire(self, now: float) -> None:
-        if self._hold is not None and now - self._hold.heard_at > SILENCE:
+        if self._hold is not None and now - self._hold.received_at > RELEASE:
             self._end(self._hold.page, self._hold.press, LAPSED)
 
     def _end(self, page: int, press: int, reason: str) -> None:
@@ -125,23 +120,23 @@ MOST_PRESSES = 1 << 31
 AXES = 6
 
 
-def heard(text: str | bytes) -> Beat | int:
+def parsed(text: str | bytes) -> Beat | int:
     """A beat, or the number of a press that was released."""
     if not isinstance(text, str) or len(text) > LONGEST:
         raise InvalidInput(f'needs a text of at most {LONGEST} characters')
     try:
-        words = json.loads(text)
+        message = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise InvalidInput(f'is no JSON: {error}') from error
-    if not isinstance(words, dict):
+        raise InvalidInput(f'is not JSON: {error}') from error
+    if not isinstance(message, dict):
         raise InvalidInput('needs an object')
-    press = words.get('press')
+    press = message.get('press')
     if type(press) is not int or not 0 <= press < MOST_PRESSES:
         raise InvalidInput('press needs a whole number from 0')
-    if words.get('released') is True:
+    if message.get('released') is True:
         return press
-    tick = words.get('tick')
-    return Beat(press, None if tick is None else _number('tick', tick), _stick(words))
+    tick = message.get('tick')
+    return Beat(press, None if tick is None else _number('tick', tick), _stick(message))
 
 
 def answer(tick: float, has_it: bool, is_taken: bool, reason: str) -> str:
@@ -149,8 +144,8 @@ def answer(tick: float, has_it: bool, is_taken: bool, reason: str) -> str:
     return json.dumps({'tick': tick, 'has_it': has_it, 'is_taken': is_taken, 'reason': reason})
 
 
-def _stick(words: dict[str, Any]) -> Any:
-    stick = words.get('stick')
+def _stick(message: dict[str, Any]) -> Any:
+    stick = message.get('stick')
     if not isinstance(stick, list) or len(stick) != AXES:
         raise InvalidInput(f'stick needs {AXES} numbers')
     return frozen([min(max(_number('stick', part), -1.0), 1.0) for part in stick])

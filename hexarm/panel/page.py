@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from hexarm.panel.controls import Buttons, GoalSliders, Wishes
+from hexarm.panel.controls import Buttons, GoalSliders, Requests
 from hexarm.panel.gripper import GripperSlider
-from hexarm.panel.plots import Plots
-from hexarm.panel.readout import diagnostics_text
+from hexarm.panel.readout import Plots, diagnostics_text
 from hexarm.panel.scene import Scene
 from hexarm.panel.view import Stance, View
 from manipulator.arrays import Array
@@ -22,7 +21,7 @@ FASTEST = 100
 
 
 class Page:
-    """Everything that a viser server shows of one machine; shared by all who look."""
+    """Everything that a viser server shows of one machine; shared by all its viewers."""
 
     def __init__(
         self,
@@ -31,8 +30,8 @@ class Page:
         has_gripper: bool,
         title: str,
         joystick: str,
-        wishes: Wishes,
-        wish_goal: Callable[[Pose], None],
+        requests: Requests,
+        request_goal: Callable[[Pose], None],
     ) -> None:
         gui = server.gui
         gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False,
@@ -40,15 +39,15 @@ class Page:
         gui.set_panel_label(title)
         gui.main_panel.dock_right()
         self.scene = Scene(server, machine, has_gripper)
-        self._buttons = Buttons(gui, wishes)
+        self._buttons = Buttons(gui, requests)
         tabs = gui.add_tab_group()
         with tabs.add_tab('Drive'):
-            self.sliders = GoalSliders(gui, machine, wish_goal)
-            self._gripper = GripperSlider(gui, wishes.grip) if has_gripper else None
+            self.sliders = GoalSliders(gui, machine, request_goal)
+            self._gripper = GripperSlider(gui, requests.grip) if has_gripper else None
             gui.add_html(joystick_frame(joystick))
             self._joystick_speed = gui.add_slider('joystick [%]', 1, FASTEST, 1, 40)
             modes = gui.add_dropdown('jog mode', tuple(MODES))
-            modes.on_update(lambda event: wishes.choose_mode(event.target.value))
+            modes.on_update(lambda event: requests.choose_mode(event.target.value))
         kinematics = machine.kinematics
         with tabs.add_tab('Plots'):
             self._plots = Plots(gui, kinematics.joint_names, kinematics.joint_unit)
@@ -59,16 +58,16 @@ class Page:
 
     @property
     def joystick_share(self) -> float:
-        """The part of the machine's speeds that a whole deflection asks for."""
+        """The part of the machine's speeds at full deflection."""
         return float(self._joystick_speed.value) / FASTEST
 
-    def show(self, view: View, said: str) -> None:
+    def show(self, view: View, notice: str) -> None:
         """What moves: many times a second."""
         self.scene.show(view)
-        self._buttons.show(view, said)
+        self._buttons.show(view, notice)
 
     def show_speed(self, share: float) -> None:
-        """The speed override that somebody set."""
+        """The speed override that is set."""
         self._buttons.show_speed(share)
 
     def follow_gripper(self, measured: Stance | None) -> None:
@@ -81,7 +80,7 @@ class Page:
         self._plots.note(view, now)
 
     def redraw(self, view: View) -> None:
-        """What may lag: plots, the way driven, the words of the nodes."""
+        """What may lag: plots, the trail, the nodes' reports."""
         self._plots.draw()
         self.scene.draw_trail()
         text = diagnostics_text(view.nodes)
@@ -98,7 +97,7 @@ class Page:
         self._is_reach_shown.on_update(
             lambda event: self.scene.set_reach_visible(event.target.value)
         )
-        gui.add_button('Clear the way driven').on_click(lambda event: self.scene.clear_trail())
+        gui.add_button('Clear the trail').on_click(lambda event: self.scene.clear_trail())
         gui.add_markdown(LEGEND)
 
 

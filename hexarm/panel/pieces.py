@@ -80,9 +80,9 @@ class Bars:
 
 def bars_between(starts: Array, ends: Array, radii: Array) -> Bars:
     """Bars from starts to ends (n, 3) with radii (n,), metres."""
-    way = ends - starts
-    lengths = np.linalg.norm(way, axis=-1)
-    axes = way / np.maximum(lengths, SHORTEST)[:, None]
+    offsets = ends - starts
+    lengths = np.linalg.norm(offsets, axis=-1)
+    axes = offsets / np.maximum(lengths, SHORTEST)[:, None]
     axes[lengths < SHORTEST] = (0.0, 0.0, 1.0)
     sizes = np.stack([radii, radii, np.maximum(lengths, SHORTEST)], axis=-1)
     return Bars(starts, _turns_from_z(axes), sizes)
@@ -118,7 +118,7 @@ PLAIN = {
     'link': (62, 104, 168),
     'gripper': (196, 140, 40),
 }
-"""Parts whose colour says nothing; cranks, rods and joints are coloured by their margins."""
+"""Parts whose colour means nothing; cranks, rods and joints are coloured by their margins."""
 
 COLUMNS = ('crank', 'rod')
 """Parts of which each leg has one, in the order of the legs."""
@@ -134,7 +134,7 @@ Colours = NDArray[np.uint8]
 class Pieces:
     """n bars and m balls of a stance, lengths in machine sizes.
 
-    parts (n) and owners (n), ball_owners (m) say what each is of, and which leg's or joint's
+    parts (n) and owners (n), ball_owners (m) are what each is of, and which leg's or joint's
     margin it shows ('' for none).
     """
 

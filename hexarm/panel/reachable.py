@@ -7,8 +7,8 @@ base frame. Changing one alone is a twist about a fixed axis, so `travel` answer
 import numpy as np
 
 from manipulator import rotation as so3
+from manipulator.analysis.free_paths import is_joint_box
 from manipulator.analysis.travel import travel
-from manipulator.analysis.way import is_joint_box
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 from manipulator.pose import Pose

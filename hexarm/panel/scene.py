@@ -1,4 +1,4 @@
-"""The 3D part of the page: the machine, its reach, the way it went, its pivot and its goal.
+"""The 3D part of the page: the machine, its reach, its trail, its pivot and its goal.
 
 Everything is drawn in base axes, lengths divided by the machine's size: so light, camera and line
 widths suit a platform of the size of a hand and an arm of the size of a man alike.
@@ -44,9 +44,9 @@ class Scene:
         self._floor_height = float(min(low[2], 0.0)) - 0.06
         self._floor()
         self._camera(server, (low + high) / 2, float(high[2] - low[2]))
-        look = kinematics, self._scale
-        self._measured = Body(self._scene, '/measured', *look, has_gripper=has_gripper)
-        self._commanded = Body(self._scene, '/commanded', *look, is_ghost=True)
+        style = kinematics, self._scale
+        self._measured = Body(self._scene, '/measured', *style, has_gripper=has_gripper)
+        self._commanded = Body(self._scene, '/commanded', *style, is_ghost=True)
         self._pivot = self._add_axes('/pivot', 0.16, 0.006)
         self._goal = self._add_axes('/goal', 0.22, 0.004)
         self._reach: list[Any] = []
@@ -68,20 +68,20 @@ class Scene:
             self._commanded.show(view.commanded, {})
 
     def show_goal(self, goal: Pose) -> None:
-        """Puts the goal's axes where the sliders ask to go."""
+        """Puts the goal's axes at the pose of the sliders."""
         self._place(self._goal, goal)
 
     def show_reach(self, surface: Array) -> None:
         """Draws the positions reached with home's orientation, a grid from pole to pole."""
         vertices, faces = hull(surface * self._scale)
         is_cut = bool(vertices[:, 2].min() < self._floor_height)
-        looks = {'net': REACH_LOOKS['net']} if is_cut else REACH_LOOKS  # a floor cuts in patches
+        styles = {'net': REACH_LOOKS['net']} if is_cut else REACH_LOOKS  # a floor cuts in patches
         self._reach = [
             self._scene.add_mesh_simple(
                 f'/reach/{name}', vertices, faces, color=HULL_COLOUR, side='double',
-                cast_shadow=False, receive_shadow=False, **look,
+                cast_shadow=False, receive_shadow=False, **style,
             )
-            for name, look in looks.items()
+            for name, style in styles.items()
         ]  # fmt: skip
 
     def set_reach_visible(self, is_visible: bool) -> None:
@@ -90,7 +90,7 @@ class Scene:
             handle.visible = is_visible
 
     def draw_trail(self) -> None:
-        """Draws the way driven anew, where it grew; called a few times a second."""
+        """Draws the trail again, where it grew; called a few times a second."""
         if not self._trail_is_new or len(self._trail) < 2:
             return
         self._trail_is_new = False
@@ -100,18 +100,18 @@ class Scene:
         )
 
     def clear_trail(self) -> None:
-        """Forgets the way driven."""
+        """Forgets the trail."""
         self._trail.clear()
         if self._trail_handle is not None:
             self._trail_handle.remove()
             self._trail_handle = None
 
     def _are_apart(self, commanded: Stance, measured: Stance | None) -> bool:
-        """Whether both can be told apart: a ghost in the same place only dulls the colours."""
+        """Whether both can be distinguished: a ghost in the same place only dulls the colours."""
         if measured is None:
             return True
-        way = np.abs(commanded.pose.twist_to(measured.pose))
-        return bool(way[:3].max() * self._scale > APART or way[3:].max() > APART)
+        gap = np.abs(commanded.pose.twist_to(measured.pose))
+        return bool(gap[:3].max() * self._scale > APART or gap[3:].max() > APART)
 
     def _remember(self, point: Array) -> None:
         if self._trail and np.linalg.norm(point - self._trail[-1]) < TRAIL_STEP:
@@ -144,7 +144,7 @@ class Scene:
         self._scene.configure_default_lights(cast_shadow=False)  # shadows cost most of the drawing
 
     def _camera(self, server: Any, centre: Array, height: float) -> None:
-        """Looks at all of the machine: at what is tall from further away."""
+        """Turns the camera to the whole machine: from further away where it is tall."""
         server.initial_camera.position = tuple(centre + (0.7 + 0.45 * height) * CAMERA)
         server.initial_camera.look_at = tuple(centre)
         server.initial_camera.fov = 0.75

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from manipulator.arrays import Array
 from manipulator.frames import Frames
 from manipulator.pose import Pose
+from manipulator.states import UNKNOWN
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +23,7 @@ class Stance:
 
 @dataclass(frozen=True)
 class NodeReport:
-    """What one node last said on /diagnostics; age in seconds, level 0 (good) to 3."""
+    """One node's last report on /diagnostics; age in seconds, level 0 (good) to 3."""
 
     name: str
     level: int
@@ -33,12 +34,12 @@ class NodeReport:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """Measured and commanded stance (None while nothing fresh is known) and all the words."""
+    """Measured and commanded stance (None while nothing fresh is known) and all texts."""
 
     measured: Stance | None = None
     commanded: Stance | None = None
     frames: Frames = field(default_factory=Frames)
-    machine_state: str = 'not heard of'
+    machine_state: str = UNKNOWN
     machine_reason: str = ''
     mode: str = ''
     motion: str = ''

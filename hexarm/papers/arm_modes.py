@@ -53,7 +53,7 @@ def feedback() -> Iterator[Finding]:
     """Two seconds of a straight line by X' = (Xₙ − Xₙ₋₁)/T."""
     told: tuple[tuple[str, Verdict, str], ...] = (
         ('measured', 'agrees', 'only the error of the last step remains'),
-        ('computed', 'not stated', 'the steps’ errors add up'),
+        ('computed', 'not stated', 'the errors of the steps accumulate'),
     )
     for kind, verdict, reason in told:
         q, before = START, PAPER_ARM.position(START)
@@ -65,7 +65,7 @@ def feedback() -> Iterator[Finding]:
             before = target
         off = 1e6 * float(np.linalg.norm(PAPER_ARM.position(q) - before))
         yield Finding(
-            f'feedback_{kind}', ARM, f'Xₙ₋₁ {kind}: off the line after 2 s', 'follows',
+            f'feedback_{kind}', ARM, f'Xₙ₋₁ {kind}: deviation from the line after 2 s', 'follows',
             f'{off:.2f} µm', off, 0.01 * off, verdict, reason,
         )  # fmt: skip
 
@@ -95,8 +95,8 @@ def modes() -> Iterator[Finding]:
         number = 1e3 * value if is_length else float(np.degrees(value))
         yield Finding(
             f'mode_{name.split()[0]}', ARM, f'orientation {name}', 'a mode',
-            f'off by ≤ {shown}', number, 0.01, 'agrees',
-            'closed loop on the pose; three projections would be falsely singular',
+            f'deviates by ≤ {shown}', number, 0.01, 'agrees',
+            'closed loop on the pose; three projections would have false singularities',
         )  # fmt: skip
 
 
@@ -112,7 +112,7 @@ def step_times() -> Iterator[Finding]:
         time = found[key]
         yield Finding(
             key, ARM, topic, paper, f'{time:.2f} ms on an ATmega2560 at 16 MHz', time, 0.05 * time,
-            'agrees', 'single precision, on a simulated chip, to the clock cycle',
+            'agrees', 'single precision, on a simulated chip, exact to the clock cycle',
         )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from hexapod_control.rotary import RotaryHexapod
 from hexarm import machines
-from hexarm.cli.mjcf import modelled
+from hexarm.cli.export import modelled
 from hexarm.papers.crank_kinematics import MACHINE
 from hexarm.papers.finding import ROTARY, Finding
 from hexarm.simulation.dynamics_config import RotaryDynamicsConfig
@@ -62,16 +62,17 @@ def sinusoid(recording: Recording, out: int) -> Iterator[Finding]:
     yield Finding(
         'fig_12', ROTARY, 'sinusoids of fig. 12', 'frequency and phase not in the text',
         f'all in phase at {FREQUENCY} Hz: {speed:.1f} mm/s', speed, 0.3, 'not stated',
-        f'of the 64 corners that other phases may come to, {out} are out of reach',
+        f'of the 64 corners that other phases may reach, {out} are outside the workspace',
     )  # fmt: skip
     yield Finding(
-        'fig_13_torque', ROTARY, 'torque there with 150 g (fig. 13 a)',
-        'as near to 1.8 kg·cm as may be', f'≤ {torque:.3f} kg·cm', torque, 0.005, 'contradicts',
-        'an eighth of the servo’s: torque is not what limits this motion',
+        'fig_13_torque', ROTARY, 'torque in this motion with 150 g (fig. 13 a)',
+        'as close to 1.8 kg·cm as possible', f'≤ {torque:.3f} kg·cm', torque, 0.005, 'contradicts',
+        'an eighth of the servo’s: torque does not limit this motion',
     )  # fmt: skip
     yield Finding(
-        'fig_13_speed', ROTARY, 'crank speed there (fig. 13 b)', 'below 600 °/s, with room',
-        f'≤ {rate:.0f} °/s', rate, 3.0, 'agrees', 'half of what the servo does',
+        'fig_13_speed', ROTARY, 'crank speed in this motion (fig. 13 b)',
+        'below 600 °/s, with a margin', f'≤ {rate:.0f} °/s', rate, 3.0, 'agrees',
+        'half of the servo’s speed',
     )  # fmt: skip
 
 
@@ -82,9 +83,9 @@ def standing() -> Finding:
     load = static_load(machine.kinematics, dynamics)(home, machine.kinematics.inverse(home))
     torque = float(np.abs(load).max()) / KG_CM
     return Finding(
-        'static', ROTARY, 'torque standing at home with 150 g', 'not given',
+        'static', ROTARY, 'torque at rest at home with 150 g', 'not given',
         f'{torque:.4f} kg·cm', torque, 1e-4, 'not stated',
-        'virtual work; MuJoCo’s drives hold the same',
+        'virtual work; MuJoCo’s drives need the same',
     )  # fmt: skip
 
 
@@ -113,5 +114,5 @@ def limits() -> Iterator[Finding]:
             f'largest_{name}', ROTARY, f'largest {name}, the other two as in the paper', paper,
             f'{found[0]:.{digits}f} {unit} (2.5 kg·cm: {found[1]:.{digits}f})', found[0],
             0.01 * found[0], 'partly',
-            'lines of ±10 mm, torque falling with speed: the paper’s is possible, not the most',
+            'lines of ±10 mm, torque falls with speed: the paper’s is possible, not the maximum',
         )  # fmt: skip

@@ -43,8 +43,8 @@ def home_angle(machine: Machine) -> Finding:
     """Of all six cranks; the formulas as printed would not close."""
     angle = float(np.degrees(machine.kinematics.inverse(machine.kinematics.home)[0]))
     reason = (
-        'eq. (8) needs +, eq. (4) the signs, eq. (1) another third column: '
-        '[kinematics.md](kinematics.md), section 2'
+        'eq. (8) requires +, eq. (4) the signs, eq. (1) another third column: '
+        '[kinematics.md](kinematics.md), 2.1'
     )
     return Finding(
         'home_angle', ROTARY, 'crank angles at home', 'level platform, all alike',
@@ -59,9 +59,8 @@ def range_findings(machine: Machine) -> Iterator[Finding]:
         low, high = (factor * v for v in found[key])
         is_same = abs(high - number) < 0.06 * number
         shown = f'{low:.2f} … {high:.2f} {unit}' if unit == 'mm' else f'{low:.3f} … {high:.3f} rad'
-        reason = (
-            'the same closed geometry' if is_same else 'the paper is more cautious; rods reach'
-        )
+        smaller = 'the paper’s range is smaller; rods reach farther'
+        reason = 'the same closed geometry' if is_same else smaller
         yield Finding(
             f'range_{key}', ROTARY, topic, told, shown.replace('-', '−'), high, 1e-3 * abs(high),
             'agrees' if is_same else 'partly', reason,
@@ -78,8 +77,7 @@ def volume_findings(
     level = volume(reached, box, points, np.random.default_rng(1))
     tell('volume, level', 1.0)
     reason = (
-        f'even a box with room to spare around the whole shape holds {1e3 * box.volume:.3f} dm³ '
-        'only'
+        f'even a box around the whole shape, with a margin, has {1e3 * box.volume:.3f} dm³ only'
     )
     yield Finding(
         'volume', ROTARY, 'workspace, level', '0.64 dm³',
@@ -91,9 +89,9 @@ def volume_findings(
     found = survey(machine, points, 0.5, tell)
     some = found.some_orientation
     yield Finding(
-        'volume_turned', ROTARY, 'workspace, turned by up to 0.5 rad as need be', '0.64 dm³',
+        'volume_turned', ROTARY, 'workspace, with rotations of up to 0.5 rad', '0.64 dm³',
         f'{1e3 * some.value:.4f} ± {1e3 * some.error:.1g} dm³', 1e3 * some.value, 5e-3,
-        'contradicts', 'still a twentieth of the paper’s',
+        'contradicts', 'a twentieth of the paper’s',
     )  # fmt: skip
 
 
@@ -111,7 +109,7 @@ def speed_findings(machine: Machine) -> Iterator[Finding]:
     speeds = np.abs(crank_speeds(machine, np.linspace(-ALONG, ALONG, 201)))
     middle = float(speeds[100].max())
     worst = float(speeds.max())
-    reason = f'{middle:.1f}°/s at home; without bound at the ends of the range'
+    reason = f'{middle:.1f}°/s at home; unbounded at the ends of the range'
     yield Finding(
         'fig_9', ROTARY, 'crank speeds, x at 30 mm/s (fig. 9)', 'a curve without numbers',
         f'≤ {worst:.1f}°/s within ±10 mm', worst, 0.05, 'not stated', reason,
@@ -130,5 +128,5 @@ def noise_findings(machine: Machine, draws: int) -> Iterator[Finding]:
             row.cause.replace(' ', '_').replace(',', ''), ROTARY, f'1° {row.cause}: rms error',
             f'{1e6 * row.paper:.1f} µm', f'{law:.1f} µm (drawn: {drawn:.0f} ± {error:.0f})', law,
             0.05, 'contradicts',
-            'independent errors add by squares, none cancel; 1° moves a crank’s tip by 0.3 mm',
+            'squares of independent errors add, none cancel; 1° moves a crank’s tip by 0.3 mm',
         )  # fmt: skip

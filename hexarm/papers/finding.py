@@ -10,6 +10,7 @@ from manipulator.errors import InvalidInput
 ROTARY = 'Prokopovich 2019'
 LINEAR = 'Lapikov et al. 2014'
 ARM = 'Fadeev, Loginov'
+HEAD = '| quantity | paper | ours | verdict | reason |'
 Verdict = Literal['agrees', 'partly', 'contradicts', 'not stated']
 
 
@@ -34,18 +35,19 @@ class Finding:
 def rendered(findings: Iterable[Finding], figures: Iterable[tuple[str, str]]) -> str:
     """The report as Markdown; figures are (file beside the report, caption)."""
     lines = [
-        '# The papers, reproduced',
+        '# Reproduction of the papers',
         '',
-        'Made by `hexarm reproduce`; a test runs it again and compares. Where a paper and the '
-        'model differ, both stand here, with the reason. Masses and drives are those of '
-        '`config/robocake.yaml`, many of them estimates ([physics.md](physics.md)).',
+        '`hexarm reproduce` generates this page; a test repeats the computation and compares. '
+        'Each row shows the result of a paper and ours, with the reason for a difference. Masses '
+        'and drives are those of `config/robocake.yaml`, many of them estimates '
+        '([physics.md](physics.md)).',
         '',
     ]
     groups: dict[str, list[Finding]] = {}
     for finding in findings:
         groups.setdefault(finding.source, []).append(finding)
     for source, members in groups.items():
-        lines += [f'## {source}', '', '| what | paper | ours | verdict | why |', '|' + '---|' * 5]
+        lines += [f'## {source}', '', HEAD, '|' + '---|' * 5]
         lines += [
             f'| {f.topic} | {f.paper} | {f.ours} | {f.verdict} | {f.reason} |' for f in members
         ]

@@ -42,14 +42,14 @@ def findings() -> Iterator[Finding]:
         )
         yield Finding(
             f'linear_{kind}', LINEAR, f'{kind}: linear legs give a linear pose', 'yes',
-            f'off by up to {off:.3f} mm and {turn:.4f}°', off, 1e-3, 'partly',
-            'nearly; the angles φ are lost in the scan, ours are in the machine file',
+            f'deviates by up to {off:.3f} mm and {turn:.4f}°', off, 1e-3, 'partly',
+            'approximately; the angles φ are lost in the scan, ours are in the machine file',
         )  # fmt: skip
     apart = heights['6-6'] - heights['6-3']
     yield Finding(
-        'heights', LINEAR, 'same legs, other height for 6-3 and 6-6', 'yes',
+        'heights', LINEAR, 'same leg lengths, different heights of 6-3 and 6-6', 'yes',
         f'{heights["6-3"]:.3f} and {heights["6-6"]:.3f} mm', apart, 1e-3, 'agrees',
-        'the platform’s joints lie elsewhere',
+        'the platform’s joints are at other positions',
     )  # fmt: skip
     yield _plane_method()
     yield _equal_angles()
@@ -79,7 +79,7 @@ def _equal_angles() -> Finding:
     return Finding(
         'equal_angles', LINEAR, '6-6 with φb = φmp', 'the experiment’s geometry',
         f'σmin = {sigma:.0e} in every pose', sigma, 1e-9, 'contradicts',
-        'similar hexagons: the legs never fix the platform; such files are refused',
+        'similar hexagons: no leg lengths determine the pose; such files are rejected',
     )  # fmt: skip
 
 
@@ -90,7 +90,7 @@ def _solutions() -> Finding:
     return Finding(
         'solutions', LINEAR, 'solutions of the forward problem', 'up to 40; the nearest is taken',
         f'{modes.complex_count} in all, {len(modes.poses)} real at home', len(modes.poses), 0.0,
-        'agrees', 'all found at once: [forward-modes.md](forward-modes.md)',
+        'agrees', 'all computed at once: [forward-modes.md](forward-modes.md)',
     )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from hexarm import machines
-from hexarm.cli.mjcf import modelled
+from hexarm.cli.export import modelled
 from hexarm.demo.picture import CRANKS
 from hexarm.papers import linear_platforms
 from hexarm.papers.crank_kinematics import MACHINE, crank_speeds
@@ -21,11 +21,11 @@ from hexarm.simulation.experiment import Recording
 DPI = 90
 NAMES = {
     'fig-9.png': 'Crank speeds while the platform moves along x at 30 mm/s (Prokopovich 2019, '
-    'fig. 9): without bound at the ends of the range',
+    'fig. 9): unbounded at the ends of the range',
     'fig-13.png': 'Sinusoids of fig. 12 in phase, with 150 g: torques and speeds of the cranks '
     '(Prokopovich 2019, fig. 13), speed and acceleration of the platform',
-    'leg-motion.png': 'Leg lengths linear in time (Lapikov et al. 2014, section 4): how far the '
-    'poses of the 6-3 and the 6-6 are off a linear motion',
+    'leg-motion.png': 'Leg lengths linear in time (Lapikov et al. 2014, section 4): deviation '
+    'of the poses of the 6-3 and the 6-6 from a linear motion',
 }
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from mcap.well_known import MessageEncoding, Profile, SchemaEncoding
 from mcap.writer import CompressionType, Writer
 
-from hexarm.recording.telling import schema_text
+from hexarm.recording.log_parser import schema_text
 from manipulator.errors import ManipulatorError
 
 CHUNK_BYTES = 1 << 20
@@ -21,11 +21,11 @@ class NotWritten(ManipulatorError, OSError):
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic as its publishers offer it; `qualities` and `type_hash` as rosbag2 keeps them."""
+    """A topic as its publishers offer it; `qos` and `type_hash` as rosbag2 keeps them."""
 
     name: str
     type_name: str
-    qualities: str = ''
+    qos: str = ''
     type_hash: str = ''
 
 
@@ -76,11 +76,11 @@ class Bag:
             topic.name,
             MessageEncoding.CDR,
             self._schemas[topic.type_name],
-            {'offered_qos_profiles': topic.qualities, 'topic_type_hash': topic.type_hash},
+            {'offered_qos_profiles': topic.qos, 'topic_type_hash': topic.type_hash},
         )
 
     def write(self, topic: str, message: bytes, at: int) -> None:
-        """Adds a serialized message that was heard at that time, ns since 1970."""
+        """Adds a serialized message that was received at that time, ns since 1970."""
         try:
             self._writer.add_message(self._channels[topic], at, message, at)
         except OSError as error:

@@ -12,12 +12,19 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hexarm.recording.story import Event, Series, Story
+from hexarm.recording.run_summary import Event, RunSummary, Series
 from manipulator.arrays import Array
+from manipulator.states import MachineState, MotionResult
 
-ASKED, DONE, GOAL, BAD, NOTE = '#9aa5b1', '#0b6e99', '#d4a017', '#c1121f', '#4a5a6a'
+COMMANDED, DONE, GOAL, BAD, NOTE = '#9aa5b1', '#0b6e99', '#d4a017', '#c1121f', '#4a5a6a'
 JOINTS = ('#0b6e99', '#3aa6b9', '#6a994e', '#d4a017', '#d1603d', '#8e4162', '#5c677d')
-STATES = {'enabled': '#6a994e', 'holding': '#d4a017', 'stopped': BAD, 'fault': BAD}
+RESULTS: dict[str, str] = {MotionResult.MOVING: DONE, MotionResult.PLANNING: '#3aa6b9'}
+STATES: dict[str, str] = {
+    MachineState.ENABLED: '#6a994e',
+    MachineState.HOLDING: '#d4a017',
+    MachineState.STOPPED: BAD,
+    MachineState.FAULT: BAD,
+}
 AXES = ('x (mm)', 'roll (°)', 'y (mm)', 'pitch (°)', 'z (mm)', 'yaw (°)')
 SMALLEST_SPAN = 0.2
 """Of an axis (mm, °): what does not move is not drawn as if it did."""
@@ -26,14 +33,19 @@ LISTED = 16
 NUMBER_WIDTH = 0.021
 """Of an event's number, as part of the axis of time."""
 
-QUIET = ('idle', 'planning', 'moving', 'reached')
+QUIET = (
+    MotionResult.IDLE,
+    MotionResult.PLANNING,
+    MotionResult.MOVING,
+    MotionResult.REACHED,
+)
 
 
-def draw(story: Story, begin: float, end: float, picture: Path) -> None:
+def draw(summary: RunSummary, begin: float, end: float, picture: Path) -> None:
     """Saves the picture of the time from begin to end (s)."""
-    part = story.between(begin, end)
-    told = numbered(part.events)
-    lines = min(len(told), LISTED) + (len(told) > LISTED)
+    part = summary.between(begin, end)
+    listed = numbered(part.events)
+    lines = min(len(listed), LISTED) + (len(listed) > LISTED)
     height = 12.2 + 0.24 * lines
     plt.rcParams.update({'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False})
     figure = plt.figure(figsize=(13, height), dpi=110)
@@ -45,7 +57,7 @@ def draw(story: Story, begin: float, end: float, picture: Path) -> None:
     strips = [figure.add_subplot(grid[0, column]) for column in (0, 1)]
     panels = [figure.add_subplot(grid[row, column]) for row in range(1, 6) for column in (0, 1)]
     for strip in strips:
-        _states(strip, story.events, begin, end)
+        _states(strip, summary.events, begin, end)
     _poses(panels[:6], part)
     _errors(panels[6:8], part)
     _joints(panels[8:], part)
@@ -54,10 +66,10 @@ def draw(story: Story, begin: float, end: float, picture: Path) -> None:
         axes.tick_params(labelbottom=axes in panels[8:])
     for axes in panels:
         axes.grid(alpha=0.25)
-        for _, event in told:
+        for _, event in listed:
             axes.axvline(event.time, color=BAD if event.is_bad else NOTE, lw=0.7, alpha=0.55)
-    _numbers(strips, told)
-    _words(figure, story, told, height)
+    _numbers(strips, listed)
+    _words(figure, summary, listed, height)
     figure.savefig(picture)
     plt.close(figure)
 
@@ -86,23 +98,23 @@ def _states(axes: Axes, events: tuple[Event, ...], begin: float, end: float) -> 
         changes = [e for e in events if e.source == source]
         for event, until in zip(changes, [*(e.time for e in changes[1:]), end], strict=True):
             left, right = max(event.time, begin), min(until, end)
-            colour = STATES.get(event.what, BAD if event.is_bad else ASKED)
-            colour = {'moving': DONE, 'planning': '#3aa6b9'}.get(event.what, colour)
+            colour = STATES.get(event.what, BAD if event.is_bad else COMMANDED)
+            colour = RESULTS.get(event.what, colour)
             if right > left:
                 axes.barh(y, right - left, 0.42, left, align='edge', color=colour, alpha=0.55)
             if right - left > 0.09 * (end - begin):
                 axes.text(left, y + 0.2, f' {event.what}', va='center', size=7.5)
 
 
-def _poses(panels: list[Axes], part: Story) -> None:
+def _poses(panels: list[Axes], part: RunSummary) -> None:
     for k, axes in enumerate(panels):
         column = k // 2 if k % 2 == 0 else 3 + k // 2
         scale = 1e3 if column < 3 else np.degrees(1.0)
-        asked, done, goals = (
+        commanded, done, goals = (
             Series(s.times, scale * s.values[:, [column]])
             for s in (part.setpoint, part.pose, part.goals)
         )
-        _line(axes, asked, color=ASKED, lw=3.2, label='commanded (setpoint)')
+        _line(axes, commanded, color=COMMANDED, lw=3.2, label='commanded (setpoint)')
         _line(axes, done, color=DONE, lw=1.1, label='measured (pose)')
         axes.set_ylabel(AXES[k])
         _goals(axes, goals)
@@ -118,7 +130,7 @@ def _goals(axes: Axes, goals: Series) -> None:
     axes.plot(goals.times, inside, 'D', color=GOAL, ms=5, mew=0, clip_on=False, label='goal')
 
 
-def _errors(panels: list[Axes], part: Story) -> None:
+def _errors(panels: list[Axes], part: RunSummary) -> None:
     error = part.pose_error
     for k, (axes, scale, label) in enumerate(
         zip(panels, (1e3, np.degrees(1.0)), ('error (mm)', 'error (°)'), strict=True)
@@ -128,7 +140,7 @@ def _errors(panels: list[Axes], part: Story) -> None:
         axes.set_ylim(0, max(axes.get_ylim()[1], SMALLEST_SPAN / 4))
 
 
-def _joints(panels: list[Axes], part: Story) -> None:
+def _joints(panels: list[Axes], part: RunSummary) -> None:
     is_length = all(name.startswith('leg_') for name in part.joint_names)
     scale, unit = (1e3, 'mm') if is_length else (float(np.degrees(1.0)), '°')
     for k, name in enumerate(part.joint_names):
@@ -148,7 +160,7 @@ def _joints(panels: list[Axes], part: Story) -> None:
 
 
 def _line(axes: Axes, series: Series, **style: Any) -> None:
-    """A line that breaks where nothing was heard for long."""
+    """A line that breaks where nothing was received for long."""
     times, values = broken(series)
     axes.plot(times, values, solid_capstyle='round', **style)
 
@@ -162,13 +174,13 @@ def broken(series: Series) -> tuple[Array, Array]:
     return np.insert(series.times, gaps, np.nan), np.insert(series.values, gaps, np.nan, axis=0)
 
 
-def _numbers(strips: list[Axes], told: list[tuple[int, Event]]) -> None:
+def _numbers(strips: list[Axes], listed: list[tuple[int, Event]]) -> None:
     """The number of each event above its moment, pushed aside where there are many."""
     for axes in strips:
         left, right = axes.get_xlim()
         step = NUMBER_WIDTH * (right - left)
         place = left - step
-        for number, event in told[:LISTED]:
+        for number, event in listed[:LISTED]:
             place = max(event.time, place + step)
             axes.text(
                 place, 1.02, str(number), ha='center', va='bottom', size=7.5, weight='bold',
@@ -176,16 +188,18 @@ def _numbers(strips: list[Axes], told: list[tuple[int, Event]]) -> None:
             )  # fmt: skip
 
 
-def _words(figure: Figure, story: Story, told: list[tuple[int, Event]], height: float) -> None:
-    name = f'/{story.namespace}: commanded, measured, refused'
+def _words(
+    figure: Figure, summary: RunSummary, listed: list[tuple[int, Event]], height: float
+) -> None:
+    name = f'/{summary.namespace}: commanded, measured, refused'
     figure.text(0.02, 1 - 0.36 / height, name, size=14, weight='bold')
     handles, labels = figure.axes[2].get_legend_handles_labels()
     figure.legend(handles, labels, ncols=3, frameon=False, loc='upper right')
-    lines = [_sentence(number, event) for number, event in told[:LISTED]]
-    if len(told) > LISTED:
-        lines.append(f'… and {len(told) - LISTED} more: hexarm plot --csv lists all')
+    lines = [_sentence(number, event) for number, event in listed[:LISTED]]
+    if len(listed) > LISTED:
+        lines.append(f'… and {len(listed) - LISTED} more: hexarm plot --csv lists all')
     for k, line in enumerate(lines):
-        is_bad = k < LISTED and told[k][1].is_bad
+        is_bad = k < LISTED and listed[k][1].is_bad
         y = (0.24 * (len(lines) - k) - 0.02) / height
         figure.text(0.02, y, line, color=BAD if is_bad else NOTE, size=8.5)
 

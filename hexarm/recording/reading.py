@@ -15,7 +15,7 @@ from mcap.stream_reader import StreamReader
 from mcap_ros2.decoder import DecoderFactory
 from zstandard import ZstdError
 
-from hexarm.recording.story import POSE_COLUMNS, Series, Story
+from hexarm.recording.run_summary import POSE_COLUMNS, RunSummary, Series
 from manipulator.errors import InvalidInput
 
 TORN = (EndOfFile, struct.error)
@@ -28,21 +28,21 @@ DAMAGED = (
 """What mcap, its decompressors and its decoder raise for bytes that were changed."""
 
 
-def messages(path: Path, is_wanted: Callable[[str], bool]) -> Iterator[tuple[str, float, Any]]:
-    """Topic, time of receipt (s) and message of each wanted topic, in the order of the file.
+def messages(path: Path, is_needed: Callable[[str], bool]) -> Iterator[tuple[str, float, Any]]:
+    """Topic, time of receipt (s) and message of each needed topic, in the order of the file.
 
     Takes a bag's folder, too. InvalidInput for what is no MCAP recording of ROS 2 messages, or
     damaged.
     """
     try:
-        yield from _decoded(path, is_wanted)
+        yield from _decoded(path, is_needed)
     except InvalidInput:
         raise
     except DAMAGED as error:
         raise InvalidInput(f'{path} is damaged: {error}') from error
 
 
-def _decoded(path: Path, is_wanted: Callable[[str], bool]) -> Iterator[tuple[str, float, Any]]:
+def _decoded(path: Path, is_needed: Callable[[str], bool]) -> Iterator[tuple[str, float, Any]]:
     factory = DecoderFactory()
     schemas: dict[int, Schema] = {}
     channels: dict[int, Channel] = {}
@@ -51,7 +51,7 @@ def _decoded(path: Path, is_wanted: Callable[[str], bool]) -> Iterator[tuple[str
             schemas[record.id] = record
         elif isinstance(record, Channel):
             channels[record.id] = record
-        elif isinstance(record, Message) and is_wanted(channels[record.channel_id].topic):
+        elif isinstance(record, Message) and is_needed(channels[record.channel_id].topic):
             channel = channels[record.channel_id]
             decode = factory.decoder_for(channel.message_encoding, schemas.get(channel.schema_id))
             if decode is None:
@@ -60,7 +60,7 @@ def _decoded(path: Path, is_wanted: Callable[[str], bool]) -> Iterator[tuple[str
 
 
 def mcap_of(path: Path) -> Path:
-    """The file itself, or the one in a bag's folder; InvalidInput says what is there instead."""
+    """The file itself, or the one in a bag's folder; InvalidInput names what is there instead."""
     if not path.is_dir():
         return path
     found = sorted(path.glob('*.mcap'))
@@ -81,26 +81,26 @@ def _records(path: Path) -> Iterator[Any]:
     except OSError as error:
         raise InvalidInput(f'{path}: {error.strerror or error}') from error
     except InvalidMagic as error:
-        raise InvalidInput(f'{path} is no MCAP file') from error
+        raise InvalidInput(f'{path} is not an MCAP file') from error
 
 
-def write(story: Story, folder: Path) -> list[Path]:
+def write(summary: RunSummary, folder: Path) -> list[Path]:
     """One file a table into the folder, which is made; OSError where that cannot be done."""
     folder.mkdir(parents=True, exist_ok=True)
-    joints = story.joint_names
+    joints = summary.joint_names
     tables = {
-        'setpoint': (POSE_COLUMNS, story.setpoint),
-        'pose': (POSE_COLUMNS, story.pose),
-        'goals': (POSE_COLUMNS, story.goals),
-        'pose_error': (('distance_m', 'angle_rad'), story.pose_error),
-        'joint_command': (joints, story.joint_command),
-        'joint_states': (joints, story.joint_states),
+        'setpoint': (POSE_COLUMNS, summary.setpoint),
+        'pose': (POSE_COLUMNS, summary.pose),
+        'goals': (POSE_COLUMNS, summary.goals),
+        'pose_error': (('distance_m', 'angle_rad'), summary.pose_error),
+        'joint_command': (joints, summary.joint_command),
+        'joint_states': (joints, summary.joint_states),
     }
     written = [
         _table(folder / f'{name}.csv', ('time_s', *columns), _rows(series))
         for name, (columns, series) in tables.items()
     ]
-    events = ((f'{e.time:.4f}', e.source, e.what, e.count, e.reason) for e in story.events)
+    events = ((f'{e.time:.4f}', e.source, e.what, e.count, e.reason) for e in summary.events)
     heads = ('time_s', 'source', 'what', 'count', 'reason')
     return [*written, _table(folder / 'events.csv', heads, events)]
 

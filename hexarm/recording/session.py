@@ -1,46 +1,94 @@
-"""The recorder: looks for topics, and writes each message as it came until it is stopped."""
+"""The recorder: finds topics, and writes each message as it came until it is stopped.
+
+It subscribes with a quality of service that every publisher serves, and records the offered one.
+"""
 
 import contextlib
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 import rclpy
+import yaml
+from rclpy.duration import Duration
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from hexarm.cli.up import Interrupted
 from hexarm.recording.bag import Bag, Topic
-from hexarm.recording.qualities import hearing, offered
-from hexarm.recording.telling import UnknownType
-from hexarm.recording.topics import Wanted, unheard
+from hexarm.recording.log_parser import UnknownType
+from hexarm.recording.topics import TopicSelection, missing_topics
+
+DEPTH = 500
+"""Messages that may wait: half a second of the fastest topic on a busy computer."""
 
 
-class Listener:
-    """Subscribes to what is wanted of what there is, each time it looks around."""
+def subscription_qos(
+    publishers: Sequence[QoSProfile], subscribers: Sequence[QoSProfile]
+) -> QoSProfile:
+    """What every publisher can serve; before there is one, what other subscribers request."""
+    offers = publishers or subscribers
+    every = all if publishers else any
+    is_reliable = every(o.reliability == ReliabilityPolicy.RELIABLE for o in offers)
+    is_latched = every(o.durability == DurabilityPolicy.TRANSIENT_LOCAL for o in offers)
+    return QoSProfile(
+        depth=DEPTH,
+        reliability=ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if is_latched else DurabilityPolicy.VOLATILE,
+    )
 
-    def __init__(self, node: Node, wanted: Wanted, bag: Bag) -> None:
-        self._node, self._wanted, self._bag = node, wanted, bag
+
+def offered(publishers: Sequence[QoSProfile]) -> str:
+    """The publishers' profiles as YAML with the names of rosbag2's metadata, version 9."""
+    different = {str(offer): offer for offer in map(_as_metadata, publishers)}
+    return yaml.safe_dump(list(different.values()), sort_keys=False) if different else ''
+
+
+def _as_metadata(profile: QoSProfile) -> dict[str, object]:
+    # Discovery provides neither history nor depth: at least one message must be kept.
+    return {
+        'history': 'keep_last',
+        'depth': max(profile.depth, 1),
+        'reliability': profile.reliability.name.lower(),
+        'durability': profile.durability.name.lower(),
+        'deadline': _span(profile.deadline),
+        'lifespan': _span(profile.lifespan),
+        'liveliness': profile.liveliness.name.lower(),
+        'liveliness_lease_duration': _span(profile.liveliness_lease_duration),
+        'avoid_ros_namespace_conventions': bool(profile.avoid_ros_namespace_conventions),
+    }
+
+
+def _span(duration: Duration) -> dict[str, int]:
+    sec, nsec = divmod(duration.nanoseconds, 10**9)
+    return {'sec': sec, 'nsec': nsec}
+
+
+class Recorder:
+    """Subscribes to the selected topics that exist, at each update."""
+
+    def __init__(self, node: Node, selection: TopicSelection, bag: Bag) -> None:
+        self._node, self._selection, self._bag = node, selection, bag
         self._subscriptions: dict[str, Any] = {}
-        self._qualities: dict[str, QoSProfile] = {}
+        self._qos: dict[str, QoSProfile] = {}
         self._unknown: set[str] = set()
         self.there: set[str] = set()
         """Every topic that was seen."""
 
-    def look_around(self, now: float) -> None:
-        """Joins and leaves topics; anew where publishers offer other qualities than before."""
+    def update(self, now: float) -> None:
+        """Joins and leaves topics; again where publishers offer another quality of service."""
         for name, types in self._node.get_topic_names_and_types():
             self.there.add(name)
             if name in self._unknown:
                 continue
             publishers = self._node.get_publishers_info_by_topic(name)
-            if not self._wanted.may_join(name, bool(publishers), now):
+            if not self._selection.may_join(name, bool(publishers), now):
                 self._leave(name)
                 continue
             try:
@@ -51,30 +99,30 @@ class Listener:
 
     def is_matched(self, every: bool) -> bool:
         """Whether a publisher of what is recorded has met us: one of each topic, or of any."""
-        own = {n: s for n, s in self._subscriptions.items() if self._wanted.is_own(n)}
+        own = {n: s for n, s in self._subscriptions.items() if self._selection.is_own(n)}
         met = {name for name, subscription in own.items() if subscription.get_publisher_count()}
         published = {name for name in own if self._node.count_publishers(name)}
         return bool(met) and (published <= met or not every)
 
     def warn(self) -> None:
-        """Speaks of the topics asked for that are not there."""
-        names = [name for name in self._wanted.names if name not in self.there]
-        for line in unheard(names, (), self.there):
+        """Logs the requested topics that do not exist."""
+        names = [name for name in self._selection.names if name not in self.there]
+        for line in missing_topics(names, (), self.there):
             self._node.get_logger().warning(line)
 
     def _join(self, name: str, type_name: str, publishers: list[Any]) -> None:
         offers = [p.qos_profile for p in publishers]
         if name in self._subscriptions and not offers:
             return
-        qualities = hearing(offers, self._others(name))
-        if qualities == self._qualities.get(name):
+        qos = subscription_qos(offers, self._others(name))
+        if qos == self._qos.get(name):
             return
         kind = message_class(type_name)
         self._bag.add_type(type_name)
         self._leave(name)
-        self._qualities[name] = qualities
+        self._qos[name] = qos
         self._subscriptions[name] = self._node.create_subscription(
-            kind, name, lambda message: self._keep(name, type_name, message), qualities, raw=True
+            kind, name, lambda message: self._keep(name, type_name, message), qos, raw=True
         )
 
     def _keep(self, name: str, type_name: str, message: bytes) -> None:
@@ -87,14 +135,14 @@ class Listener:
         self._bag.write(name, message, time.time_ns())
 
     def _others(self, name: str) -> list[QoSProfile]:
-        """What the other listeners of the topic ask for."""
+        """What the other subscribers of the topic request."""
         found = self._node.get_subscriptions_info_by_topic(name)
         return [s.qos_profile for s in found if s.node_name != self._node.get_name()]
 
     def _leave(self, name: str) -> None:
         if name in self._subscriptions:
             self._node.destroy_subscription(self._subscriptions.pop(name))
-            del self._qualities[name]
+            del self._qos[name]
 
 
 def message_class(type_name: str) -> type:
@@ -106,14 +154,14 @@ def message_class(type_name: str) -> type:
         raise UnknownType(f'{type_name} is not installed here') from error
 
 
-LOOK_AROUND = 0.25
-"""Seconds between two looks at which topics there are."""
+UPDATE_PERIOD = 0.25
+"""Seconds between two searches for topics."""
 
 DISCOVERY = 3.0
-"""Seconds after which what was not found is spoken of: a topic may be misspelt."""
+"""Seconds after which missing topics are logged: a name may be misspelt."""
 
 PATIENCE = 60.0
-"""Seconds after which a recording without an end of its own gives up, when nobody published."""
+"""Seconds without any message after which a recording without an end of its own gives up."""
 
 FLUSH = 1.0
 """Seconds of messages that may be lost when the process is killed."""
@@ -121,7 +169,7 @@ FLUSH = 1.0
 
 @dataclass(frozen=True)
 class Control:
-    """How long a recording lasts, and whom it tells how it stands.
+    """How long a recording lasts, and its callbacks.
 
     until is a monotonic time, infinite for one that `interrupt` ends by raising Interrupted.
     on_listening is called once, when publishers and recorder have met; on_nobody once before,
@@ -134,43 +182,45 @@ class Control:
     on_nobody: Callable[[set[str], int], None]
 
 
-def record(bag: Bag, namespace: str, wanted: Wanted, control: Control) -> tuple[set[str], int]:
-    """Records to its end; where nobody publishes and it has none, for PATIENCE.
+def record(
+    bag: Bag, namespace: str, selection: TopicSelection, control: Control
+) -> tuple[set[str], int]:
+    """Records to its end; where nothing is published and it has none, for PATIENCE.
 
-    Returns every topic that was seen, wanted or not, and the ROS domain. Raises NotWritten when
+    Returns every topic that was seen, selected or not, and the ROS domain. Raises NotWritten when
     the disk is full.
     """
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     node = Node('recorder', namespace=namespace, enable_rosout=False)
     executor = EventsExecutor()
     executor.add_node(node)
-    listener, domain = Listener(node, wanted, bag), node.context.get_domain_id()
+    recorder, domain = Recorder(node, selection, bag), node.context.get_domain_id()
     try:
         with contextlib.suppress(Interrupted):
-            _spin(executor, listener, bag, control, domain)
+            _spin(executor, recorder, bag, control, domain)
     finally:
         executor.shutdown()
         node.destroy_node()
         try_shutdown()
-    return listener.there, domain
+    return recorder.there, domain
 
 
 def _spin(
-    executor: EventsExecutor, listener: Listener, bag: Bag, control: Control, domain: int
+    executor: EventsExecutor, recorder: Recorder, bag: Bag, control: Control, domain: int
 ) -> None:
-    begin = look_at = flush_at = time.monotonic()
+    begin = update_at = flush_at = time.monotonic()
     until = begin + PATIENCE if control.until == math.inf else control.until
     is_met = is_told = False
     while (now := time.monotonic()) < until:
         control.interrupt()
-        if now >= look_at:
-            listener.look_around(now)
-            look_at = now + LOOK_AROUND
-            if not is_met and listener.is_matched(every=now < begin + DISCOVERY):
+        if now >= update_at:
+            recorder.update(now)
+            update_at = now + UPDATE_PERIOD
+            if not is_met and recorder.is_matched(every=now < begin + DISCOVERY):
                 is_met, until = True, control.until
                 control.on_listening()
         if now >= begin + DISCOVERY and not is_told:
-            listener.warn() if is_met else control.on_nobody(listener.there, domain)
+            recorder.warn() if is_met else control.on_nobody(recorder.there, domain)
             is_told = True
         if now >= flush_at:
             bag.flush()

@@ -1,10 +1,10 @@
-"""Which topics a recording wants and from when on, and which of them did not come, with why."""
+"""Which topics are recorded, from when on, and which of them are missing, with the reason."""
 
 import difflib
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
-from hexarm.namespaces import nobody_in
+from hexarm.namespaces import no_machine_in
 
 SHARED = ('/diagnostics', '/rosout', '/tf', '/tf_static')
 """Topics of all machines, without which a recording of one is poorer."""
@@ -16,20 +16,20 @@ COMMANDS = frozenset(
         *('gripper', 'emergency_stop', 'joint_table', 'joy'),
     )
 )
-"""What users publish, and the machine's nodes only hear."""
+"""What users publish, and the machine's nodes only receive."""
 
 SETTLED = 5.0
-"""Seconds after which a publisher has met every listener that it will meet."""
+"""Seconds after which a publisher has found all its subscribers."""
 
 
 @dataclass
-class Wanted:
+class TopicSelection:
     """The topics of `namespace`, or only `names` (relative ones are the namespace's).
 
     A command is joined only once its publisher has been there for SETTLED. Many a script
-    publishes once, as soon as anybody listens; a recorder that listened before would now and then
-    be taken for the machine, and the goal, or the stop, would reach nobody else. With
-    `with_commands`, and for a name that was asked for, it is joined at once all the same.
+    publishes once, for the first subscriber; a recorder that subscribed before would sometimes be
+    taken for the machine, and the goal, or the stop, would reach no other node. With
+    `with_commands`, and for a requested name, it is joined at once.
     """
 
     namespace: str
@@ -48,7 +48,7 @@ class Wanted:
         return topic in self.names if self.names else topic.startswith(self._space)
 
     def may_join(self, topic: str, is_published: bool, now: float) -> bool:
-        """Whether to listen to the topic from now (s, monotonic) on."""
+        """Whether to subscribe to the topic from now (s, monotonic) on."""
         if self.names:
             return topic in self.names
         if topic in SHARED:
@@ -66,22 +66,26 @@ class Wanted:
 NEAREST = 3
 
 
-def unheard(names: Sequence[str], heard: Collection[str], there: Collection[str]) -> list[str]:
-    """One line for each of the topics asked for that is not among those `heard`."""
+def missing_topics(
+    names: Sequence[str], received: Collection[str], there: Collection[str]
+) -> list[str]:
+    """One line for each of the requested topics that is not among those `received`."""
     lines = []
-    for name in sorted(set(names) - set(heard)):
+    for name in sorted(set(names) - set(received)):
         if name in there:
-            lines.append(f'{name} is there, but nobody said anything on it')
+            lines.append(f'{name} exists, but nothing was published on it')
         else:
             lines.append(f'there is no topic {name}{_near(name, there)}')
     return lines
 
 
-def nothing(namespace: str, lines: Sequence[str], there: Collection[str], domain: int) -> str:
-    """Why not one message was heard: the `lines` of topics asked for, or nobody is there."""
+def nothing_recorded(
+    namespace: str, lines: Sequence[str], there: Collection[str], domain: int
+) -> str:
+    """Why no message was received: the `lines` of requested topics, or there is no machine."""
     if any(topic.startswith(f'/{namespace}/') for topic in there):
-        return '; '.join(lines) or f'nobody said anything in /{namespace}'
-    reason = nobody_in(namespace, there, domain)
+        return '; '.join(lines) or f'nothing was published in /{namespace}'
+    reason = no_machine_in(namespace, there, domain)
     return '; '.join([reason, *lines])
 
 

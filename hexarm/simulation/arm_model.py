@@ -33,8 +33,8 @@ def arm_links(arm: SerialArm, config: ArmDynamicsConfig) -> tuple[RigidBody, ...
     """Each joint's link, up to the next joint or the tool; base axes, zero angles."""
     points = [*arm.chain.points, arm.chain.home.position]
     return tuple(
-        link(told, begin, end)
-        for told, (begin, end) in zip(config.links, pairwise(points), strict=True)
+        link(described, begin, end)
+        for described, (begin, end) in zip(config.links, pairwise(points), strict=True)
     )
 
 

@@ -12,7 +12,7 @@ from manipulator.errors import ConfigError
 from manipulator.kinematics import Kinematics
 from manipulator.machine import MachineFile
 from manipulator.pose import Pose
-from manipulator.sag import Sag
+from manipulator.static_deflection import StaticDeflection
 
 
 class Compensation:
@@ -34,8 +34,8 @@ class Compensation:
         return clipped
 
 
-def sag_of(machine_file: MachineFile, kinematics: Kinematics) -> Sag:
-    """The sag that a machine's nodes compensate; ConfigError as `dynamics_of`.
+def deflection_of(machine_file: MachineFile, kinematics: Kinematics) -> StaticDeflection:
+    """The deflection that a machine's nodes compensate; ConfigError as `dynamics_of`.
 
     Refused for boards with encoders: what they report is where the joints are already.
     """

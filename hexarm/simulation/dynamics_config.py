@@ -56,7 +56,7 @@ class PlateConfig:
 
 @dataclass(frozen=True)
 class PayloadConfig:
-    """What is carried: a cylinder that stands on the moving frame's xy plane; 0 g is nothing."""
+    """What is carried: a cylinder on the moving frame's xy plane; 0 g is nothing."""
 
     source: str
     mass_g: float = quantity(0, 1e6)
@@ -88,7 +88,7 @@ class TurningDriveConfig:
     """A servo that turns: torque at standstill, and at which error it gives all of it.
 
     backdrive_n_m is what its gears hold without power; rotor_inertia_g_mm2 as felt at the output.
-    Its free speed stands in the section `servos`.
+    Its free speed is in the section `servos`.
     """
 
     source: str

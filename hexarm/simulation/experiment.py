@@ -14,12 +14,12 @@ from manipulator.trajectory.cycle import Cycle
 
 SHOWN_STEPS = 4
 Shift = Callable[[Pose, Array], Array]
-"""What is added to the joints (N, n) that poses (N) ask for, before drives get them."""
+"""What is added to the joints (N, n) of poses (N), before drives get them."""
 
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """What the sensors showed, one row every 2 ms; wanted are the poses asked for.
+    """What the sensors showed, one row every 2 ms; commanded are the requested poses.
 
     closure is how far the worst loop's ends are apart, metres.
     """
@@ -32,12 +32,12 @@ class Recording:
     twists: Array
     accelerations: Array
     closure: Array
-    wanted: Pose
+    commanded: Pose
 
     @property
     def errors(self) -> Array:
-        """The twist (N, 6) from each pose to the one asked for at that moment, m and rad."""
-        return self.poses.twist_to(self.wanted)
+        """The twist (N, 6) from each pose to the one commanded at that moment, m and rad."""
+        return self.poses.twist_to(self.commanded)
 
 
 def run(
@@ -75,13 +75,13 @@ def unshifted(pose: Pose, joints: Array) -> Array:
 
 
 def _swelling(cycle: Cycle, times: Array, period: float) -> Pose:
-    """The cycle from time 0 on; in the period before that, its way out from the centre."""
+    """The cycle from time 0 on; in the period before that, the path out from the centre."""
     part: Array = np.clip(1.0 + times / period, 0.0, 1.0)
     part = part**3 * (10 - 15 * part + 6 * part**2)
     return cycle.centre.moved(part[:, None] * cycle.centre.twist_to(cycle.at(times).pose))
 
 
-def _recording(readings: list[Reading], closure: Array, wanted: Pose) -> Recording:
+def _recording(readings: list[Reading], closure: Array, commanded: Pose) -> Recording:
     def stacked(name: str) -> Array:
         return frozen(np.array([getattr(reading, name) for reading in readings]))
 
@@ -97,5 +97,5 @@ def _recording(readings: list[Reading], closure: Array, wanted: Pose) -> Recordi
         stacked('twist'),
         stacked('acceleration'),
         closure,
-        wanted,
+        commanded,
     )

@@ -1,6 +1,6 @@
 """The most that a crank platform's servos can do along a straight line through home.
 
-At every place of the line, going either way at any speed up to the one asked for, while
+At every place of the line, in either direction at any speed up to the requested one, while
 speeding up or slowing down: a line without a beginning or an end, harder than any real motion.
 
 The cycle of Prokopovich 2019, fig. 12, all six axes in phase, and what of it is in reach.
@@ -80,7 +80,7 @@ RELATIVE = 1e-4
 
 @dataclass(frozen=True)
 class Demand:
-    """What is asked of a line: payload in kg, speed in m/s, acceleration in m/s²."""
+    """The demands on a line: payload in kg, speed in m/s, acceleration in m/s²."""
 
     payload: float
     speed: float
@@ -101,7 +101,7 @@ class Costs:
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A straight way through home along a base axis, level; from `low` to `high` metres."""
+    """A line through home along a base axis, level; from `low` to `high` metres."""
 
     axis: int
     low: float
@@ -119,7 +119,7 @@ class LimitSearch:
     _by_payload: dict[float, InverseDynamics] = field(default_factory=dict, repr=False)
 
     def costs(self, demand: Demand) -> Costs:
-        """The worst over all places, speeds up to the one asked for, and both accelerations."""
+        """The worst over all places, speeds up to the requested one, and both accelerations."""
         motion = self._motions(demand)
         solver = self._solver(demand.payload)
         cranks = solver.cranks(motion)
@@ -149,7 +149,7 @@ class LimitSearch:
         return self._by_payload[payload]
 
     def _motions(self, demand: Demand) -> MotionState:
-        """Every place, at rest and at full speed either way, with both accelerations."""
+        """Every place, at rest and at full speed in either direction, with both accelerations."""
         along = np.linspace(self.line.low, self.line.high, PLACES)
         speeds = demand.speed * np.array([-1.0, 0.0, 1.0])
         accelerations = np.array([-demand.acceleration, demand.acceleration])

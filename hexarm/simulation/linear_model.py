@@ -1,6 +1,6 @@
 """The MuJoCo model of a platform on linear legs.
 
-Body frames have the base's axes at home. Each leg stands on a universal joint, its piston slides
+Body frames have the base's axes at home. Each leg is on a universal joint, its piston slides
 along it, and a ball joint closes the loop at the platform.
 """
 

@@ -47,9 +47,9 @@ class MujocoPlant:
         """Goes on for dt seconds; NaN in targets (names,) means no pulse."""
         has_pulse = ~np.isnan(targets)
         self._others = np.where(has_pulse, targets, self._others)
-        wanted, is_driven = targets[self._order], has_pulse[self._order]
+        commanded, is_driven = targets[self._order], has_pulse[self._order]
         released = self._has_pulse & ~is_driven
-        self._aims = np.where(is_driven, wanted, self._aims)
+        self._aims = np.where(is_driven, commanded, self._aims)
         self._aims[released] = self.simulation.joints[released]
         if (is_driven != self._has_pulse).any():
             self._empower(is_driven)

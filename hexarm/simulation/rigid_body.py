@@ -78,7 +78,7 @@ def plate(config: PlateConfig, inradius: float) -> RigidBody:
 
 
 def payload(config: PayloadConfig) -> RigidBody:
-    """A cylinder that stands on the moving frame's xy plane."""
+    """A cylinder on the moving frame's xy plane."""
     mass, radius, height = (1e-3 * v for v in (config.mass_g, config.radius_mm, config.height_mm))
     across = mass * (3 * radius**2 + height**2) / 12
     inertia = np.diag([across, across, mass * radius**2 / 2])
@@ -171,7 +171,7 @@ def inertial(parent: ET.Element, body: RigidBody, origin: Array) -> None:
 
 
 def tube(parent: ET.Element, begin: Array, end: Array, radius: float, rgba: str = GREY) -> None:
-    """A round rod to look at; its mass is told by `inertial`."""
+    """A visible round rod; its mass is that of `inertial`."""
     if float(np.linalg.norm(np.asarray(end) - np.asarray(begin))) > 1e-6:
         add(
             parent, 'geom', type='capsule', size=radius, mass='0', rgba=rgba,

@@ -152,7 +152,7 @@ class Stalls(ManipulatorError, ValueError):
 def check_holds(
     load: StaticLoad, drives: Drives, names: tuple[str, ...], poses: Pose, joints: Array
 ) -> None:
-    """Raises Stalls at the worst of poses (N) where gravity asks for more than a drive gives."""
+    """Raises Stalls at the worst of poses (N) where gravity needs more than a drive gives."""
     efforts = np.abs(load(poses, joints))
     shares = efforts / drives.effort
     worst, joint = np.unravel_index(np.argmax(shares), shares.shape)

@@ -60,9 +60,9 @@ class JointErrors:
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """second_moments (..., 6, 6) of the twist from the pose wanted to the poses got, m and rad.
+    """second_moments (..., 6, 6) of the twist from the target pose to the poses got, m and rad.
 
-    About the pose wanted, not about the mean. draws is how many poses it comes from, 0 for the
+    About the target pose, not about the mean. draws is how many poses it comes from, 0 for the
     linear law.
     """
 
@@ -112,9 +112,9 @@ def drawn_spread(
     return spread_of(pose, [kinematics.forward(q, pose).pose for q in joints])
 
 
-def spread_of(wanted: Pose, got: list[Pose]) -> Spread:
-    """Of single poses about the one wanted."""
-    twists = np.array([wanted.twist_to(pose) for pose in got])
+def spread_of(target: Pose, got: list[Pose]) -> Spread:
+    """Of single poses about the target."""
+    twists = np.array([target.twist_to(pose) for pose in got])
     return Spread(twists.T @ twists / len(got), len(got))
 
 

@@ -29,7 +29,7 @@ class DeviceFrames:
 
     @classmethod
     def known(cls) -> 'DeviceFrames':
-        """The device tells the platform's pose in the base frame."""
+        """The device reports the platform's pose in the base frame."""
         return cls(Pose.identity(), Pose.identity())
 
     @classmethod
@@ -50,13 +50,13 @@ class DeviceFrames:
         rows = np.concatenate(
             [np.broadcast_to(np.eye(3), (count, 3, 3)), R_Z @ nominal.rotation], axis=2
         ).reshape(-1, 6)
-        wanted = (measured.position - nominal.position @ R_Z.T).ravel()
-        shifts = np.linalg.lstsq(rows, wanted, rcond=1e-9)[0]
+        target = (measured.position - nominal.position @ R_Z.T).ravel()
+        shifts = np.linalg.lstsq(rows, target, rcond=1e-9)[0]
         return cls(Pose(shifts[:3], R_Z), Pose(shifts[3:], R_X))
 
     @staticmethod
     def parameters() -> tuple[Parameter, ...]:
-        """Nobody can say beforehand how the device stands: the tolerances are infinite."""
+        """The device's pose is not known beforehand: the tolerances are infinite."""
         return tuple(
             Parameter(f'{frame} {turn}{axis}', group, unit, np.inf)
             for frame, group in (('device frame', 'device'), ('marker frame', 'marker'))
@@ -107,7 +107,7 @@ def _rotations(platform: Array, marker: Array) -> tuple[Array, Array]:
     total = np.einsum('nij,nkl->ikjl', marker, platform).reshape(9, 9)
     u, s, vt = np.linalg.svd(total)
     if s[0] - s[1] < 1e-9 * s[0]:
-        raise NoSolution('all poses are turned alike: they do not tell where the device is')
+        raise NoSolution('all poses have one orientation: the device frame is not determined')
     R_Z, R_X = _rotation(u[:, 0].reshape(3, 3)), _rotation(vt[0].reshape(3, 3))
     return R_Z, R_X.T
 

@@ -37,13 +37,13 @@ class Fit:
 
 def fit(errors: Errors, tolerances: Array) -> Fit:
     """The values (p,), beginning at zero; NoSolution where no minimum is found."""
-    from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: for who asks)
+    from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: only needed here)
 
     has_prior = np.isfinite(tolerances)
     scale, prior = np.where(has_prior, tolerances, 1.0), np.diag(has_prior.astype(np.float64))
     beyond = np.full_like(errors(np.zeros(len(scale)))[0], BEYOND), np.zeros((0, len(scale)))
 
-    @lru_cache(maxsize=1)  # MINPACK asks for errors and for slopes, which are found together
+    @lru_cache(maxsize=1)  # MINPACK requests errors and slopes separately; they are found together
     def at(x: tuple[float, ...]) -> tuple[Array, Array]:
         values = np.array(x)
         try:
@@ -129,7 +129,7 @@ def identify(
     """The most probable machine, given the noise and the tolerances.
 
     near (n,) are the poses by the machine file; free the groups of parameters that are sought.
-    Where the frames are not free, the device tells poses of the platform in the base frame.
+    Where the frames are not free, the device reports poses of the platform in the base frame.
     Raises InvalidInput for a group that there is not, NoSolution where nothing fits.
     """
     parameters = (*model.parameters, *DeviceFrames.parameters())

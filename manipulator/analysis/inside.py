@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from manipulator.analysis.free_paths import admits
 from manipulator.analysis.readings import CHECKS_PER_LENGTH
 from manipulator.analysis.travel import travel
-from manipulator.analysis.way import admits
 from manipulator.arrays import Array, Mask
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -67,7 +67,7 @@ def ranges(
 
 
 def surface(machine: Machine, directions: Array) -> Array:
-    """Where straight ways from home, unturned, end: positions (..., 3) for unit directions."""
+    """Where lines from home, unturned, end: positions (..., 3) for unit directions."""
     home, length = machine.kinematics.home, machine.kinematics.characteristic_length
     flat = directions.reshape(-1, 3)
     free, step = np.zeros(len(flat)), length / CHECKS_PER_LENGTH

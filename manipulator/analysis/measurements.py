@@ -1,6 +1,6 @@
 """What identification needs: what was commanded, what was measured, and the machine's model.
 
-A model has parameters and tells what each does to a pose.
+A model has parameters, and computes the effect of each on a pose.
 """
 
 from dataclasses import dataclass
@@ -56,10 +56,10 @@ class Measurements:
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number of a machine that may be otherwise than its file says.
+    """One number of a machine that may differ from its file.
 
     unit is 'm' or 'rad'; tolerance the standard deviation, in it, with which the machine was
-    built: infinite where nobody can say.
+    built: infinite where unknown.
     """
 
     name: str
@@ -80,7 +80,7 @@ class Model(Protocol):
         ...
 
     def predict(self, values: Array, joints: Array, near: Pose) -> Pose:
-        """The poses (n,) at which the machine stands, those nearest to `near` (n,).
+        """The poses (n,) of the machine, those nearest to `near` (n,).
 
         Raises NoSolution where it cannot stand anywhere.
         """

@@ -1,16 +1,84 @@
-"""The reachable pose nearest to one that is out of reach: docs/workspace.md, section 2."""
+"""The reachable pose nearest to one that is out of reach: docs/workspace.md, section 2.
+
+Where joint ranges are the only limits, the search is over joints, else over poses.
+"""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from manipulator.analysis.joint_descent import nearest_by_joints
-from manipulator.analysis.readings import displaced, distance
-from manipulator.analysis.way import admits, are_linked, is_connected, is_joint_box, way_home_share
+from manipulator.analysis.free_paths import (
+    admits,
+    are_linked,
+    free_share_from_home,
+    is_connected,
+    is_joint_box,
+)
+from manipulator.analysis.readings import displaced, distance, offset, scale
 from manipulator.arrays import Array
 from manipulator.limits.limit import Search
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+
+SETTLED = 1e-12
+JOINT_CLEARANCE = 1e-9  # rad or m inside the ranges, so that the answer's inverse is in range, too
+RANDOM_STARTS = 12
+
+
+def nearest_by_joints(machine: Machine, target: Pose) -> Pose:
+    """The pose nearest to `target` in the metric of `metric.distance`, over all joints in range.
+
+    Bounded least squares (trust region reflective: Branch, Coleman, Li 1999) from home's joints
+    and a fixed set of others; the best local minimum. Every such pose is connected to home through
+    the joints' ranges.
+    """
+    kinematics = machine.kinematics
+    low, high = joint_box(machine)
+    generator = np.random.default_rng(6)
+    bounds = np.clip(low, -2 * np.pi, None), np.clip(high, None, 2 * np.pi)
+    starts = [kinematics.inverse(kinematics.home), *generator.uniform(*bounds, (RANDOM_STARTS, 6))]
+    best, least = kinematics.home, float(distance(machine, kinematics.home, target))
+    for start in starts:
+        pose = _descended_by_joints(machine, target, start, low, high)
+        metres = float(distance(machine, pose, target))
+        if metres < least:
+            best, least = pose, metres
+        if least < SETTLED:
+            break
+    return best
+
+
+def joint_box(machine: Machine) -> tuple[Array, Array]:
+    """The strictest bounds (n,) of a machine with joint ranges alone, a hair within."""
+    limits = machine.constraints.limits
+    return (
+        np.max([limit.low for limit in limits], axis=0) + JOINT_CLEARANCE,
+        np.min([limit.high for limit in limits], axis=0) - JOINT_CLEARANCE,
+    )
+
+
+def _descended_by_joints(
+    machine: Machine, target: Pose, start: Array, low: Array, high: Array
+) -> Pose:
+    """A local minimum of the distance over joints (n,) between `low` and `high`."""
+    from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: only needed here)
+
+    kinematics, weights = machine.kinematics, scale(machine)[:, None]
+
+    def pose_of(joints: Array) -> Pose:
+        return kinematics.forward(joints).pose
+
+    def slopes(joints: Array) -> Array:
+        # What they miss, the Jacobian of the logarithm, leaves a rotation vector as it is: the
+        # slope of the squared offset is exact.
+        return -weights * kinematics.jacobian(pose_of(joints), joints)
+
+    found = least_squares(
+        lambda joints: offset(machine, pose_of(joints), target), np.clip(start, low, high), slopes,
+        bounds=(low, high), ftol=SETTLED, xtol=SETTLED, gtol=SETTLED,
+    )  # fmt: skip
+    return pose_of(found.x)
+
 
 MOST_STEPS = 60
 CLEARANCE = 1e-6  # how far inside each limit an answer stays, by the characteristic length
@@ -20,7 +88,7 @@ KICKS, KICK_POSES, KICK_RADII, KICK_GAIN = 12, 1500, (3e-2, 1e-2, 1e-3, 1e-4, 1e
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """A reachable pose, and how far it is from the one wanted, in metres (see `metric`)."""
+    """A reachable pose, and how far it is from the target, in metres (see `metric`)."""
 
     pose: Pose
     distance: float
@@ -31,7 +99,7 @@ def nearest_reachable(machine: Machine, target: Pose, most_steps: int = MOST_STE
 
     It is admitted and connected to home: both are checked. It is a local minimum of the distance
     that a random search about it could not better, the best of three that are found from the ends
-    of straight ways: from home towards the target, its position alone, its orientation alone.
+    of lines: from home towards the target, its position alone, its orientation alone.
     """
     if is_joint_box(machine):
         pose = nearest_by_joints(machine, target)
@@ -73,14 +141,14 @@ def _descended(machine: Machine, target: Pose, start: Pose, most_steps: int) -> 
 
 
 def _starts(machine: Machine, target: Pose) -> list[Pose]:
-    """Ends of free ways from home, the straight one first; `target` alone when that is free."""
+    """Ends of free paths from home, the straight one first; `target` alone when that is free."""
     home = machine.kinematics.home
     twist: Array = home.twist_to(target)
-    straight = way_home_share(machine, target)
+    straight = free_share_from_home(machine, target)
     if straight == 1.0:
         return [target]
     starts = [home.moved(straight * twist)]
     for part in (np.repeat([1.0, 0.0], 3), np.repeat([0.0, 1.0], 3)):
         end = home.moved(part * twist)
-        starts.append(home.moved(way_home_share(machine, end) * part * twist))
+        starts.append(home.moved(free_share_from_home(machine, end) * part * twist))
     return starts

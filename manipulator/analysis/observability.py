@@ -1,8 +1,8 @@
-"""Which combinations of parameters the measurements cannot tell apart, and which poses help.
+"""Which combinations of parameters the measurements cannot distinguish, and which poses help.
 
-The singular values of the slopes, per noise and tolerance, say how many there are. Each is first
+The singular values of the slopes, per noise and tolerance, give their number. Each is first
 looked for among the motions that one expects (a whole side of the machine, made up for by where
-the device stands); what is left is named by its largest terms.
+the device's pose); what is left is named by its largest terms.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ MOST_TERMS = 5
 @dataclass(frozen=True)
 class Sightlessness:
     """unseen: combinations that change nothing that was measured; vague: parameters of which the
-    measurements say less than the tolerance did.
+    measurements determine less than the tolerance did.
     """
 
     unseen: tuple[str, ...]

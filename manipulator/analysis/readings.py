@@ -13,7 +13,7 @@ from manipulator.machine import Machine
 from manipulator.pose import Pose
 
 CHECKS_PER_LENGTH = 70
-"""How closely a way is checked: as the walkers of the workspace are."""
+"""How closely a path is checked: as the walkers of the workspace are."""
 
 
 def scale(machine: Machine) -> Array:
@@ -44,7 +44,7 @@ class LimitReading(Violation):
     """One limited value at one pose.
 
     distance is about how far the pose is from the limit, in metres (rotations scaled by the
-    characteristic length): margin by slope, negative outside, ∞ where the value stands still.
+    characteristic length): margin by slope, negative outside, ∞ where the value does not change.
     """
 
     distance: float

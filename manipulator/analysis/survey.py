@@ -10,10 +10,10 @@ from functools import partial
 import numpy as np
 
 from manipulator import rotation as so3
+from manipulator.analysis.free_paths import is_connected, is_joint_box, keeps_limits
 from manipulator.analysis.inside import ranges
 from manipulator.analysis.readings import readings_of
 from manipulator.analysis.volume import PILOT, Box, Volume, bounding_box, volume, with_orientation
-from manipulator.analysis.way import is_connected, is_joint_box, keeps_limits
 from manipulator.arrays import Array, Mask
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -91,7 +91,7 @@ class Survey:
     With some orientation means roll, pitch and yaw each within ±tilt (rad). search_gain (m³) is
     what the second half of the search for orientations added: the volume is that of what was
     found, and the truth is larger, by something like this. connected_share is the part of a
-    sample of the first volume to which a way from home was found. box holds that volume.
+    sample of the first volume to which a path from home was found. box holds that volume.
     """
 
     ranges: dict[str, tuple[float, float]]
@@ -106,7 +106,7 @@ class Survey:
 def survey(machine: Machine, points: int, tilt: float, on_progress: OnProgress) -> Survey:
     """From `points` positions with home's orientation, and a 64th of them with some other.
 
-    Where they are to be looked for is found from fewer positions where few are asked for.
+    The box to search is found from fewer positions where few are requested.
     """
     home, length = machine.kinematics.home, machine.kinematics.characteristic_length
     found = ranges(machine, partial(on_progress, 'ranges'))

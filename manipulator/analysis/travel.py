@@ -4,9 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from manipulator.analysis.free_paths import (
+    admits,
+    is_connected,
+    is_joint_box,
+    last_free,
+    line_between,
+)
 from manipulator.analysis.reach import reach
 from manipulator.analysis.readings import CHECKS_PER_LENGTH, displaced, scale
-from manipulator.analysis.way import admits, is_connected, is_joint_box, last_free, straight_way
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.machine import Machine
@@ -20,7 +26,7 @@ BEYOND = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Travel:
-    """The way left along a twist.
+    """The travel left along a twist.
 
     seconds at that twist, metres of path (rotations scaled by the characteristic length), the
     last pose, and why it goes no further ('' where no limit was met within half a turn and 100
@@ -35,7 +41,7 @@ class Travel:
 
 @dataclass(frozen=True, eq=False)
 class Fault:
-    """Where a path leaves the reach: after pose `segment` (from 0), at `share` of the way on.
+    """Where a path leaves the reach: after pose `segment` (from 0), at `share` to the next pose.
 
     pose is the first that is out of reach; a fault at share 0 of segment 0 is in the first pose.
     """
@@ -48,13 +54,13 @@ class Fault:
 
 @dataclass(frozen=True)
 class PathReport:
-    """Whether all of a path can be driven; the first fault of each way that cannot."""
+    """Whether all of a path can be driven; the first fault of each segment that cannot."""
 
     faults: tuple[Fault, ...]
 
     @property
     def is_drivable(self) -> bool:
-        """Whether nothing is in the way."""
+        """Whether nothing is in the path."""
         return not self.faults
 
 
@@ -67,10 +73,10 @@ def travel(machine: Machine, pose: Pose, twist: Array, near: Array | None = None
     given = np.asarray(twist, dtype=np.float64)
     if given.shape != (6,) or not np.isfinite(given).all() or not given.any():
         raise InvalidInput(f'twist {given.tolist()} is not six finite numbers, not all 0')
-    way = given * scale(machine)
-    speed = float(np.linalg.norm(way))
+    path = given * scale(machine)
+    speed = float(np.linalg.norm(path))
     length = machine.kinematics.characteristic_length
-    direction, step = way / speed, length / CHECKS_PER_LENGTH
+    direction, step = path / speed, length / CHECKS_PER_LENGTH
     turn = float(np.linalg.norm(direction[3:])) / length
     longest = min(LONGEST * length, LARGEST_TURN / turn if turn > 0.0 else np.inf)
     free = _free_metres(machine, pose, direction, step, longest, _followed(machine, pose, near))
@@ -83,24 +89,24 @@ def travel(machine: Machine, pose: Pose, twist: Array, near: Array | None = None
 
 
 def path_report(machine: Machine, poses: Pose, near: Array | None = None) -> PathReport:
-    """Every way from one of the poses (N,) to the next, straight and with one turn.
+    """Every segment from one of the poses (N,) to the next, straight and with one turn.
 
-    A fault before the first way is that its first pose is out of reach, or not connected to home.
+    Before the first segment, a fault is a first pose out of reach or not connected to home.
     """
     faults = []
     if not is_connected(machine, poses[0]):
-        reason = reach(machine, poses[0], near).reason or 'no way from home to it was found'
+        reason = reach(machine, poses[0], near).reason or 'no path from home to it was found'
         faults.append(Fault(0, 0.0, poses[0], reason))
     near = _followed(machine, poses[0], near)
     for k in range(poses.position.shape[0] - 1):
-        way = straight_way(machine, poses[k], poses[k + 1])
-        inside = admits(machine, way, near)
+        path = line_between(machine, poses[k], poses[k + 1])
+        inside = admits(machine, path, near)
         if not inside.all() and not (k == 0 and faults):
             first = int(np.argmin(inside))
             share = first / (len(inside) - 1)
-            faults.append(Fault(k, share, way[first], reach(machine, way[first], near).reason))
+            faults.append(Fault(k, share, path[first], reach(machine, path[first], near).reason))
         if near is not None:
-            near = machine.kinematics.inverse_along(way, near)[-1]
+            near = machine.kinematics.inverse_along(path, near)[-1]
     return PathReport(tuple(faults))
 
 
@@ -113,19 +119,19 @@ def _followed(machine: Machine, pose: Pose, near: Array | None) -> Array | None:
 
 
 def _free_metres(
-    machine: Machine, pose: Pose, way: Array, step: float, longest: float, near: Array | None
+    machine: Machine, pose: Pose, path: Array, step: float, longest: float, near: Array | None
 ) -> float:
-    """How far along `way` (6,), a unit vector, everything is admitted, at most `longest`."""
+    """How far along `path` (6,), a unit vector, everything is admitted, at most `longest`."""
     for begin in np.arange(0.0, longest, CHUNK * step):
         metres = np.minimum(begin + step * np.arange(CHUNK + 1), longest)
-        inside = admits(machine, displaced(machine, pose, metres[:, None] * way), near)
+        inside = admits(machine, displaced(machine, pose, metres[:, None] * path), near)
         if not inside.all():
             first = int(np.argmin(inside))
             if first == 0:
                 return float(begin)
-            return last_free(machine, pose, way, metres[first - 1], metres[first], near)
+            return last_free(machine, pose, path, metres[first - 1], metres[first], near)
         if near is not None:
             near = machine.kinematics.inverse_along(
-                displaced(machine, pose, metres[:, None] * way), near
+                displaced(machine, pose, metres[:, None] * path), near
             )[-1]
     return longest

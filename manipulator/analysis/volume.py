@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from manipulator.analysis.way import admits
+from manipulator.analysis.free_paths import admits
 from manipulator.arrays import Array, Mask
 from manipulator.machine import Machine
 from manipulator.pose import Pose

@@ -1,6 +1,6 @@
 """The one constraint check that ik, trajectories, teleop and workspace maps share.
 
-A limit that a machine stands beyond is stretched for the way back.
+A limit that a machine is beyond is stretched for the way back.
 """
 
 from collections.abc import Sequence
@@ -98,7 +98,7 @@ class Constraints:
         return self.checks[0][0].descended(search, self.bounds[0], start)
 
     def stretched_to(self, pose: Pose, joints: Array) -> 'Constraints':
-        """These limits for a machine that stands beyond some of them: it may not go further out.
+        """These limits for a machine that is beyond some of them: it may not go further out.
 
         The same ones where one configuration keeps them all.
         """
@@ -142,12 +142,12 @@ def _place(limit: Limit) -> tuple[LimitGroup | None, slice]:
 
 
 ROUNDING = 1e-9
-"""rad, m or a ratio by which values may differ when the same place is worked out again."""
+"""rad, m or a ratio by which values may differ when the same pose is computed again."""
 
 
 @dataclass(frozen=True, eq=False)
 class StretchedLimit(LimitOf):
-    """`inner` with bounds [low, high] (k,) that take in where the machine stands."""
+    """`inner` with bounds [low, high] (k,) that include the present values."""
 
     low: Array
     high: Array

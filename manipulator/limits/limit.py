@@ -72,10 +72,10 @@ class LimitGroup(Protocol):
         """From an admitted pose to one at a local minimum of the distance, within the bounds."""
         ...
 
-    def first_free_way(self, ranges: Array, ways: 'Ways') -> tuple[int, Array]:
-        """The first of the ways that nothing holds back, their number if there is none.
+    def first_free_path(self, ranges: Array, paths: 'BrakingPaths') -> tuple[int, Array]:
+        """The first of the paths that nothing holds back, their number if there is none.
 
-        And the ways (k, 20) up to it, `struct way` of kernel/braking.h each.
+        And the paths (k, 20) up to it, `struct braking_path` of kernel/braking.h each.
         """
         ...
 
@@ -95,8 +95,8 @@ class Search:
 
 
 @dataclass(frozen=True, eq=False)
-class Ways:
-    """One tick at each of the twists (k, 6), then braking to rest: what `first_free_way` judges.
+class BrakingPaths:
+    """One tick at each of the twists (k, 6), then braking to rest: what `first_free_path` judges.
 
     From pose, joints (n,) and their rates (n,); bounds and frame are `jog_bounds` and `jog_frame`
     of kernel/braking.h, the frame None where poses are the platform's own.
@@ -150,7 +150,7 @@ class Violation:
 
     @property
     def _digits(self) -> int:
-        """Four, or as many as tell the value from the bounds that it is beyond."""
+        """Four, or as many as distinguish the value from the bound that it is beyond."""
         for digits in range(FEWEST_DIGITS, MOST_DIGITS):
             value, low, high = (f'{x:.{digits}g}' for x in (self.value, self.low, self.high))
             if value not in (low, high):

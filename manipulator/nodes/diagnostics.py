@@ -1,4 +1,4 @@
-"""What a node says of itself on /diagnostics, once a second (REP-107)."""
+"""A node's report on /diagnostics, once a second (REP-107)."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -6,7 +6,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
-from manipulator.nodes.graph_check import Received, crowds, received_by, unheard
+from manipulator.nodes.graph_check import Received, crowds, received_by, unreceived
 from manipulator.nodes.steady_timer import SteadyTimer
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
@@ -54,16 +54,16 @@ class Diagnostics:
             level, message = max(level, WARN), f'{message}; {trouble}' if message else trouble
         name = self._node.get_fully_qualified_name().lstrip('/')
         stamp = self._node.get_clock().now().to_msg()
-        said = status(level, name, message, values)
+        report = status(level, name, message, values)
         if self._node.has_parameter('machine'):
-            said.hardware_id = str(self._node.get_parameter('machine').value)
-        array = DiagnosticArray(status=[said])
+            report.hardware_id = str(self._node.get_parameter('machine').value)
+        array = DiagnosticArray(status=[report])
         array.header.stamp = stamp
         self._publisher.publish(array)
 
     def _trouble(self) -> str:
         received = [*received_by(self._node), *self._received_beside]
-        found = crowds(self._node, self._single_publisher) + unheard(self._node, received)
+        found = crowds(self._node, self._single_publisher) + unreceived(self._node, received)
         return '; '.join(found)
 
 

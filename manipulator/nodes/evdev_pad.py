@@ -10,7 +10,7 @@ from manipulator.errors import LinkError
 from manipulator.teleop.pad import ABS, KEY, Axis, Pad, is_gamepad
 
 SYN, SYN_REPORT, SYN_DROPPED = 0, 0, 3
-"""The kind of event that ends a report, and the one that tells of lost events."""
+"""The kind of event that ends a report, and the one that signals lost events."""
 
 
 class Device(Protocol):
@@ -64,7 +64,7 @@ class EvdevPad:
 
     @property
     def has_heartbeat(self) -> bool:
-        """Whether a frozen pad can be told from a steady thumb."""
+        """Whether a frozen pad can be distinguished from a steady thumb."""
         return self._sensors is not None
 
     def close(self) -> None:
@@ -80,7 +80,7 @@ class EvdevPad:
         except BlockingIOError:
             return []
         except OSError as error:
-            raise LinkError(f'{self.name} has gone ({error.strerror})') from error
+            raise LinkError(f'{self.name} was disconnected ({error.strerror})') from error
 
 
 def input_devices() -> list[str]:
@@ -89,13 +89,13 @@ def input_devices() -> list[str]:
 
 
 def find_pad(
-    paths: Sequence[str], open_device: Callable[[str], Device], wanted: str = ''
+    paths: Sequence[str], open_device: Callable[[str], Device], only: str = ''
 ) -> EvdevPad:
-    """The first gamepad among paths that is free, or the one at the path `wanted`.
+    """The first gamepad among paths that is free, or the one at the path `only`.
 
     A pad is free where no other process has claimed it here: so two machines, each with a gamepad
     node on the same computer, do not share one by accident. It is claimed until it is closed.
-    LinkError says in one sentence why there is none.
+    LinkError with the reason where there is none.
     """
     devices: list[Device] = []
     denied = 0
@@ -104,11 +104,11 @@ def find_pad(
             devices.append(open_device(path))
         except OSError:
             denied += 1
-    pads = [d for d in devices if wanted in ('', d.path) and is_gamepad(*_state(d))]
+    pads = [d for d in devices if only in ('', d.path) and is_gamepad(*_state(d))]
     chosen = next((d for d in pads if _is_claimed(d)), None)
     if chosen is None:
         _close(devices)
-        raise LinkError(_used(pads[0]) if pads else _why(len(paths), denied, wanted))
+        raise LinkError(_used(pads[0]) if pads else _why(len(paths), denied, only))
     sensors = next((d for d in devices if _is_sensor_of(chosen, d)), None)
     _close(d for d in devices if d not in (chosen, sensors))
     return EvdevPad(chosen, sensors)
@@ -130,8 +130,8 @@ def _used(pad: Device) -> str:
     )
 
 
-def _why(count: int, denied: int, wanted: str) -> str:
-    none = f'no gamepad found{" at " if wanted else ""}{wanted}'
+def _why(count: int, denied: int, only: str) -> str:
+    none = f'no gamepad found{" at " if only else ""}{only}'
     if count == 0:
         return f'{none}: this machine has no input devices (/dev/input/event*)'
     if denied:
@@ -150,7 +150,7 @@ def _state(device: Device) -> tuple[dict[int, Axis], dict[int, bool]]:
 
 
 def _is_sensor_of(pad: Device, device: Device) -> bool:
-    """hid-playstation and hid-nintendo: the same unique id, and a name that says so."""
+    """hid-playstation and hid-nintendo: the same unique id, and a matching name."""
     is_sensor = device.name.endswith(('Motion Sensors', 'IMU', '(IMU)'))
     return device is not pad and is_sensor and (device.uniq, device.phys) == (pad.uniq, pad.phys)
 

@@ -16,7 +16,7 @@ from manipulator.nodes.steady_timer import SteadyTimer
 
 DEVICE = 'path of the pad (/dev/input/event*, /dev/input/by-id/*); empty: the first one found'
 LOOK_AGAIN = 1.0
-"""Seconds between looks for a pad."""
+"""Seconds between two searches for a pad."""
 
 
 class Gamepad(Node):
@@ -24,8 +24,8 @@ class Gamepad(Node):
 
     def __init__(self) -> None:
         super().__init__('gamepad')
-        wanted = declare(self, 'device', '', DEVICE)
-        self._wanted = os.path.realpath(wanted) if wanted else ''
+        only = declare(self, 'device', '', DEVICE)
+        self._only = os.path.realpath(only) if only else ''
         topic = declare(self, 'topic', 'joy', 'where the Joy messages go')
         rate = declare(self, 'rate', 100.0, 'messages per second (Hz)', (20.0, 500.0))
         self._pad: EvdevPad | None = None
@@ -45,7 +45,7 @@ class Gamepad(Node):
         if self._pad is not None:
             return
         try:
-            self._pad = find_pad(input_devices(), _open, self._wanted)
+            self._pad = find_pad(input_devices(), _open, self._only)
         except LinkError as error:
             self._say(str(error))
             return

@@ -1,8 +1,8 @@
 """What is wrong with the graph around a node: missing subscribers, publishers not received.
 
-ROS drops without a word what comes with another type or with a weaker quality of service than
-requested, and some topics may have only one publisher. Looking at the graph takes about 50 µs a
-topic (measured on a computer of two cores).
+ROS silently drops messages of another type or of a weaker quality of service than requested, and
+some topics may have only one publisher. A check takes about 50 µs a topic (measured on a computer
+of two cores).
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -23,29 +23,29 @@ PATIENCE = 3.0
 
 
 def place(node: Node) -> str:
-    """Where a node looks for others, as '/hexapod on ROS domain 0'."""
+    """A node's namespace and domain, as '/hexapod on ROS domain 0'."""
     return f'{node.get_namespace()} on ROS domain {node.context.get_domain_id()}'
 
 
 @dataclass
-class Audience:
-    """What is to be said of the listeners in `place`; times are monotonic, in seconds."""
+class SubscriberCheck:
+    """Reports whether a machine subscribes in `place`; times are monotonic, in seconds."""
 
     place: str
     since: float
-    said: bool | None = field(default=None, init=False)
+    reported: bool | None = field(default=None, init=False)
 
-    def news(self, is_heard: bool, now: float) -> str:
-        """A line when somebody begins to listen, or has not for a while; '' at other times."""
-        if is_heard:
+    def update(self, has_subscribers: bool, now: float) -> str:
+        """A line when a machine begins to subscribe, or has not for PATIENCE; else ''."""
+        if has_subscribers:
             self.since = now
-        is_new = is_heard is not self.said
-        if not is_new or (not is_heard and now - self.since < PATIENCE):
+        is_new = has_subscribers is not self.reported
+        if not is_new or (not has_subscribers and now - self.since < PATIENCE):
             return ''
-        self.said = is_heard
-        if is_heard:
-            return f'a machine listens in {self.place}'
-        return f'nobody listens in {self.place}: is a graph up there? {self._hint}'.rstrip()
+        self.reported = has_subscribers
+        if has_subscribers:
+            return f'a machine subscribes in {self.place}'
+        return f'no machine subscribes in {self.place}: is it started there? {self._hint}'.rstrip()
 
     @property
     def _hint(self) -> str:
@@ -83,7 +83,7 @@ def crowds(node: Node, topics: Iterable[str]) -> list[str]:
     return found
 
 
-def unheard(node: Node, topics: Iterable[Received]) -> list[str]:
+def unreceived(node: Node, topics: Iterable[Received]) -> list[str]:
     """A text for each publisher on the topics that is not received, with what to change."""
     found = []
     for topic in topics:
@@ -112,10 +112,10 @@ def _remedy(publisher: TopicEndpointInfo, topic: Received) -> str:
     return f'is not received: its quality of service must be {" and ".join(remedies)}'
 
 
-def _stronger(offered: QoSProfile, wanted: QoSProfile) -> list[str]:
-    """What the subscription asks for, and the publisher does not offer."""
-    reliable = wanted.reliability, offered.reliability
-    latched = wanted.durability, offered.durability
+def _stronger(offered: QoSProfile, requested: QoSProfile) -> list[str]:
+    """What the subscription requests and the publisher does not offer."""
+    reliable = requested.reliability, offered.reliability
+    latched = requested.durability, offered.durability
     found = []
     if reliable == (ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT):
         found.append('reliable')

@@ -1,4 +1,4 @@
-"""From setpoints to joint commands; what is checked on the way stands in command_check.py."""
+"""From setpoints to joint commands, checked by setpoint_validator.py."""
 
 import time
 from collections.abc import Callable
@@ -8,13 +8,13 @@ from geometry_msgs.msg import PoseStamped
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-from manipulator.command_check import CommandCheck
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.messages import joint_message, known_joints, pose_of
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
-from manipulator.nodes.subscriptions import Intake
+from manipulator.nodes.subscriptions import FilteredCallback
+from manipulator.setpoint_validator import SetpointValidator
 
 
 class IkNode(Node):
@@ -25,9 +25,9 @@ class IkNode(Node):
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         machine = load(name)
         self._names = machine.kinematics.joint_names
-        self._check = CommandCheck(machine)
-        self._setpoint = Intake(self, 'setpoint', self._on_setpoint)
-        self._states = Intake(self, 'joint_states', self._on_joint_states)
+        self._check = SetpointValidator(machine)
+        self._setpoint = FilteredCallback(self, 'setpoint', self._on_setpoint)
+        self._states = FilteredCallback(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(JointState, 'joint_command', COMMAND)
         self.create_subscription(PoseStamped, 'setpoint', self._setpoint, COMMAND)
         self.create_subscription(JointState, 'joint_states', self._states, MEASUREMENT)

@@ -1,9 +1,9 @@
 """What every node of a person's input device publishes: twists, mode, gripper, home, stop.
 
-A twist means that somebody holds the deadman. Letting go publishes one zero and then nothing, so
-that silence and a node that has died look alike to the trajectory node.
+A twist means that the deadman is held. Releasing it publishes one zero and then nothing, so that
+a release and a node that has died are the same for the trajectory node.
 
-The stop button brakes along the path; where nobody confirms that, it becomes the emergency stop.
+The stop button brakes along the path; where that is not confirmed, it becomes the emergency stop.
 Braking is gentler, and the machine can go on afterwards. But the trajectory node cannot brake what
 it does not drive (a program that the board plays by itself), nor when it hangs or has died.
 """
@@ -18,17 +18,15 @@ from std_msgs.msg import Bool, Float64, String
 from std_srvs.srv import Trigger
 
 from manipulator.arrays import Array, frozen
+from manipulator.deadlines import HAND_OVER, RELEASE
 from manipulator.nodes.qos import COMMAND, EVERY_WORD, LATCHED
 
-PATIENCE = 0.25
-"""Seconds in which the trajectory node must say that it brakes."""
-
 LATCHED_BY = 'EMERGENCY STOP, because {}: serial_bridge/clear_fault ends it'
-UNHEARD = 'nobody hears emergency_stop: switch off the supply of the servos'
+NO_SUBSCRIBER = 'no subscriber on emergency_stop: switch off the servo supply'
 
 
 class StopButton:
-    """Asks `trajectory/stop`, and publishes `emergency_stop` where that fails or is not answered.
+    """Calls `trajectory/stop`, and publishes `emergency_stop` where that fails or is not answered.
 
     `watch` must be called at every tick.
     """
@@ -40,7 +38,7 @@ class StopButton:
         self._stops = node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
 
     def press(self) -> None:
-        """Stops whatever moves."""
+        """Stops all motion."""
         if not self._client.service_is_ready():
             self._stop_at_once('no trajectory node answers')
             return
@@ -50,11 +48,11 @@ class StopButton:
 
     def watch(self) -> None:
         """Loses patience with a trajectory node that does not answer."""
-        if self._asked_at is not None and time.monotonic() - self._asked_at > PATIENCE:
-            self._stop_at_once(f'the trajectory node did not answer within {PATIENCE:g} s')
+        if self._asked_at is not None and time.monotonic() - self._asked_at > RELEASE:
+            self._stop_at_once(f'the trajectory node did not answer within {RELEASE:g} s')
 
     def close(self, patience: Duration) -> None:
-        """Waits until everybody has heard it: then the publisher may vanish."""
+        """Waits until all subscribers have received it: then the publisher may end."""
         if self._asked_at is not None:
             self._stop_at_once('this node ends before the trajectory node has answered')
         self._stops.wait_for_all_acked(patience)
@@ -72,19 +70,17 @@ class StopButton:
         self._stops.publish(Bool(data=True))
         self._node.get_logger().error(LATCHED_BY.format(reason))
         if self._stops.get_subscription_count() == 0:
-            self._node.get_logger().error(UNHEARD)
+            self._node.get_logger().error(NO_SUBSCRIBER)
 
 
 NO_TWIST = frozen([0.0] * 6)
 
-HAND_OVER = 0.3
-"""Seconds of silence after which the trajectory node takes us to have let go."""
 
 HALF_OPEN = 0.5
-"""Of a gripper that nobody has moved yet: where a machine parks it."""
+"""Of a gripper that has not been moved yet: where a machine parks it."""
 
 LAST_WORD = Duration(seconds=0.5)
-"""How long to wait for a listener that does not answer."""
+"""How long to wait for a subscriber that does not answer."""
 
 
 class JogTopics:
@@ -128,18 +124,18 @@ class JogTopics:
             self._modes.publish(String(data=mode))
 
     def grip(self, step: float) -> None:
-        """Opens the gripper by `step` of its way, or closes it for negative ones."""
+        """Opens the gripper by `step` of its range, or closes it for negative ones."""
         opening = min(max(self._opening + step, 0.0), 1.0)
         if opening != self._opening:
             self.open_to(opening)
 
     def open_to(self, opening: float) -> None:
-        """Opens the gripper to a share of its way, 0 (closed) to 1."""
+        """Opens the gripper to a share of its range, 0 (closed) to 1."""
         self._opening = opening
         self._gripper.publish(Float64(data=opening))
 
     def home(self, is_held: bool) -> None:
-        """Goes home while held: asks once the machine is free, and stops it at release."""
+        """Goes home while held: calls once the machine is free, and stops it at release."""
         if self._is_homing and not is_held and self._is_home_asked:
             self._ask('stop')
         self._is_home_asked &= is_held
@@ -150,15 +146,15 @@ class JogTopics:
             self._ask('home')
 
     def go_home(self) -> None:
-        """Asks the trajectory node to go home, however long that takes."""
+        """Calls `trajectory/home`, however long that takes."""
         self._ask('home')
 
     def stop(self) -> None:
-        """Stops whatever moves: gently if it can be, else at once."""
+        """Stops all motion: by braking if possible, else at once."""
         self._stop_button.press()
 
     @property
-    def is_heard(self) -> bool:
+    def has_subscribers(self) -> bool:
         """Whether a trajectory node is there, and takes the twists."""
         is_there = bool(self._services['stop'].service_is_ready())
         return is_there and bool(self._twists.get_subscription_count() > 0)
@@ -169,7 +165,7 @@ class JogTopics:
         return self._is_moving
 
     def close(self) -> None:
-        """Lets go, and waits until everybody has heard it: then the publisher may vanish."""
+        """Releases, and waits until all subscribers have received that."""
         self.home(False)
         self.drive(NO_TWIST, '', False)
         self._twists.wait_for_all_acked(LAST_WORD)

@@ -12,13 +12,13 @@ from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report
 from manipulator.nodes.jog_topics import JogTopics
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.steady_timer import SteadyTimer
-from manipulator.nodes.subscriptions import Intake, SoleSubscription
+from manipulator.nodes.subscriptions import FilteredCallback, SoleSubscription
 from manipulator.teleop.gamepad import Gamepad
 from manipulator.teleop.joy_reader import JoyReader
 
 GAMEPAD = 'mapping of the gamepad: a shipped name (xbox, playstation) or a path'
 SCALE = 'full stick in parts of the speeds (m/s, rad/s) that the mapping states'
-GRIPPER = 'part of its way that the gripper moves in 1 s'
+GRIPPER = 'part of its range that the gripper moves in 1 s'
 
 
 class JoyTeleop(Node):
@@ -33,7 +33,7 @@ class JoyTeleop(Node):
         self._gripper_step = declare(self, 'gripper_speed', 0.5, GRIPPER, (0.05, 5.0)) / rate
         self._reader = JoyReader(gamepad)
         self._stops = 0
-        self._joy = Intake(self, 'joy', self._on_joy)
+        self._joy = FilteredCallback(self, 'joy', self._on_joy)
         self._topics = JogTopics(self, 'joy')
         self._pad = SoleSubscription(
             self, Joy, topic, self._joy, qos_profile_sensor_data, is_continuous=True
@@ -42,38 +42,38 @@ class JoyTeleop(Node):
         self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/joy', topic))
 
     def close(self) -> None:
-        """Lets go of the machine."""
+        """Releases the machine."""
         self._topics.close()
 
     def _on_joy(self, message: Joy) -> None:
         axes, buttons = message.axes.tolist(), message.buttons.tolist()
-        self._reader = self._reader.hear(axes, buttons, time.monotonic(), self._pad.trouble)
+        self._reader = self._reader.receive(axes, buttons, time.monotonic(), self._pad.trouble)
         if self._reader.fault:
             raise InvalidInput(self._reader.fault)
 
     def _tick(self) -> None:
-        wanted = self._reader.wanted(time.monotonic())
-        self._topics.choose(wanted.mode)
-        self._topics.drive(wanted.twist * self._scale, wanted.frame, wanted.is_held)
-        self._topics.home(wanted.is_homing)
-        if wanted.stops != self._stops:
-            self._stops = wanted.stops
+        command = self._reader.command(time.monotonic())
+        self._topics.choose(command.mode)
+        self._topics.drive(command.twist * self._scale, command.frame, command.is_held)
+        self._topics.home(command.is_homing)
+        if command.stops != self._stops:
+            self._stops = command.stops
             self._topics.stop()
-        if wanted.grip:
-            self._topics.grip(wanted.grip * self._gripper_step)
+        if command.grip:
+            self._topics.grip(command.grip * self._gripper_step)
 
     def _report(self) -> Report:
-        wanted = self._reader.wanted(time.monotonic())
+        command = self._reader.command(time.monotonic())
         values = {
-            'mode': wanted.mode,
-            'frame': wanted.frame,
+            'mode': command.mode,
+            'frame': command.frame,
             'last_joy_age_s': self._joy.age,
             'joy_refused': self._joy.refused,
             'last_refusal': self._joy.last_refusal,
             'not_seen_at_rest_yet': ', '.join(self._reader.untrusted),
         }
         if self._pad.trouble:
-            return ERROR, f'{self._pad.trouble}: end all but one, then let go', values
-        if wanted.reason:
-            return WARN, f'{self._pad.topic}: {wanted.reason}', values
-        return OK, 'deadman held' if wanted.is_held else 'deadman released', values
+            return ERROR, f'{self._pad.trouble}: end all but one, then release the deadman', values
+        if command.reason:
+            return WARN, f'{self._pad.topic}: {command.reason}', values
+        return OK, 'deadman held' if command.is_held else 'deadman released', values

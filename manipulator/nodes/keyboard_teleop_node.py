@@ -6,7 +6,7 @@ import time
 from rclpy.node import Node
 
 from manipulator.nodes.diagnostics import OK, Diagnostics, Report
-from manipulator.nodes.graph_check import Audience, place
+from manipulator.nodes.graph_check import SubscriberCheck, place
 from manipulator.nodes.jog_topics import JogTopics
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.steady_timer import SteadyTimer
@@ -14,9 +14,9 @@ from manipulator.nodes.terminal import Terminal
 from manipulator.teleop.keyboard import HELP, Keyboard, keys_of
 
 LOOK_AROUND = 0.5
-"""Seconds between two looks at who listens."""
+"""Seconds between two subscriber checks."""
 
-GRIPPER = 'part of its way that the gripper moves in 1 s'
+GRIPPER = 'part of its range that the gripper moves in 1 s'
 
 
 class KeyboardTeleop(Node):
@@ -31,7 +31,7 @@ class KeyboardTeleop(Node):
         self._terminal = terminal
         self._keyboard = Keyboard(linear, angular)
         self._topics = JogTopics(self, 'keyboard')
-        self._audience = Audience(place(self), time.monotonic())
+        self._subscriber_check = SubscriberCheck(place(self), time.monotonic())
         self._timer = SteadyTimer(self, 1.0 / rate, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('cmd_vel/keyboard',))
         terminal.show(f'{HELP}\n')
@@ -39,7 +39,7 @@ class KeyboardTeleop(Node):
         self._looking = SteadyTimer(self, LOOK_AROUND, self._look_around)
 
     def close(self) -> None:
-        """Lets go of the machine, and of the terminal."""
+        """Releases the machine and the terminal."""
         self._topics.close()
         self._terminal.show('\n')
         self._terminal.restore()
@@ -64,7 +64,7 @@ class KeyboardTeleop(Node):
             signal.raise_signal(signal.SIGINT)
 
     def _look_around(self) -> None:
-        news = self._audience.news(self._topics.is_heard, time.monotonic())
+        news = self._subscriber_check.update(self._topics.has_subscribers, time.monotonic())
         if news:
             self._terminal.show(f'\r\x1b[K {news}\n')
             self._show()

@@ -1,8 +1,7 @@
 """Services that answer later, without a thread that waits: from a tick, once the outcome is known.
 
 rclpy sends the response as soon as a callback returns, and its EventsExecutor runs no coroutine
-that could wait. Here the callback only begins the work, and
-what would send the response keeps it until somebody does.
+that could wait. Here the callback only begins the work; the response is sent later.
 """
 
 from collections.abc import Callable

@@ -20,15 +20,22 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.formatting import counted, shown
-from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, check_frame, pose_message, seconds
-from manipulator.nodes.parameters import declare
+from manipulator.nodes.messages import (
+    BASE_FRAME,
+    NO_TURN,
+    WORK_FRAME,
+    check_frame,
+    pose_message,
+    seconds,
+)
+from manipulator.nodes.parameters import GoalParameters, declare
 from manipulator.nodes.qos import COMMAND
-from manipulator.nodes.subscriptions import Intake, decoded
+from manipulator.nodes.subscriptions import FilteredCallback, decoded
 from manipulator.pose import Pose
+from manipulator.trajectory.controller import MotionController
 from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.path_planning import PathGoal
 from manipulator.trajectory.path_timing import PathRequest
-from manipulator.trajectory.supervisor import Supervisor
 
 MOST_POSES = 2000
 MOST_BYTES = 100 * MOST_POSES
@@ -49,18 +56,20 @@ class RawPath:
 class PathGoals:
     """The topic and its parameters."""
 
-    def __init__(self, node: Node, supervisor: Supervisor) -> None:
-        self._node, self._supervisor = node, supervisor
-        fastest = supervisor.pilot.machine.motion.linear.speed
+    def __init__(
+        self, node: Node, controller: MotionController, parameters: GoalParameters
+    ) -> None:
+        self._node, self._controller, self._parameters = node, controller, parameters
+        fastest = controller.supervisor.machine.motion.linear.speed
         for name, default, description, bounds in (
             ('path_speed', fastest, 'speed along paths without stamps (m/s)', (1e-4, 10.0)),
             ('path_tolerance', 1e-4, 'how far a path may cut its corners (m)', (1e-6, 0.1)),
             ('path_turn_tolerance', radians(0.1), 'the same for turns (rad)', (1e-5, 0.2)),
         ):
             declare(node, name, default, description, bounds, is_read_only=False)
-        self._intake = Intake(node, 'goal_path', self._on_path, self._on_bad_path)
+        self._receive = FilteredCallback(node, 'goal_path', self._on_path, self._on_bad_path)
         node.create_subscription(
-            Path, 'goal_path', lambda raw: self._intake(raw_path(raw)), COMMAND, raw=True
+            Path, 'goal_path', lambda raw: self._receive(raw_path(raw)), COMMAND, raw=True
         )
 
     def _on_path(self, message: RawPath) -> None:
@@ -70,9 +79,9 @@ class PathGoals:
                 f'a path of {length:,} bytes, limit {MOST_BYTES:,}: {MOST_POSES:,} poses take less'
             )
         check_frame(message.header.frame_id, (BASE_FRAME, WORK_FRAME))
-        self._supervisor.follow(
+        self._controller.follow(
             self._goal_of(message),
-            lambda error: self._intake.refuse(message, error),
+            lambda error: self._receive.refuse(message, error),
             time.monotonic(),
         )
 
@@ -81,14 +90,17 @@ class PathGoals:
         tolerance = Tolerance(
             self._parameter('path_tolerance'), self._parameter('path_turn_tolerance')
         )
-        read = partial(_request, message.serialized, self._parameter('path_speed'), tolerance)
-        return PathGoal(seconds(message.header.stamp), read, is_of_platform=frame == BASE_FRAME)
+        is_of_platform = frame == BASE_FRAME
+        rule = self._controller.orientation_rule(self._parameters.orientation, is_of_platform)
+        speed = self._parameter('path_speed')
+        read = partial(_request, message.serialized, speed, tolerance, rule.is_given)
+        return PathGoal(seconds(message.header.stamp), read, is_of_platform, rule)
 
     def _parameter(self, name: str) -> float:
         return float(self._node.get_parameter(name).value)
 
     def _on_bad_path(self, message: RawPath, error: ManipulatorError) -> None:
-        self._supervisor.refuse(seconds(message.header.stamp), error)
+        self._controller.refuse(seconds(message.header.stamp), error)
 
 
 def raw_path(serialized: bytes) -> RawPath:
@@ -99,17 +111,20 @@ def raw_path(serialized: bytes) -> RawPath:
         return RawPath(Header(), serialized)
 
 
-def _request(serialized: bytes, speed: float, tolerance: Tolerance) -> PathRequest:
-    poses, stamps = path_of(decoded(serialized, Path, MOST_BYTES))
+def _request(
+    serialized: bytes, speed: float, tolerance: Tolerance, are_oriented: bool
+) -> PathRequest:
+    poses, stamps = path_of(decoded(serialized, Path, MOST_BYTES), are_oriented)
     return PathRequest(poses, speed, tolerance, stamps)
 
 
-def path_of(message: Path) -> tuple[Pose, Array | None]:
+def path_of(message: Path, are_oriented: bool = True) -> tuple[Pose, Array | None]:
     """Poses (n,) and their stamps (n,), in seconds from the first; None where all are equal.
 
     Raises InvalidInput for too few or many poses; naming the pose, for numbers that are not
     finite, quaternions that are no rotation, frames that are neither empty nor the path's, and
-    stamps that do not all increase.
+    stamps that do not all increase. Quaternions of zeros are allowed where the poses are not
+    oriented.
     """
     count, frame = len(message.poses), message.header.frame_id or BASE_FRAME
     if not 1 <= count <= MOST_POSES:
@@ -124,6 +139,8 @@ def path_of(message: Path) -> tuple[Pose, Array | None]:
         stamps[i] = stamp.sec, stamp.nanosec
         values[i, :3] = POSITION(stamped.pose.position)
         values[i, 3:] = ORIENTATION(stamped.pose.orientation)
+    if not are_oriented:
+        values[~values[:, 3:].any(axis=1), 3:] = NO_TURN
     return _poses(values), _seconds(stamps)
 
 
@@ -159,7 +176,7 @@ def _seconds(stamps: 'np.ndarray[tuple[int, ...], np.dtype[np.int64]]') -> Array
 def path_message(
     poses: Pose, stamp: Time, frame: str = BASE_FRAME, stamps: list[Time] | None = None
 ) -> Path:
-    """Poses (n,) as a message; their stamps, if any, say when each is to be passed."""
+    """Poses (n,) as a message; their stamps, if any, are the times to pass them."""
     count = len(poses.position)
     times = [Time()] * count if stamps is None else stamps
     message = Path(poses=[pose_message(poses[i], times[i], frame) for i in range(count)])

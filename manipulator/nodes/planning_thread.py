@@ -1,4 +1,4 @@
-"""Where a node's plans are worked out: a thread beside the control loop."""
+"""The thread in which a node's plans are made, beside the control loop."""
 
 import sys
 from concurrent.futures import Future, ThreadPoolExecutor

@@ -38,14 +38,14 @@ from manipulator.nodes.messages import (
 )
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
-from manipulator.nodes.subscriptions import Intake
+from manipulator.nodes.subscriptions import FilteredCallback
 from manipulator.pose import Pose
 from manipulator.pose_estimate import PoseEstimate
 from manipulator.skeleton import Stroke
 
 PERIOD = 0.1
 LIFETIME = Duration(sec=1)
-"""A machine that is no longer heard of disappears."""
+"""A machine whose pose is no longer published disappears."""
 
 COLOURS = {
     'body': (0.35, 0.4, 0.45),
@@ -59,7 +59,7 @@ WIDTH = 0.02
 
 
 class Markers:
-    """Publishes `markers`, at most every PERIOD and only while somebody listens."""
+    """Publishes `markers`, at most every PERIOD and only while there is a subscriber."""
 
     def __init__(self, node: Node, frame_prefix: str) -> None:
         self._frame = frame_prefix + BASE_FRAME
@@ -90,22 +90,22 @@ def _marker(number: int, stroke: Stroke, width: float, frame: str, stamp: Time) 
 
 
 LISTENED = QoSProfile(depth=100)
-"""What every tf2 listener asks for."""
+"""The quality of service that every tf2 listener requests."""
 
 
 def declare_prefix(node: Node) -> str:
     """The parameter `frame_prefix`; InvalidInput for what tf2 would not accept."""
-    meaning = 'stands before the frame names of tf and markers, as in hexapod/'
+    meaning = 'prefix of the frame names of tf and markers, as in hexapod/'
     prefix = str(declare(node, 'frame_prefix', '', meaning))
     if re.fullmatch(r'([A-Za-z_][\w/-]*)?', prefix, re.ASCII) is None:
         raise InvalidInput(
-            f'parameter frame_prefix: {shown(prefix)} is no beginning of a frame name'
+            f'parameter frame_prefix: {shown(prefix)} is not a valid prefix of a frame name'
         )
     return prefix
 
 
 class Transforms:
-    """Publishes /tf while somebody listens; without tf2_msgs it does nothing, and says nothing."""
+    """Publishes /tf while there is a subscriber; without tf2_msgs it does nothing."""
 
     def __init__(self, node: Node, prefix: str) -> None:
         self._prefix = prefix
@@ -119,22 +119,22 @@ class Transforms:
     def show(
         self, kinematics: Kinematics, frames: Frames, pose: Pose, joints: Array, stamp: Time
     ) -> None:
-        """Tells where every frame of the machine is."""
+        """Publishes every frame of the machine."""
         if self._kind is None or self._publisher.get_subscription_count() == 0:
             return
-        told = transforms(kinematics.links(pose, joints), frames, self._prefix, stamp)
-        self._publisher.publish(self._kind(transforms=told))
+        entries = transforms(kinematics.links(pose, joints), frames, self._prefix, stamp)
+        self._publisher.publish(self._kind(transforms=entries))
 
 
 def transforms(
     links: Sequence[Link], frames: Frames, prefix: str, stamp: Time
 ) -> list[TransformStamped]:
     """Base to every link and to the work frame, platform to pivot."""
-    told = [(BASE_FRAME, link.name, link.pose) for link in links]
-    told.append((BASE_FRAME, WORK_FRAME, frames.T_base_work))
-    told.append((PLATFORM_FRAME, PIVOT_FRAME, frames.T_platform_pivot))
+    entries = [(BASE_FRAME, link.name, link.pose) for link in links]
+    entries.append((BASE_FRAME, WORK_FRAME, frames.T_base_work))
+    entries.append((PLATFORM_FRAME, PIVOT_FRAME, frames.T_platform_pivot))
     return [
-        _transform(prefix + parent, prefix + child, pose, stamp) for parent, child, pose in told
+        _transform(prefix + parent, prefix + child, pose, stamp) for parent, child, pose in entries
     ]
 
 
@@ -156,7 +156,7 @@ class PoseNode(Node):
         machine = load(name)
         self._kinematics, self._frames = machine.kinematics, machine.frames
         self._estimate = PoseEstimate(machine, self.get_logger().info)
-        self._states = Intake(self, 'joint_states', self._on_joint_states)
+        self._states = FilteredCallback(self, 'joint_states', self._on_joint_states)
         self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
         prefix = declare_prefix(self)
         self._markers = Markers(self, prefix)

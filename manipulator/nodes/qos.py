@@ -10,7 +10,7 @@ COMMAND = QoSProfile(
 MEASUREMENT = QoSProfile(
     history=HistoryPolicy.KEEP_LAST, depth=5, reliability=ReliabilityPolicy.RELIABLE
 )
-"""Joint states and poses: reliable, so that MoveIt hears them too."""
+"""Joint states and poses: reliable, so that MoveIt receives them too."""
 
 LATCHED = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -18,7 +18,7 @@ LATCHED = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
-"""States that a late listener must know: machine_state, motion_status."""
+"""States that a late subscriber must know: machine_state, motion_status."""
 
 EVERY_WORD = QoSProfile(
     history=HistoryPolicy.KEEP_LAST, depth=100, reliability=ReliabilityPolicy.RELIABLE

@@ -29,7 +29,7 @@ Makers = Sequence[Callable[[], Node]]
 def run_nodes(makers: Makers, describe: Callable[[str], str] | None = None) -> int:
     """Spins nodes on one executor until SIGINT or SIGTERM; a start-up error is status 1.
 
-    With `describe` the log begins with what that says of the first node's parameter `machine`.
+    With `describe` the log begins with its text for the first node's parameter `machine`.
 
     rclpy's own signal handlers would invalidate the context before the last message is out, so
     ours only set a flag.
@@ -47,7 +47,7 @@ def run_nodes(makers: Makers, describe: Callable[[str], str] | None = None) -> i
         print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {reason}', file=sys.stderr)
         try_shutdown()
         return 1
-    with _leaving_within(GOODBYE):
+    with leaving_within(GOODBYE):
         try_shutdown()
     _leave()
     return 0
@@ -65,7 +65,7 @@ def context(arguments: Sequence[str]) -> Iterator[None]:
 
 @contextmanager
 def spinning(makers: Makers) -> Iterator[Callable[[], bool]]:
-    """Nodes in a thread of this process, in a context that is there; says whether it still runs.
+    """Nodes in a thread of this process, in an existing context; knows whether it still runs.
 
     An exception in a callback ends the thread, after its traceback.
     """
@@ -107,7 +107,7 @@ def on_executor(makers: Makers) -> Iterator[tuple[list[Node], EventsExecutor]]:
             close = getattr(node, 'close', None)
             if close is not None:
                 close()
-        with _leaving_within(GOODBYE):
+        with leaving_within(GOODBYE):
             if executor is not None:
                 executor.shutdown()
             for node in reversed(nodes):
@@ -128,7 +128,7 @@ def _keep_for_good() -> None:
 
 
 @contextmanager
-def _leaving_within(seconds: float) -> Iterator[None]:
+def leaving_within(seconds: float) -> Iterator[None]:
     """Ends the process, with status 1, where taking leave of the graph never comes back.
 
     While others leave too, Fast DDS 2.14 now and then waits for itself (`set_listener`), and rclpy

@@ -45,6 +45,6 @@ class SteadyTimer(threading.Thread):
             self._callback()
             has_failed = False
         finally:
-            if has_failed:  # the executor would crash at it, without a word
+            if has_failed:  # the executor would crash at it, without a message
                 sys.excepthook(*sys.exc_info())
                 os._exit(1)

@@ -37,7 +37,7 @@ CLOCK_START = time.time() - time.monotonic()
 """Receipt times are monotonic, but read like the system's clock at the start: it may be set."""
 
 
-class Intake:
+class FilteredCallback:
     """The messages of one topic, as its MessageFilter lets them through.
 
     accept is called with each message that is fresh; a ManipulatorError that it raises is logged
@@ -70,7 +70,7 @@ class Intake:
             self._report(message, error)
 
     def refuse(self, message: Any, error: ManipulatorError) -> None:
-        """What becomes of a message that was accepted, but not in the end."""
+        """Refuses a message that was accepted at first."""
         self._filter.refuse(error)
         self._report(message, error)
 
@@ -104,12 +104,12 @@ class Intake:
 
 
 class SoleSubscription:
-    """Hands every message to `accept`, which asks for `trouble` first.
+    """Hands every message to `accept`, which reads `trouble` first.
 
     is_continuous: see SoleSource.
 
     rclpy gives a callback of two arguments the message and what is known of it. The EventsExecutor
-    of rclpy 7.1 hands them over as one pair: so this object looks like a callback of two
+    of rclpy 7.1 hands them over as one pair: so this object has the signature of a callback of two
     arguments, and takes both forms.
     """
 
@@ -132,7 +132,7 @@ class SoleSubscription:
     def __call__(self, *received: Any) -> None:
         """The subscription's callback."""
         message, info = received if len(received) == 2 else received[0]
-        self._source = self._source.hear(
+        self._source = self._source.receive(
             info['publication_sequence_number'],
             self._subscription.get_publisher_count(),
             time.monotonic(),

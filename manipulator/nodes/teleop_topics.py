@@ -10,7 +10,7 @@ from std_msgs.msg import String
 from manipulator.errors import ManipulatorError
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, point_of, twist_of
 from manipulator.nodes.qos import COMMAND
-from manipulator.nodes.subscriptions import Intake, SoleSubscription
+from manipulator.nodes.subscriptions import FilteredCallback, SoleSubscription
 from manipulator.teleop.arbiter import SOURCES
 from manipulator.trajectory.teleop import Teleop
 
@@ -21,7 +21,7 @@ class TeleopTopics:
     def __init__(self, node: Node, teleop: Teleop) -> None:
         self._node = node
         self._teleop = teleop
-        self._intakes: list[Intake] = []
+        self._callbacks: list[FilteredCallback] = []
         self._sources = [self._subscribe(source) for source in SOURCES]
         node.create_subscription(String, 'jog_mode', self._on_mode, COMMAND)
         node.create_subscription(PointStamped, 'look_at', self._on_look_at, COMMAND)
@@ -32,12 +32,12 @@ class TeleopTopics:
         return '; '.join(source.trouble for source in self._sources if source.trouble)
 
     def report(self) -> dict[str, object]:
-        """What /diagnostics tells of jogging."""
-        worst = max(self._intakes, key=lambda intake: intake.refused)
+        """The values of /diagnostics about jogging."""
+        worst = max(self._callbacks, key=lambda callback: callback.refused)
         return {
             'jogged_by': self._teleop.owner(time.monotonic()),
             'jog_mode': self._teleop.mode,
-            'twists_refused': sum(intake.refused for intake in self._intakes),
+            'twists_refused': sum(callback.refused for callback in self._callbacks),
             'last_twist_refusal': worst.last_refusal,
         }
 
@@ -45,12 +45,12 @@ class TeleopTopics:
         def accept(message: TwistStamped) -> None:
             now = time.monotonic()
             if sole.trouble:
-                self._teleop.turn_away(source, now, sole.trouble)
-            self._teleop.hear(source, twist_of(message), message.header.frame_id, now)
+                self._teleop.reject(source, now, sole.trouble)
+            self._teleop.receive(source, twist_of(message), message.header.frame_id, now)
 
-        intake = Intake(self._node, source, accept)
-        self._intakes.append(intake)
-        sole = SoleSubscription(self._node, TwistStamped, source, intake, COMMAND)
+        callback = FilteredCallback(self._node, source, accept)
+        self._callbacks.append(callback)
+        sole = SoleSubscription(self._node, TwistStamped, source, callback, COMMAND)
         return sole
 
     def _on_mode(self, message: String) -> None:

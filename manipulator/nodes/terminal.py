@@ -1,4 +1,4 @@
-"""A terminal that hands over each key at once, and is put right again whatever happens."""
+"""A terminal that hands over each key at once, and is restored in any case."""
 
 import contextlib
 import os

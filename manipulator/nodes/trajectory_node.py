@@ -1,18 +1,16 @@
 """The owner of the Cartesian state: goals in, one setpoint a tick out while enabled."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PointStamped, PoseStamped
-from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
-from manipulator.errors import ManipulatorError, Refused
+from manipulator.errors import ManipulatorError
 from manipulator.machine import JOG_SINGULARITIES, Machine
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
 from manipulator.nodes.messages import (
@@ -25,19 +23,21 @@ from manipulator.nodes.messages import (
     pose_of,
     seconds,
 )
-from manipulator.nodes.parameters import declare
+from manipulator.nodes.parameters import GoalParameters, declare
 from manipulator.nodes.path_goals import PathGoals
 from manipulator.nodes.planning_thread import PlanningThread
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.steady_timer import SteadyTimer
-from manipulator.nodes.subscriptions import Intake
+from manipulator.nodes.subscriptions import FilteredCallback
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
+from manipulator.states import MotionResult
 from manipulator.teleop.arbiter import PEOPLE
-from manipulator.trajectory.following import Tolerances
-from manipulator.trajectory.goal import Goal, Motion
+from manipulator.trajectory.controller import MotionController, lag_of
+from manipulator.trajectory.following_error import Tolerances
+from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
-from manipulator.trajectory.supervisor import MEASUREMENT_DELAY, Supervisor, lag_of
+from manipulator.trajectory.supervisor import MEASUREMENT_DELAY
 
 DELAY = 'age in seconds of a measured pose by the time that its correction moves the joints'
 SINGULARITY = 'what a jogged arm does where it cannot keep its direction: stop or slide'
@@ -49,27 +49,10 @@ GOAL_TOLERANCE = (
     'how far a measured joint may be from a goal that is reached (rad or m); '
     '0: 1 % of its range, at most 0.5 degrees'
 )
-GOAL_MOTION = 'how a machine at rest goes to goal_pose: line, joint, or any (a line where it can)'
-
-
-def motion_of(word: object) -> Motion:
-    """The way to a goal that the parameter names; Refused for another word."""
-    try:
-        return Motion(word)
-    except ValueError:
-        known = ', '.join(motion.value for motion in Motion)
-        raise Refused(f'parameter goal_motion: {word!r} is not one of {known}') from None
-
-
-def checked_parameters(parameters: Sequence[Parameter]) -> SetParametersResult:
-    """What the node answers to new values: those that it would refuse later are not taken."""
-    try:
-        for parameter in parameters:
-            if parameter.name == 'goal_motion':
-                motion_of(parameter.value)
-    except Refused as error:
-        return SetParametersResult(successful=False, reason=str(error))
-    return SetParametersResult(successful=True)
+POSE_TOLERANCE = (
+    'how far the pose of measured joints may be from a goal that is reached (m; turns in '
+    'proportion); 0: 0.1 % of the characteristic length'
+)
 
 
 class TrajectoryNode(Node):
@@ -81,30 +64,32 @@ class TrajectoryNode(Node):
         rate = declare(self, 'rate', 100.0, 'setpoints per second (Hz)', (10.0, 500.0))
         tolerance = declare(self, 'following_tolerance', 0.0, TOLERANCE, (0.0, 10.0))
         goal_tolerance = declare(self, 'goal_tolerance', 0.0, GOAL_TOLERANCE, (0.0, 10.0))
-        motion_of(declare(self, 'goal_motion', Motion.LINE.value, GOAL_MOTION, is_read_only=False))
+        distance = declare(self, 'pose_tolerance', 0.0, POSE_TOLERANCE, (0.0, 1.0))
+        self._goal_parameters = GoalParameters(self)
         delay = declare(self, 'measurement_delay', MEASUREMENT_DELAY, DELAY, (0.0, 1.0))
         singularity = declare(self, 'jog_singularity', JOG_SINGULARITIES[0], SINGULARITY)
-        self.add_on_set_parameters_callback(checked_parameters)
         dt, self._worker = 1.0 / rate, PlanningThread()
         machine = replace(load(name), jog_singularity=singularity)
-        tolerances = Tolerances.of(machine, tolerance, goal_tolerance)
-        self._supervisor = Supervisor(machine, dt, tolerances, self._worker, delay)
+        tolerances = Tolerances.of(machine, tolerance, goal_tolerance, distance)
+        self._controller = MotionController(machine, dt, tolerances, self._worker, delay)
         self._connect()
-        PathGoals(self, self._supervisor)
-        self._teleop_topics = TeleopTopics(self, self._supervisor.teleop)
-        self._answers = TrajectoryServices(self, self._supervisor, dt, self._worker)
+        PathGoals(self, self._controller, self._goal_parameters)
+        self._teleop_topics = TeleopTopics(self, self._controller.teleop)
+        self._answers = TrajectoryServices(
+            self, self._controller, self._goal_parameters, dt, self._worker
+        )
         self._timer = SteadyTimer(self, dt, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('setpoint', 'pose', *PEOPLE))
 
     def close(self) -> None:
         """Ends what runs beside this node."""
-        self._supervisor.close()
+        self._controller.close()
         self._worker.close()
 
     def _connect(self) -> None:
-        self._goals = Intake(self, 'goal_pose', self._on_goal, self._on_bad_goal)
-        self._poses = Intake(self, 'pose', self._on_pose)
-        self._joints = Intake(self, 'joint_states', self._on_joint_states)
+        self._goals = FilteredCallback(self, 'goal_pose', self._on_goal, self._on_bad_goal)
+        self._poses = FilteredCallback(self, 'pose', self._on_pose)
+        self._joints = FilteredCallback(self, 'joint_states', self._on_joint_states)
         self._setpoints = self.create_publisher(PoseStamped, 'setpoint', COMMAND)
         self._statuses = self.create_publisher(DiagnosticStatus, 'motion_status', LATCHED)
         subscribe = self.create_subscription
@@ -119,67 +104,66 @@ class TrajectoryNode(Node):
         values = {pair.key: pair.value for pair in message.values}
         is_followed = values.get('followed') == 'yes'
         is_measured = values.get('joints') == 'measured'
-        self._supervisor.note_machine_state(
+        self._controller.note_machine_state(
             message.message[:80], is_followed, is_measured, time.monotonic()
         )
         self._publish_news()
 
     def _on_joint_states(self, message: JointState) -> None:
-        names = self._supervisor.pilot.machine.kinematics.joint_names
-        self._supervisor.note_joints(known_joints(message, names))
+        names = self._controller.supervisor.machine.kinematics.joint_names
+        self._controller.note_joints(known_joints(message, names))
 
     def _on_pose(self, message: PoseStamped) -> None:
-        self._supervisor.note_pose(pose_of(message), time.monotonic())
+        self._controller.note_pose(pose_of(message), time.monotonic())
 
     def _on_goal(self, message: PoseStamped) -> None:
-        pose = pose_of(message, (BASE_FRAME, WORK_FRAME))
-        motion = motion_of(self.get_parameter('goal_motion').value)
-        self._supervisor.pursue(
-            Goal(
-                pose,
-                seconds(message.header.stamp),
-                motion=motion,
-            ),
+        is_of_platform = message.header.frame_id != WORK_FRAME
+        chosen = self._goal_parameters
+        rule = self._controller.orientation_rule(chosen.orientation, is_of_platform)
+        pose = pose_of(message, (BASE_FRAME, WORK_FRAME), rule.is_given)
+        stamp = seconds(message.header.stamp)
+        self._controller.pursue(
+            Goal(pose, stamp, motion=chosen.motion, orientation=rule),
             lambda error: self._goals.refuse(message, error),
             time.monotonic(),
-            is_of_platform=message.header.frame_id != WORK_FRAME,
+            is_of_platform,
         )
 
     def _on_bad_goal(self, message: PoseStamped, error: ManipulatorError) -> None:
-        self._supervisor.refuse(seconds(message.header.stamp), error)
+        self._controller.refuse(seconds(message.header.stamp), error)
         self._publish_news()
 
     def _on_speed_override(self, message: Float64) -> None:
         try:
-            self._supervisor.pilot.override(message.data)
+            self._controller.supervisor.override(message.data)
         except ManipulatorError as error:
             self.get_logger().warning(str(error), throttle_duration_sec=1.0)
 
     def _on_pivot(self, message: PointStamped) -> None:
         try:
-            self._supervisor.pilot.set_pivot(point_of(message, PLATFORM_FRAME))
+            self._controller.supervisor.set_pivot(point_of(message, PLATFORM_FRAME))
         except ManipulatorError as error:
             self.get_logger().warning(f'pivot: {error}', throttle_duration_sec=1.0)
 
     def _tick(self) -> None:
-        self._supervisor.begin_tick(time.monotonic())
+        self._controller.begin_tick(time.monotonic())
         stamp = self.get_clock().now().to_msg()
-        pose = self._supervisor.end_tick(time.monotonic())
+        pose = self._controller.end_tick(time.monotonic())
         if pose is not None:
             self._setpoints.publish(pose_message(pose, stamp))
         self._answers.poll()
         self._publish_news()
 
     def _publish_news(self) -> None:
-        for new in self._supervisor.news.take():
+        for new in self._controller.news.take():
             self._publish(new)
 
     def _publish(self, new: MotionStatus) -> None:
         """Publishes a status; refusals and stops are logged."""
         text = f'{new.result}: {new.reason}' if new.reason else new.result
-        if new.result == 'refused':
+        if new.result == MotionResult.REFUSED:
             self.get_logger().warning(f'goal {text}', throttle_duration_sec=1.0)
-        elif new.result == 'stopped':
+        elif new.result == MotionResult.STOPPED:
             self.get_logger().info(text)
         values = {
             'mode': new.mode,
@@ -190,18 +174,18 @@ class TrajectoryNode(Node):
         if new.percent is not None:
             values['percent'] = str(new.percent)
         name = self.get_fully_qualified_name().lstrip('/')
-        level = WARN if new.result == 'refused' else OK
+        level = WARN if new.result == MotionResult.REFUSED else OK
         self._statuses.publish(status(level, name, text, values))
 
     def _report(self) -> Report:
-        pilot, news = self._supervisor.pilot, self._supervisor.news
-        jitter, now = self._supervisor.jitter, pilot.status
+        supervisor, news = self._controller.supervisor, self._controller.news
+        jitter, now = self._controller.jitter, supervisor.status
         values = {
             'mode': now.mode,
             'result': now.result,
             'goals_refused': news.refusals,
             'last_refusal': news.last_refusal,
-            **lag_of(pilot),
+            **lag_of(supervisor),
             **self._teleop_topics.report(),
             'last_pose_age_s': self._poses.age,
             'tick_jitter_p50_ms': jitter.quantile(0.5) * 1e3,
@@ -209,5 +193,5 @@ class TrajectoryNode(Node):
         }
         trouble = self._teleop_topics.trouble
         if trouble:
-            return ERROR, f'{trouble}: end all but one, then let go', values
+            return ERROR, f'{trouble}: end all but one, then release the deadman', values
         return OK, now.reason or now.result, values

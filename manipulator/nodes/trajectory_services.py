@@ -15,29 +15,45 @@ from manipulator.errors import ManipulatorError
 from manipulator.machine import Machine
 from manipulator.nodes.late_answers import Call, create_late_service
 from manipulator.nodes.messages import goal_of, pose_message, seconds
-from manipulator.nodes.parameters import CycleParameters
+from manipulator.nodes.parameters import CycleParameters, GoalParameters
+from manipulator.trajectory.controller import MotionController
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.plan import MotionState, Plan
-from manipulator.trajectory.planner import Start, plan_goal
-from manipulator.trajectory.supervisor import Supervisor
+from manipulator.trajectory.plan import MotionState
+from manipulator.trajectory.planner import ComparedPlan, Start, compared
 from manipulator.trajectory.worker import Job, Worker
+
+STAMP = ', goal_stamp '
+"""What precedes the stamp in the answers of home and park: motion_status names the move by it."""
+
+
+def named(stamp: float) -> str:
+    """The end of an answer: the stamp, as motion_status has it."""
+    return f'{STAMP}{stamp:.9f}'
 
 
 @dataclass(frozen=True, eq=False)
 class _PlanCall:
-    """A request for a plan that is being worked out."""
+    """A request for a plan that is being made."""
 
     call: Call
     machine: Machine
-    job: Job[Plan]
+    job: Job[ComparedPlan]
 
 
 class TrajectoryServices:
     """Answers with what will happen, or with why it will not; `poll` is called at every tick."""
 
-    def __init__(self, node: Node, supervisor: Supervisor, dt: float, worker: Worker) -> None:
+    def __init__(
+        self,
+        node: Node,
+        controller: MotionController,
+        parameters: GoalParameters,
+        dt: float,
+        worker: Worker,
+    ) -> None:
         self._node = node
-        self._supervisor = supervisor
+        self._controller = controller
+        self._parameters = parameters
         self._dt = dt
         self._worker = worker
         self._cycle = CycleParameters(node)
@@ -53,7 +69,7 @@ class TrajectoryServices:
     def poll(self) -> None:
         """Answers what can be answered by now."""
         for call, stamp in tuple(self._cycles):
-            answer = self._supervisor.cycle_answer(stamp)
+            answer = self._controller.cycle_answer(stamp)
             if answer is not None:
                 self._cycles.remove((call, stamp))
                 call.response.success, call.response.message = answer.is_obeyed, answer.text
@@ -65,20 +81,22 @@ class TrajectoryServices:
             self._begin_plan(self._waiting.popleft())
 
     def _stop(self) -> str:
-        self._supervisor.stop()
-        return 'braking along the way, then holding'
+        self._controller.stop()
+        return 'braking along the path, then holding'
 
     def _home(self) -> str:
-        self._supervisor.home(self._now(), time.monotonic())
-        return 'going home'
+        stamp = self._now()
+        self._controller.home(stamp, time.monotonic())
+        return f'going home{named(stamp)}'
 
     def _park(self) -> str:
-        self._supervisor.park(self._now(), time.monotonic())
-        return 'going to park'
+        stamp = self._now()
+        self._controller.park(stamp, time.monotonic())
+        return f'going to park{named(stamp)}'
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:
-            self._supervisor.pilot.pause(request.data)
+            self._controller.supervisor.pause(request.data)
             response.success, response.message = True, 'paused' if request.data else 'going on'
         except ManipulatorError as error:
             response.message = str(error)
@@ -87,7 +105,7 @@ class TrajectoryServices:
     def _on_start_cycle(self, call: Call) -> None:
         stamp = self._now()
         try:
-            self._supervisor.start_cycle(self._cycle.read, stamp)
+            self._controller.start_cycle(self._cycle.read, stamp)
         except ManipulatorError as error:
             call.response.message = str(error)
             call.send()
@@ -99,11 +117,12 @@ class TrajectoryServices:
 
         One at a time: goals to drive to wait for no more than one such question.
         """
-        machine = self._supervisor.pilot.machine
+        machine = self._controller.supervisor.machine
         try:
             goal = goal_of(call.request.goal, machine.frames)
             start = self._start_of(call.request)
-            job = self._worker.submit(lambda effort: plan_goal(machine, start, Goal(goal), effort))
+            request = Goal(goal, motion=self._parameters.motion)
+            job = self._worker.submit(lambda effort: compared(machine, start, request, effort))
         except ManipulatorError as error:
             self._node.get_logger().warning(f'plan: {error}')
             call.send()
@@ -113,10 +132,12 @@ class TrajectoryServices:
     def _answer_plan(self, plan: _PlanCall) -> None:
         machine, response = plan.machine, plan.call.response
         try:
-            move = plan.job.result()
+            compared_plan = plan.job.result()
         except ManipulatorError as error:
             self._node.get_logger().warning(f'plan: {error}')
         else:
+            move = compared_plan.plan
+            self._node.get_logger().info(f'plan: {compared_plan}')
             stamp = self._node.get_clock().now().to_msg()
             times = np.append(np.arange(0.0, move.duration, self._dt), move.duration)
             poses = machine.frames.platform(move.at(times).pose)
@@ -125,10 +146,10 @@ class TrajectoryServices:
         plan.call.send()
 
     def _start_of(self, request: GetPlan.Request) -> Start:
-        machine = self._supervisor.pilot.machine
+        machine = self._controller.supervisor.machine
         if request.start == PoseStamped():
-            player = self._supervisor.pilot.player
-            pose, joints = player.state.pose, player.joints
+            executor = self._controller.supervisor.executor
+            pose, joints = executor.state.pose, executor.joints
         else:
             pose = goal_of(request.start, machine.frames)
             joints = machine.kinematics.inverse(pose)

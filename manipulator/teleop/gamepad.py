@@ -1,12 +1,14 @@
 """The mapping file of one kind of gamepad: what its axes and buttons mean.
 
-An axis that moves the machine has a deadzone, an exponential curve and a speed.
+An axis that moves the machine has a deadzone, an exponential curve and a speed. A press is that of
+a button, or of an axis that is moved far enough from its rest.
 """
 
 import dataclasses
 import difflib
 import math
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -14,7 +16,46 @@ from manipulator.config import quantity
 from manipulator.errors import ConfigError
 from manipulator.formatting import shown
 from manipulator.teleop.modes import MODES
-from manipulator.teleop.press import Press
+
+AT_REST = 0.2
+"""How far from its rest an axis may be and still count as untouched."""
+
+
+@dataclass(frozen=True)
+class Press:
+    """Either `button`, or `axis` moved from `rest` to `beyond` or further.
+
+    Triggers of most drivers rest at +1 and end at −1; a cross of direction buttons is a pair of
+    axes that rest at 0.
+    """
+
+    button: int | None = quantity(0, 63, default=None)
+    axis: int | None = quantity(0, 63, default=None)
+    rest: float = quantity(-1.0, 1.0, default=0.0)
+    beyond: float = quantity(-1.0, 1.0, default=0.5)
+
+    def __post_init__(self) -> None:
+        """Raises ConfigError for both or neither, and for an axis pressed while at rest."""
+        if (self.button is None) == (self.axis is None):
+            raise ConfigError(['needs either button or axis'])
+        if self.axis is not None and abs(self.beyond - self.rest) <= AT_REST:
+            raise ConfigError(
+                [f'beyond: {self.beyond:g} is within {AT_REST:g} of the rest, {self.rest:g}']
+            )
+
+    def is_pressed(self, axes: Sequence[float], buttons: Sequence[int]) -> bool:
+        """Whether it is pressed in a message that has the index."""
+        if self.axis is None:
+            return buttons[self.button or 0] == 1
+        value = axes[self.axis]
+        return value >= self.beyond if self.beyond > self.rest else value <= self.beyond
+
+    def is_at_rest(self, axes: Sequence[float], buttons: Sequence[int]) -> bool:
+        """Whether it is surely untouched; a trigger half-way is neither at rest nor pressed."""
+        if self.axis is None:
+            return not self.is_pressed(axes, buttons)
+        return abs(axes[self.axis] - self.rest) <= AT_REST
+
 
 Component = Literal['x', 'y', 'z', 'roll', 'pitch', 'yaw']
 COMPONENTS: tuple[Component, ...] = get_args(Component)
@@ -25,7 +66,7 @@ COMPONENTS: tuple[Component, ...] = get_args(Component)
 class Stick:
     """`axis` moves one component; `full_speed` (m/s or rad/s) is meant for full deflection.
 
-    The way from `rest` to the farther end is one unit; `sign` says which way is positive. Within
+    The distance from `rest` to the farther end is one unit; `sign` is that of increase. Within
     `deadzone` units of the rest nothing moves, beyond it the speed rises from 0. `expo` 0 is
     linear, 1 is cubic. A stick of layer 'shift' counts only while shift is held, one of layer
     'plain' only while it is not.
@@ -52,8 +93,8 @@ class Stick:
 
     def deflection(self, value: float) -> float:
         """In [−1, 1], before the deadzone."""
-        way = self.sign * (value - self.rest) / (1.0 + abs(self.rest))
-        return min(max(way, -1.0), 1.0)
+        offset = self.sign * (value - self.rest) / (1.0 + abs(self.rest))
+        return min(max(offset, -1.0), 1.0)
 
     def is_at_rest(self, value: float) -> bool:
         """Whether the axis is within its deadzone."""
@@ -61,25 +102,25 @@ class Stick:
 
     def speed(self, value: float) -> float:
         """In m/s or rad/s; 0 at the deadzone's edge, full_speed at the end."""
-        way = self.deflection(value)
-        if abs(way) <= self.deadzone:
+        offset = self.deflection(value)
+        if abs(offset) <= self.deadzone:
             return 0.0
-        rescaled = (abs(way) - self.deadzone) / (1.0 - self.deadzone)
+        rescaled = (abs(offset) - self.deadzone) / (1.0 - self.deadzone)
         bent = (1.0 - self.expo) * rescaled + self.expo * rescaled**3
-        return math.copysign(self.full_speed * bent, way)
+        return math.copysign(self.full_speed * bent, offset)
 
 
 CommandFrame = Literal['base', 'work', 'pivot', 'tool']
-"""The frames that a twist may be told in."""
+"""The frames in which a twist may be given."""
 
 
 @dataclass(frozen=True)
 class Gamepad:
-    """A mapping; docs/joystick.md says what each control does. Times in seconds.
+    """A mapping; docs/joystick.md describes each control. Times in seconds.
 
-    lost_after: without a message for so long the deadman is off until it is pressed anew.
+    lost_after: without a message for so long the deadman is off until it is pressed again.
     still_after: while driving, without a change of any number for so long the deadman is off
-    until a number changes. repress_after: after so long without a change, until pressed anew.
+    until a number changes. repress_after: after so long without a change, until pressed again.
     """
 
     description: str

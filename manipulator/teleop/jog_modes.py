@@ -15,13 +15,13 @@ from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
 
 
-def turn_between(direction: Array, wanted: Array) -> Array:
+def turn_between(direction: Array, target: Array) -> Array:
     """The shortest rotation vector (3,) that turns one unit vector into the other.
 
     For opposite vectors, half a turn about some axis at a right angle to them.
     """
-    axis = np.cross(direction, wanted)
-    sine, cosine = float(np.linalg.norm(axis)), float(direction @ wanted)
+    axis = np.cross(direction, target)
+    sine, cosine = float(np.linalg.norm(axis)), float(direction @ target)
     if sine > 1e-9:
         result: Array = axis * (np.arctan2(sine, cosine) / sine)
         return result

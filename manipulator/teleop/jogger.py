@@ -36,7 +36,7 @@ def in_work_axes(command: Array, frame: str, pose: Pose, frames: Frames) -> Arra
     """The pivot's twist (6,) in work axes; pose is T_work_pivot. Refused for unknown frames.
 
     '' and 'base': along the base's axes. 'work': along the work frame's. 'pivot': the same, for
-    those who want to say that turns are about the pivot. 'tool': along the axes of the platform
+    users who think of turns about the pivot. 'tool': along the axes of the platform
     or tool.
     """
     check_axes(frame)
@@ -51,27 +51,27 @@ def within_speed(twist: Array, motion: MotionLimits) -> tuple[Array, float]:
 
     Raises InvalidInput unless it is six finite numbers.
     """
-    wanted = np.asarray(twist, dtype=np.float64)
-    parts = wanted.ravel().tolist()
-    if wanted.shape != (6,) or not all(map(math.isfinite, parts)):
+    target = np.asarray(twist, dtype=np.float64)
+    parts = target.ravel().tolist()
+    if target.shape != (6,) or not all(map(math.isfinite, parts)):
         raise InvalidInput(f'twist {parts} is not six finite numbers')
     part = max(
         math.hypot(*parts[:3]) / motion.linear.speed,
         math.hypot(*parts[3:]) / motion.angular.speed,
         1.0,
     )
-    return wanted / part, 1.0 / part
+    return target / part, 1.0 / part
 
 
-def towards(twist: Array, wanted: Array, motion: MotionLimits, dt: float) -> Array:
-    """From `twist` (..., 6) as far to `wanted` as the accelerations allow in dt.
+def towards(twist: Array, target: Array, motion: MotionLimits, dt: float) -> Array:
+    """From `twist` (..., 6) as far to `target` as the accelerations allow in dt.
 
-    Velocity and angular velocity go the same part of their ways.
+    Velocity and angular velocity change in the same proportion.
     """
-    change = wanted - twist
+    change = target - twist
     ticks = np.maximum(ticks_for(change, motion, dt), 1.0)
     stepped: Array = twist + change / ticks[..., None]
-    return np.where(ticks[..., None] == 1.0, wanted, stepped)
+    return np.where(ticks[..., None] == 1.0, target, stepped)
 
 
 def ticks_for(change: Array, motion: MotionLimits, dt: float) -> Array:
@@ -90,11 +90,11 @@ class JogMotion:
     """Where a jog has come to. Poses and twists are of the pivot in work axes.
 
     twist (6,) in m/s and rad/s is the one being driven, rates (n,) are the joints' in rad/s or
-    m/s. scale is the part of the wanted twist that the machine allows, held_by what set it: '',
+    m/s. scale is the part of the target twist that the machine allows, held_by what set it: '',
     'speed of joint 2', 'crank angle of leg 3', 'wrist singularity (…)'.
 
     For the jogger's next step: off_line (6,) is the twist that would bring the tool back onto its
-    commanded line within a second, in base axes; is_leaving: it is on its way out of a singular
+    commanded line within a second, in base axes; is_leaving: it moves out of a singular
     posture, off the line; is_under_way: it moves, or has stopped, on the line.
     """
 
@@ -120,10 +120,10 @@ class JogMotion:
 
 
 class Jogger(Protocol):
-    """A kind of machine's way to follow twists; without state of its own."""
+    """Follows twists, for one kind of machine; without state of its own."""
 
     def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
-        """The motion dt seconds later, on its way to the wanted twist (6,).
+        """The motion dt seconds later, towards the target twist (6,).
 
         The twist is scaled as a whole, so that its direction stays; where it cannot, the machine
         stops, unless held_by says that it slides. A twist of zero brakes. From

@@ -1,7 +1,7 @@
-"""From a gamepad's messages to what its user wants, failing closed.
+"""From a gamepad's messages to its user's command, failing closed.
 
-A value without a clock: `hear` takes a message with its receipt time and returns the successor,
-`wanted` says what holds at a later time. Four rules keep it safe:
+A value without a clock: `receive` takes a message with its receipt time and returns the
+successor, `command` returns what holds at a later time. Four rules keep it safe:
 
 - *Trust.* A control counts only after it was seen at rest. So a trigger that reports 0 before
   its first touch moves nothing, nor does a deadman that is stuck, or held while the pad comes
@@ -66,11 +66,11 @@ ONLY_STOP = frozenset({'stop'})
 
 
 @dataclass(frozen=True, eq=False)
-class Wanted:
-    """What the user wants now.
+class PadCommand:
+    """The user's command at one time.
 
     twist (6,) in m/s and rad/s, in `frame`, zero unless `is_held`; `grip` is +1 to open, −1 to
-    close, 0 to rest. `stops` counts presses of the stop button. `reason` says why the deadman
+    close, 0 to rest. `stops` counts presses of the stop button. `reason`: why the deadman
     does not count although it may be pressed.
     """
 
@@ -90,7 +90,7 @@ class JoyReader:
 
     gamepad: Gamepad
     numbers: tuple[float, ...] = ()
-    heard: float = NEVER
+    received_at: float = NEVER
     changed: float = NEVER
     trusted: frozenset[str] = frozenset()
     pressed: frozenset[str] = frozenset()
@@ -100,10 +100,10 @@ class JoyReader:
     stops: int = 0
     fault: str = ''
 
-    def hear(
+    def receive(
         self, axes: Sequence[float], buttons: Sequence[int], now: float, crowd: str = ''
     ) -> 'JoyReader':
-        """After a message; a bad one counts as all released, and `fault` says what is bad.
+        """After a message; a bad one counts as all released, and `fault` is the reason.
 
         crowd: why messages at present are not those of one pad. Of such only the stop button
         counts, and everything else must be seen at rest again afterwards.
@@ -122,7 +122,7 @@ class JoyReader:
         return replace(
             self,
             numbers=numbers,
-            heard=now,
+            received_at=now,
             changed=now if numbers != self.numbers else self.changed,
             trusted=trusted,
             pressed=pressed,
@@ -134,20 +134,20 @@ class JoyReader:
         held_through = self.pressed - {'deadman'}
         return replace(
             self,
-            heard=now,
+            received_at=now,
             trusted=trusted - held_through,
             pressed=frozenset(),
             twist=AT_REST,
             fault=fault,
         )
 
-    def wanted(self, now: float) -> Wanted:
+    def command(self, now: float) -> PadCommand:
         """What holds at `now`, which is not before the last message."""
         reason = self._why_not(now)
         pressed = frozenset[str]() if reason else self.pressed
         is_held = 'deadman' in pressed
         grip = ('gripper_open' in pressed) - ('gripper_close' in pressed)
-        return Wanted(
+        return PadCommand(
             self.twist if is_held else AT_REST,
             self.gamepad.frames[self.frame],
             self.gamepad.modes[self.mode],
@@ -168,8 +168,8 @@ class JoyReader:
         return (*self.gamepad.presses, *(stick.name for stick in self.gamepad.sticks))
 
     def _why_not(self, now: float) -> str:
-        silence, stillness = now - self.heard, now - self.changed
-        if self.heard == NEVER:
+        silence, stillness = now - self.received_at, now - self.changed
+        if self.received_at == NEVER:
             return 'no message yet'
         if silence > self.gamepad.lost_after:
             return f'no message for {silence:.2f} s'
@@ -179,7 +179,7 @@ class JoyReader:
 
     def _trust_left(self, now: float) -> frozenset[str]:
         """What is still trusted when a message comes at `now`."""
-        if now - self.heard > self.gamepad.lost_after:
+        if now - self.received_at > self.gamepad.lost_after:
             return frozenset()
         if self.twist.any() and now - self.changed > self.gamepad.repress_after:
             return self.trusted - {'deadman'}

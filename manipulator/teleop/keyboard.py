@@ -1,4 +1,4 @@
-"""Jogging by the keys of a terminal, which tells presses but never releases.
+"""Jogging by the keys of a terminal, which reports presses but never releases.
 
 So a key moves for HOLD seconds, and the terminal's auto-repeat of a key that is held extends
 that. Auto-repeat begins late (0.25 s to 0.7 s, a setting of the desktop): where that is later
@@ -64,7 +64,7 @@ def keys_of(characters: bytes) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Keyboard:
-    """What the keys so far ask for; times are of a monotonic clock, in seconds.
+    """The command of the keys so far; times are of a monotonic clock, in seconds.
 
     full speeds in m/s and rad/s; `stops` and `homes` count the presses of those keys.
     """
@@ -80,7 +80,7 @@ class Keyboard:
     is_over: bool = False
 
     def press(self, key: str, now: float) -> 'Keyboard':
-        """After one press. Whatever is no key of ours ends the motion."""
+        """After one press. An unknown key ends the motion."""
         if key in MOVES or key in GRIPS:
             others = {k: end for k, end in self.ends.items() if end > now and k != _against(key)}
             return replace(self, ends=others | {key: now + HOLD})
@@ -105,17 +105,17 @@ class Keyboard:
     def twist(self, now: float) -> Array:
         """The twist (6,) in m/s and rad/s, in `frame`."""
         speeds = np.repeat([self.linear_speed, self.angular_speed], 3) * self.part
-        ways = np.zeros(6)
+        directions = np.zeros(6)
         for key, end in self.ends.items():
             if end > now and key in MOVES:
-                component, way = MOVES[key]
-                ways[COMPONENTS.index(component)] = way
-        twist: Array = ways * speeds
+                component, direction = MOVES[key]
+                directions[COMPONENTS.index(component)] = direction
+        twist: Array = directions * speeds
         return twist
 
     def grip(self, now: float) -> int:
         """+1 to open the gripper, −1 to close it, 0 to rest."""
-        return sum(way for key, way in GRIPS.items() if self.ends.get(key, now) > now)
+        return sum(direction for key, direction in GRIPS.items() if self.ends.get(key, now) > now)
 
     @property
     def line(self) -> str:
@@ -125,11 +125,11 @@ class Keyboard:
 
 
 def _against(key: str) -> str:
-    """The key that moves the other way."""
+    """The key of the opposite direction."""
     if key in GRIPS:
         return next(k for k in GRIPS if k != key)
-    component, way = MOVES[key]
-    return next(k for k, move in MOVES.items() if move == (component, -way))
+    component, direction = MOVES[key]
+    return next(k for k, move in MOVES.items() if move == (component, -direction))
 
 
 def _next(names: tuple[str, ...], name: str, step: int) -> str:

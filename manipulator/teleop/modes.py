@@ -70,7 +70,7 @@ class LookAt:
     point: Array
 
     def latched(self, pose: Pose) -> 'PointHeld':
-        """Raises Refused when the tool stands on the point."""
+        """Raises Refused when the tool is at the point."""
         distance = float(np.linalg.norm(self.point - pose.position))
         if distance < NEAREST:
             raise Refused(
@@ -109,7 +109,7 @@ class PointHeld:
         return twist, replace(self, distance=distance)
 
     def _approach(self, speed: float, distance: float) -> float:
-        """The part of the velocity that the way left allows."""
+        """The part of the velocity that the remaining distance allows."""
         allowed = self.feedback.gain * max(distance - NEAREST, 0.0)
         return 1.0 if speed <= allowed else allowed / speed
 

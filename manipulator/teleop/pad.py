@@ -1,9 +1,9 @@
-"""The state of a gamepad as the kernel tells it, and the numbers that Joy makes of it.
+"""The state of a gamepad as the kernel reports it, and the numbers that Joy makes of it.
 
 The order is that of the `joy` package's joy_node on Linux: axes and buttons by rising kernel code
 (linux/input-event-codes.h), left and up +1, triggers +1 at rest. A pad that has motion sensors
 gets one axis more at the end, its heartbeat: the sensors report all the time, so a heartbeat that
-stands still tells a frozen pad from a steady thumb.
+does not change distinguishes a frozen pad from a steady thumb.
 """
 
 from collections.abc import Mapping
@@ -70,7 +70,7 @@ class Pad:
         )
 
     def resumed(self, axes: Mapping[int, Axis], keys: Mapping[int, bool]) -> 'Pad':
-        """With all values anew, after events were lost."""
+        """With all values read again, after events were lost."""
         return replace(
             self,
             axes={code: axes[code] for code in self.axes},

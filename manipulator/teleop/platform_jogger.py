@@ -1,8 +1,8 @@
-"""Jogging any machine by its inverse kinematics, with the way to brake checked at every tick.
+"""Jogging any machine by its inverse kinematics, with the braking path checked at every tick.
 
 A platform's limits (reach, rod ends, singularity margin) cannot be turned into joint ranges. So
-each tick drives only such a twist from which braking straight ahead keeps all of them: that way
-is there to be taken when no other twist is allowed. It ends at the edge, where everything that
+each tick drives only a twist from which braking straight ahead keeps all of them: braking
+remains available when no other twist is allowed. It ends at the edge, where everything that
 led there is open for the way back.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 from manipulator.arrays import Array, frozen, stretched
 from manipulator.errors import InvalidInput
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.limit import Ways
+from manipulator.limits.limit import BrakingPaths
 from manipulator.pose import Pose
 from manipulator.teleop.jogger import JogMotion, ticks_for, towards
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from manipulator.machine import Machine
 
 SCALES = 0.75 ** np.arange(17)
-"""Parts of the wanted twist that are tried, from all of it down to 1 %."""
+"""Parts of the target twist that are tried, from all of it down to 1 %."""
 ROUNDING = 1e-9
 A_LIMIT, A_SPEED = 1, 2
-"""What stands in a way's way; else it is an acceleration: `obstacle` of kernel/braking.h."""
+"""What limits a braking path; else it is an acceleration: `obstacle` of kernel/braking.h."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,16 +52,16 @@ class PlatformJogger:
         constraints, held_by = self.machine.constraints, ''
         for scales in (SCALES[:1], SCALES[1:]):
             aims = towards(motion.twist, scales[:, None] * twist, self.machine.motion, dt)
-            free, ways = self._ways(constraints, motion, aims, dt)
+            free, paths = self._paths(constraints, motion, aims, dt)
             if free == len(scales) == 1:
-                # Stretched limits let more through: they matter where something is in the way.
+                # Stretched limits let more through: they matter where a limit is broken.
                 wider = constraints.stretched_to(motion.pose, motion.joints)
                 if wider is not constraints:
                     constraints = wider
-                    free, ways = self._ways(constraints, motion, aims, dt)
+                    free, paths = self._paths(constraints, motion, aims, dt)
             if free < len(scales):
                 return self._moved(motion, aims[free], dt, float(scales[free]), held_by)
-            held_by = held_by or self._obstacle(constraints, ways[0])
+            held_by = held_by or self._obstacle(constraints, paths[0])
         ticks = _braking_ticks(motion.twist, self.machine, dt)
         return self._moved(motion, motion.twist * (1.0 - 1.0 / ticks), dt, 0.0, held_by)
 
@@ -76,25 +76,25 @@ class PlatformJogger:
         rates = frozen((joints - motion.joints) / dt)
         return JogMotion(pose, frozen(joints), frozen(twist), rates, scale, held_by)
 
-    def _ways(
+    def _paths(
         self, constraints: Constraints, motion: JogMotion, twists: Array, dt: float
     ) -> tuple[int, Array]:
         """One tick at each of the twists (k, 6), then braking straight ahead to rest.
 
-        The first with nothing in its way, k for none, and what is in the way of those before.
+        The first without an obstacle, k for none, and the obstacles of those before.
         """
         bounds = self.bounds.copy()
         bounds[0] = dt
         group, ranges = constraints.checks[0]
-        ways = Ways(bounds, motion.pose, motion.joints, motion.rates, twists)
-        return group.first_free_way(ranges, ways)
+        paths = BrakingPaths(bounds, motion.pose, motion.joints, motion.rates, twists)
+        return group.first_free_path(ranges, paths)
 
-    def _obstacle(self, constraints: Constraints, way: Array) -> str:
-        """What holds a way back, in words; way as `struct way` of kernel/braking.h."""
-        kind, joint = int(way[0]), int(way[1])
+    def _obstacle(self, constraints: Constraints, path: Array) -> str:
+        """What limits a path, in words; path is a `braking_path` of kernel/braking.h."""
+        kind, joint = int(path[0]), int(path[1])
         if kind == A_LIMIT:
-            pose = Pose(way[2:5], way[5:14].reshape(3, 3))
-            found = constraints.violations(pose, way[14:])
+            pose = Pose(path[2:5], path[5:14].reshape(3, 3))
+            found = constraints.violations(pose, path[14:])
             parts = (found[0].quantity, found[0].owner) if found else ('', '')
             return ' of '.join(filter(None, parts))
         what = 'speed' if kind == A_SPEED else 'acceleration'
@@ -104,7 +104,7 @@ class PlatformJogger:
 def _braking_ticks(twist: Array, machine: 'Machine', dt: float) -> Array:
     """In how many ticks (...) a twist (..., 6) comes to rest, at least 1.
 
-    One tick of braking from n takes to exactly n − 1, so that a way once checked stays the same.
+    One tick of braking from n takes to exactly n − 1, so that a path once checked stays the same.
     """
     result: Array = np.ceil(np.maximum(ticks_for(twist, machine.motion, dt) - ROUNDING, 1.0))
     return result

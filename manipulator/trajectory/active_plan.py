@@ -1,29 +1,30 @@
 """A plan that is executed, and the time scaling that advances it.
 
-At 1 the plan's own time runs as planned, at 0 it stands.
+At a scaling factor of 1 the plan's own time runs as planned, at 0 it is halted.
 """
 
 from dataclasses import dataclass
 
 from manipulator.errors import Refused
+from manipulator.states import MotionMode
 from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.joint_move import JointMove
 from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import Hold, MotionState, Plan
-from manipulator.trajectory.point_to_point import Move, StraightMove
+from manipulator.trajectory.point_to_point import LineMove, MoveInMotion
 
-MODES: dict[type, str] = {
-    Hold: 'hold',
-    StraightMove: 'move',
-    Move: 'move',
-    JointMove: 'move',
-    Cycle: 'cycle',
-    TimedPath: 'path',
+MODES: dict[type, MotionMode] = {
+    Hold: MotionMode.HOLD,
+    LineMove: MotionMode.MOVE,
+    MoveInMotion: MotionMode.MOVE,
+    JointMove: MotionMode.MOVE,
+    Cycle: MotionMode.CYCLE,
+    TimedPath: MotionMode.PATH,
 }
 
 
 @dataclass
-class Playing:
+class ActivePlan:
     """A plan, the stamp of the goal that it came from, and how far its own time has come."""
 
     plan: Plan
@@ -32,27 +33,27 @@ class Playing:
 
     @property
     def state(self) -> MotionState:
-        """Where the plan is now, in its own time."""
+        """The state at the present time."""
         return self.plan.at(self.time)
 
     @property
     def end(self) -> MotionState:
-        """Where it ends."""
+        """The state at the end."""
         return self.plan.at(self.plan.duration)
 
     @property
-    def mode(self) -> str:
-        """What people call it."""
+    def mode(self) -> MotionMode:
+        """The motion mode of `motion_status`."""
         return MODES[type(self.plan)]
 
     @property
     def is_hold(self) -> bool:
-        """Whether it is to stand still."""
+        """Whether it is a hold plan."""
         return isinstance(self.plan, Hold)
 
     @property
     def is_over(self) -> bool:
-        """Whether its end has been reached; standing still has none."""
+        """Whether its end has been reached; a hold plan has none."""
         return self.time >= self.plan.duration and not self.is_hold
 
     @property
@@ -62,27 +63,27 @@ class Playing:
 
 
 SPEEDING_UP_RATE = 2.0
-"""Change of rate per second when a cycle begins, a pause ends or the override is raised."""
+"""Change of the factor per second when a cycle begins, a pause ends or the override is raised."""
 
 
-class Pace:
-    """The rate, and all that holds it back; it changes no faster than plans leave room for.
+class TimeScaling:
+    """The scaling factor, its target, and its bounded rate of change.
 
-    is_paused: the user's own wish. is_blind: nobody knows where the joints are. is_stopping: what
-    is driven is braked, to be dropped once it stands.
+    is_paused: by the user. is_blind: the joints' positions are unknown. is_stopping: the active
+    plan is braked, and dropped at rest.
     """
 
     def __init__(self, braking_rate: float, dt: float) -> None:
-        """braking_rate: the largest change of rate (1/s), see `MotionLimits.braking_rate`."""
-        self.rate = 1.0
+        """braking_rate: most change of the factor (1/s), see `MotionLimits.braking_rate`."""
+        self.factor = 1.0
         self.is_paused = self.is_blind = self.is_stopping = False
         self._override = 1.0
         self._fall = braking_rate * dt
         self._rise = min(SPEEDING_UP_RATE * dt, self._fall)
 
     @property
-    def wanted(self) -> float:
-        """Where the rate goes."""
+    def target(self) -> float:
+        """The factor to approach."""
         is_held = self.is_paused or self.is_blind or self.is_stopping
         return 0.0 if is_held else self._override
 
@@ -93,9 +94,9 @@ class Pace:
         self._override = rate
 
     def jump(self) -> None:
-        """At once to the rate that is wanted: allowed while nothing moves."""
-        self.rate = self.wanted
+        """Sets the factor to its target at once: allowed while nothing moves."""
+        self.factor = self.target
 
     def advance(self) -> None:
-        """One tick towards the rate that is wanted."""
-        self.rate = min(self.rate + self._rise, max(self.rate - self._fall, self.wanted))
+        """One tick towards the target."""
+        self.factor = min(self.factor + self._rise, max(self.factor - self._fall, self.target))

@@ -1,4 +1,4 @@
-"""Whether a machine can drive a plan: every tick inside the limits, no joint too fast."""
+"""Checks a plan tick by tick: every pose inside the limits, no joint too fast."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -27,28 +27,28 @@ JUMPS = 3.0
 """Degrees by which a joint that is named in a jump has moved."""
 
 OVERLAP = 2
-"""Ticks that two neighbouring stretches share, so that no difference between ticks is missed."""
+"""Ticks that two neighbouring batches share, so that no difference between ticks is missed."""
 
 
 @dataclass(frozen=True)
-class Demand:
-    """What a plan asks for most, as the factor by which it would have to be slowed down.
+class LimitUtilisation:
+    """The highest utilisation of a limit: the factor by which the plan must be slowed down.
 
-    quantity names it, as 'speed of joint_4'; time is when, in the plan's own time.
+    quantity: its name, as 'speed of joint_4'; time: when, in the plan's own time.
     """
 
-    slowness: float
+    factor: float
     quantity: str
     time: float = 0.0
 
     @property
     def fits(self) -> bool:
-        """Whether the plan keeps all limits as it is."""
-        return self.slowness <= TOLERANCE
+        """Whether the plan keeps all limits unchanged."""
+        return self.factor <= TOLERANCE
 
 
 @dataclass(frozen=True, eq=False)
-class Stretch:
+class Batch:
     """Ticks of a plan one after the other: times (N,), states and joints (N, n) at them."""
 
     times: Array
@@ -58,31 +58,31 @@ class Stretch:
 
 def check_plan(
     plan: Plan, machine: Machine, near: Array, dt: float, effort: Effort | None = None
-) -> Demand:
+) -> LimitUtilisation:
     """Simulates the plan, tick by tick, on the branch of the inverse that joints `near` are on.
 
-    Returns what it demands of speed and acceleration. A plan that begins beyond a limit may not
-    go further out. Raises Refused, with the place, joint or leg, value and limit, where the path
-    leaves the reach of the machine or would need another branch, and where planning would cost
-    more `effort` than a plan may.
+    Returns the utilisation of speed and acceleration limits. A plan that begins beyond a limit may
+    not go further out. Raises Refused, with the place, joint or leg, value and limit, where the
+    path leaves the reach of the machine or would need another branch, and where planning would
+    cost more `effort` than a plan may.
     """
-    constraints, worst = machine.constraints, Demand(0.0, '')
-    for part in _stretches(plan, machine, near, dt, effort or Effort()):
+    constraints, worst = machine.constraints, LimitUtilisation(0.0, '')
+    for part in _batches(plan, machine, near, dt, effort or Effort()):
         if part.times[0] == 0.0 and np.isfinite(part.joints[0]).all():
             constraints = constraints.stretched_to(part.state.pose[0], part.joints[0])
         fault = first_fault(machine, constraints, part.state.pose, part.joints)
         if fault is not None:
             tick, reason = fault
             raise Refused(f'{plan.where(float(part.times[tick]))}: {reason}')
-        found = demand(part, machine, dt)
-        worst = max(worst, found, key=lambda one: one.slowness)
+        found = limit_utilisation(part, machine, dt)
+        worst = max(worst, found, key=lambda one: one.factor)
     return worst
 
 
 def first_fault(
     machine: Machine, constraints: Constraints, poses: Pose, joints: Array
 ) -> tuple[int, str] | None:
-    """The first of N poses in a row that the machine cannot take, and why; None where it can all.
+    """The first of N poses in a row that breaks a limit, and the reason; None if none does.
 
     joints (N, n) are those of `Kinematics.inverse_along`.
     """
@@ -95,7 +95,7 @@ def first_fault(
     return first, _why_not(machine, constraints, poses[first], joints[: first + 1])
 
 
-def demand(part: Stretch, machine: Machine, dt: float) -> Demand:
+def limit_utilisation(part: Batch, machine: Machine, dt: float) -> LimitUtilisation:
     """The worst ratio to a limit; accelerations count by their square root, as time does."""
     speed = np.diff(part.joints, axis=0) / dt
     acceleration = np.diff(speed, axis=0) / dt
@@ -121,12 +121,12 @@ def demand(part: Stretch, machine: Machine, dt: float) -> Demand:
     peaks = {name: float(ratios.max(initial=0.0)) for name, ratios in readings.items()}
     worst = max(peaks, key=lambda name: peaks[name])
     tick = int(np.argmax(readings[worst]))
-    return Demand(peaks[worst], worst, float(part.times[tick]))
+    return LimitUtilisation(peaks[worst], worst, float(part.times[tick]))
 
 
-def _stretches(
+def _batches(
     plan: Plan, machine: Machine, near: Array, dt: float, effort: Effort
-) -> Iterator[Stretch]:
+) -> Iterator[Batch]:
     """The plan's ticks up to its last moment, AT_ONCE at a time; joints go on from `near`."""
     count = int(np.ceil(plan.checked_duration / dt - ROUNDING)) + 1
     begin, joints = 0, near[None]
@@ -137,7 +137,7 @@ def _stretches(
         state = plan.at(times)
         own = plan.joints_at(times)
         joints = machine.kinematics.inverse_along(state.pose, joints[0]) if own is None else own
-        yield Stretch(times, state, joints)
+        yield Batch(times, state, joints)
         if end == count:
             return
         begin = end - OVERLAP

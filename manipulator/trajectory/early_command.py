@@ -1,14 +1,14 @@
 """A command that comes while the machine is about to be taken over waits for that, briefly.
 
 A machine that was just enabled or cleared can be driven some ten milliseconds later: once its pose
-is known and the board has followed a setpoint. Who was told that it is enabled need not know.
+is known and the board has followed a setpoint. Clients that see it enabled need not know.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from manipulator.errors import ManipulatorError, Refused
-from manipulator.trajectory.pilot import NotYet
+from manipulator.trajectory.supervisor import NotYet
 
 PATIENCE = 1.0
 """Seconds from the first command that comes too early to its refusal, at most."""
@@ -16,7 +16,7 @@ PATIENCE = 1.0
 
 @dataclass(frozen=True)
 class _Early:
-    """What was asked for, who hears of its refusal, until when it waits (s), and for what."""
+    """The command, the callback of its refusal, until when it waits (s), and for what."""
 
     act: Callable[[], object]
     refuse: Callable[[ManipulatorError], object]
@@ -51,7 +51,7 @@ class EarlyCommand:
             self._waiting = None
 
     def poll(self, now: float) -> None:
-        """Call at every tick, and when the machine's state is heard: a stop ends what waits."""
+        """Call at every tick, and when a machine state is received: a stop ends what waits."""
         early, self._waiting = self._waiting, None
         if early is None:
             return

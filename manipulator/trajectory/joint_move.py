@@ -1,7 +1,7 @@
 """Rest-to-rest moves in joint space: all joints in proportion, as quickly as limits allow.
 
-The way from one branch of the inverse kinematics to another, from a turned-up joint back, and
-through singular postures, where no line leads. The tool's path is what the joints make of it.
+They lead from one branch of the inverse kinematics to another, unwind joints, and pass singular
+postures, where no line move leads. The tool's path is what the joints make of it.
 """
 
 from dataclasses import dataclass
@@ -92,11 +92,11 @@ def between(begin: Array, end: Array, s: Array) -> Array:
 
 
 def plan_joint_move(
-    machine: Machine, start: Pose, begin: Array, goal: Array, slowness: float = 1.0
+    machine: Machine, start: Pose, begin: Array, goal: Array, slowdown: float = 1.0
 ) -> JointMove:
     """The quickest move from joints `begin`, at pose `start`, to joints `goal` (n,).
 
-    slowness k ≥ 1 makes it take k times as long. Raises Refused where the joints between fix no
+    slowdown k ≥ 1 makes it take k times as long. Raises Refused where the joints between fix no
     pose, as beyond a platform's forward singularities.
     """
     rows = between(begin, goal, np.linspace(0.0, 1.0, KNOTS + 1))
@@ -105,7 +105,7 @@ def plan_joint_move(
     except NoSolution as error:
         raise Refused(f'on the joint move: {error}') from error
     steps = knots[:-1].twist_to(knots[1:]) * KNOTS
-    profile = profile_within(_bounds(machine.motion.for_plans, goal - begin, steps), slowness)
+    profile = profile_within(_bounds(machine.motion.for_plans, goal - begin, steps), slowdown)
     return JointMove(machine.kinematics, frozen(begin), frozen(goal), knots, profile)
 
 

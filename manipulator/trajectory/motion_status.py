@@ -1,19 +1,26 @@
-"""What people hear about the motion, and which of it is news."""
+"""The status of the motion, and which statuses are new."""
 
 from dataclasses import dataclass
+
+from manipulator.states import MotionMode, MotionResult
+
+OVERTAKEN = 'replaced by a newer command while the path was planned'
+STOPPED = 'stopped before it began'
+TAKEN_OVER = 'the machine was taken over again while the path was planned'
+"""Reasons of paths that are not executed."""
 
 
 @dataclass(frozen=True)
 class MotionStatus:
-    """What goes out on motion_status.
+    """The contents of `motion_status`.
 
     mode: hold, move, path, cycle, jog. result: idle, planning (a path), moving, reached, refused,
-    stopped. goal_stamp is that of the goal which the result is about. reason: why so, or what
-    holds a jog back. percent: how much of a path's time is over.
+    stopped. goal_stamp: of the goal that the result refers to. reason: of the result, or
+    what limits a jog. percent: elapsed share of a path's time.
     """
 
-    mode: str = 'hold'
-    result: str = 'idle'
+    mode: MotionMode = MotionMode.HOLD
+    result: MotionResult = MotionResult.IDLE
     goal_stamp: float = 0.0
     reason: str = ''
     percent: int | None = None
@@ -29,23 +36,23 @@ class MotionNews:
         self._last: MotionStatus | None = None
         self._new: list[MotionStatus] = []
 
-    def look(self, status: MotionStatus) -> None:
-        """The motion's own status: news when it is another than at the last look."""
+    def update(self, status: MotionStatus) -> None:
+        """The status of the active motion: published when it has changed."""
         if status != self._seen:
             self._seen = status
             self.add(status)
 
     def add(self, status: MotionStatus) -> None:
-        """What became of one command, which the motion itself need not know of."""
+        """The result of one command, independent of the active motion."""
         if status == self._last:
             return
         self._last = status
         self._new.append(status)
-        if status.result == 'refused':
+        if status.result == MotionResult.REFUSED:
             self.refusals += 1
             self.last_refusal = status.reason
 
     def take(self) -> list[MotionStatus]:
-        """What is to be published since the last call, oldest first."""
+        """The statuses to publish since the last call, oldest first."""
         taken, self._new = self._new, []
         return taken

@@ -70,7 +70,7 @@ class Path:
         return state_of(x, rate, curvature, self.poses.rotation[corner])
 
     def metres(self, s: float) -> float:
-        """The length of the way to s, from pose to pose."""
+        """The path length to s, from pose to pose."""
         return float(np.interp(s, self.marks, self._metres))
 
     def where(self, s: float) -> str:
@@ -81,7 +81,12 @@ class Path:
         return f'{word} pose {self.numbers[last]}, {self.metres(s):.4g} m along the path'
 
 
-def path_along(poses: Pose, tolerance: Tolerance, turn_length: float) -> Path | Pose:
+def path_along(
+    poses: Pose,
+    tolerance: Tolerance,
+    turn_length: float,
+    numbers: tuple[int, ...] | None = None,
+) -> Path | Pose:
     """The path whose parameter is its length in metres, or the one pose that all `poses` are.
 
     A segment is as long as its positions are apart, or as turn_length (m/rad) makes of its turn
@@ -91,18 +96,22 @@ def path_along(poses: Pose, tolerance: Tolerance, turn_length: float) -> Path | 
     if len(kept) == 1:
         return poses[kept[0]]
     distinct = poses[kept]
-    way = distinct[:-1].twist_to(distinct[1:])
-    shifts, turns = np.linalg.norm(way[:, :3], axis=1), np.linalg.norm(way[:, 3:], axis=1)
+    steps = distinct[:-1].twist_to(distinct[1:])
+    shifts, turns = np.linalg.norm(steps[:, :3], axis=1), np.linalg.norm(steps[:, 3:], axis=1)
     spans = np.maximum(shifts, turn_length * turns)
     marks = np.concatenate([[0.0], np.cumsum(spans)])
     share = 1.0 - REPEATED_SHARE
     left = Tolerance(share * tolerance.distance, share * tolerance.turn)
-    return _blended(distinct, marks, left, tuple(k + 1 for k in kept))
+    known = numbers or range(1, len(poses.position) + 1)
+    return _blended(distinct, marks, left, tuple(known[k] for k in kept))
 
 
-def path_in_time(poses: Pose, stamps: Array, tolerance: Tolerance) -> Path:
+def path_in_time(
+    poses: Pose, stamps: Array, tolerance: Tolerance, numbers: tuple[int, ...] | None = None
+) -> Path:
     """The path whose parameter is time: at each pose at its stamp (s, strictly increasing)."""
-    return _blended(poses, stamps - stamps[0], tolerance, tuple(range(1, len(stamps) + 1)))
+    known = numbers or tuple(range(1, len(stamps) + 1))
+    return _blended(poses, stamps - stamps[0], tolerance, known)
 
 
 def _blended(poses: Pose, marks: Array, tolerance: Tolerance, numbers: tuple[int, ...]) -> Path:
@@ -145,7 +154,7 @@ MOST_POSES = 2000
 
 
 def line(start: Pose, goal: Pose) -> Pose:
-    """The two ends of a straight way, (2,)."""
+    """The two ends of a segment, (2,)."""
     return Pose(
         np.stack([start.position, goal.position]), np.stack([start.rotation, goal.rotation])
     )

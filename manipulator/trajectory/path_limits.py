@@ -1,15 +1,15 @@
-"""What a machine's limits say about the speed along a path: docs/motion.md, section 5.
+"""The speed along a path within a machine's limits: docs/motion.md, section 5.
 
 With ' for d/ds, a joint moves at q'·ṡ and accelerates by q'·s̈ + q''·ṡ²; platform and tool alike.
 On each interval between two nodes q'' is the mean, Δq'/Δs.
 
-A fast way along a path in the phase plane: two passes over squared path speeds.
+Fast timing of a path in the phase plane: two passes over squared path speeds.
 
 On each interval of the path the acceleration is constant, so that the squares x and y of the
 speed ṡ at its two ends fix it: s̈ = (y − x)/2Δ. Every limit is then a row A·x + B·y ≤ C, and one
 of the two is eliminated: backwards the largest x from which y is not passed, forwards the largest
 y. As in Pham, Pham 2018 (TOPP-RA, section VI), but no speed is allowed that could not be kept
-(x = y): then one pass each way always succeeds. docs/motion.md, section 5.
+(x = y): then one pass in each direction always succeeds. docs/motion.md, section 5.
 """
 
 from collections.abc import Sequence
@@ -58,13 +58,13 @@ def fastest(rows: Rows, highest: Array) -> Array:
     return np.asarray(best, dtype=np.float64)
 
 
-def _solved(wanted: Array, given: Array, bound: Array) -> tuple[Array, Array]:
-    """Cap and gain: each wanted square ≤ cap + gain·(the given one); ∞ and 0 where not bound.
+def _solved(limited: Array, given: Array, bound: Array) -> tuple[Array, Array]:
+    """Cap and gain: each limited square ≤ cap + gain·(the given one); ∞ and 0 where not bound.
 
     A row that bounds both from above only restricts what `highest_kept` already does.
     """
-    is_bound = (wanted > 0) & (given < 0)
-    divisor = np.where(is_bound, wanted, 1.0)
+    is_bound = (limited > 0) & (given < 0)
+    divisor = np.where(is_bound, limited, 1.0)
     cap = np.where(is_bound, bound / divisor, np.inf)
     return cap, np.where(is_bound, -given / divisor, 0.0)
 
@@ -89,7 +89,7 @@ class PathLimits:
     row_names: tuple[str, ...]
 
     def most_at(self, square: float) -> tuple[float, str, float]:
-        """What ṡ² = square all the way asks for most: slowness (see check.py), limit, s."""
+        """The highest utilisation (see check.py) at ṡ² = square everywhere, its limit, and s."""
         speeds = np.sqrt(square / self.highest)
         demanded = square * (self.rows.on_begin + self.rows.on_end) / self.rows.bound
         rows = np.sqrt(np.maximum(demanded, 0.0))

@@ -1,69 +1,76 @@
-"""The path that is being worked out, while the machine goes on with what it does.
+"""Planning of paths, while the active plan continues.
 
-A path is expected from its arrival until it has been worked out; then it is pursued like a goal.
-Whatever newer command comes meanwhile takes its place.
+A path is expected from its arrival until it is planned; then it is pursued like a goal. Any newer
+command replaces it.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.machine import Machine
 from manipulator.pose import Pose
+from manipulator.states import MotionResult
+from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.motion_status import MotionNews, MotionStatus
+from manipulator.trajectory.motion_status import OVERTAKEN, MotionNews, MotionStatus
+from manipulator.trajectory.orientation import OrientationRule
 from manipulator.trajectory.path_timing import PathRequest, TimedPath, plan_path
-from manipulator.trajectory.pilot import Pilot
-from manipulator.trajectory.player import OVERTAKEN, Player
+from manipulator.trajectory.supervisor import MotionSupervisor
 from manipulator.trajectory.worker import Effort, Job, Worker
 
 
 @dataclass(frozen=True, eq=False)
 class PathGoal:
-    """A path to drive, known to its sender by the stamp of the message.
+    """A path to execute, known to its sender by the stamp of the message.
 
-    read: what was asked for; called where the path is worked out, because thousands of poses take
+    read: returns the request; called where the path is planned, because thousands of poses take
     their time; raises InvalidInput. is_of_platform: the poses are the platform's in the base
-    frame, else the pivot's in the work frame.
+    frame, else the pivot's in the work frame. orientation: where the poses' comes from.
     """
 
     stamp: float
     read: Callable[[], PathRequest]
     is_of_platform: bool
+    orientation: OrientationRule = field(default_factory=OrientationRule)
 
     def planned(
-        self, machine: Machine, near: Array, dt: float, effort: Effort
+        self, machine: Machine, start: Pose, near: Array, dt: float, effort: Effort
     ) -> TimedPath | Pose:
-        """See `plan_path`."""
-        request = self.read()
+        """See `plan_path`; start: the pivot's pose in the work frame, from which it begins."""
+        frames = machine.frames
+        start = frames.platform(start) if self.is_of_platform else start
+        request = self.read().oriented(self.orientation, start)
         if self.is_of_platform:
-            request = replace(request, poses=machine.frames.pivot(request.poses))
+            request = replace(request, poses=frames.pivot(request.poses))
         return plan_path(machine, request, near, dt, effort)
 
 
 class PathPlanning:
     """The newest path that is expected, if any; `step` is called at every tick."""
 
-    def __init__(self, pilot: Pilot, dt: float, worker: Worker, news: MotionNews) -> None:
-        self._pilot, self._dt, self._worker, self._news = pilot, dt, worker, news
+    def __init__(
+        self, supervisor: MotionSupervisor, dt: float, worker: Worker, news: MotionNews
+    ) -> None:
+        self._supervisor, self._dt, self._worker, self._news = supervisor, dt, worker, news
         self._stamp = 0.0
         self._job: Job[TimedPath | Pose] | None = None
 
     def begin(self, path: PathGoal) -> None:
-        """Has it worked out, instead of the one before; Refused as `Player.expect`."""
-        player, machine = self._pilot.player, self._pilot.machine
-        near, dt = player.joints, self._dt
-        player.expect(path.stamp)
+        """Plans it, in place of the one before; Refused as `Executor.expect`."""
+        executor, machine = self._supervisor.executor, self._supervisor.machine
+        start, near, dt = executor.state.pose, executor.joints, self._dt
+        executor.expect(path.stamp)
         self._drop(OVERTAKEN)
         try:
-            self._job = self._worker.submit(lambda e: path.planned(machine, near, dt, e))
+            self._job = self._worker.submit(lambda e: path.planned(machine, start, near, dt, e))
             self._stamp = path.stamp
         except Refused as error:
-            player.refuse(path.stamp, str(error))
+            executor.refuse(path.stamp, str(error))
 
     def step(self) -> None:
-        """Pursues the path once it is worked out; that it was dropped is news."""
+        """Pursues the path once it is planned; reports it where it was dropped."""
         if self._job is None:
             return
         reason = self._unexpected
@@ -71,37 +78,37 @@ class PathPlanning:
             self._drop(reason)
         elif self._job.is_done:
             job, self._job = self._job, None
-            self._pursue(job, self._pilot.player)
+            self._pursue(job, self._supervisor.executor)
 
     def cancel(self) -> None:
-        """Nobody waits for it any more."""
+        """Gives it up."""
         if self._job is not None:
             self._job.cancel()
             self._job = None
 
     def _drop(self, reason: str) -> None:
-        """What nobody waits for any more, if anything, is given up, and reported as stopped."""
+        """Gives up a path, if any, and reports it as stopped."""
         if self._job is not None:
             self.cancel()
-            mode = self._pilot.status.mode
-            self._news.add(MotionStatus(mode, 'stopped', self._stamp, reason))
+            mode = self._supervisor.status.mode
+            self._news.add(MotionStatus(mode, MotionResult.STOPPED, self._stamp, reason))
 
-    def _pursue(self, job: 'Job[TimedPath | Pose]', player: Player) -> None:
+    def _pursue(self, job: 'Job[TimedPath | Pose]', executor: Executor) -> None:
         try:
             outcome = job.result()
         except ManipulatorError as error:
-            player.refuse(self._stamp, str(error))
+            executor.refuse(self._stamp, str(error))
             return
         if isinstance(outcome, Pose):
-            player.pursue(Goal(outcome, self._stamp))
+            executor.pursue(Goal(outcome, self._stamp))
         else:
-            player.pursue(Goal(outcome.at(0.0).pose, self._stamp, then=outcome))
+            executor.pursue(Goal(outcome.at(0.0).pose, self._stamp, then=outcome))
 
     @property
     def _unexpected(self) -> str:
         """Why the path is not expected any more, '' while it is."""
         try:
-            player = self._pilot.player
+            executor = self._supervisor.executor
         except Refused as refusal:
             return str(refusal)
-        return '' if player.expected == self._stamp else player.dropped
+        return '' if executor.expected == self._stamp else executor.dropped

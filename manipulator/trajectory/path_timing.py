@@ -1,4 +1,4 @@
-"""A path with its timing: a plan like any other, worked out and checked before it begins.
+"""A path with its timing: a plan like any other, made and checked before it begins.
 
 Speed and acceleration of joints and platform are limited; jerk is not, except by the corners'
 width and by the drives themselves.
@@ -15,6 +15,7 @@ from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.trajectory.check import TOLERANCE as CHECK_TOLERANCE
 from manipulator.trajectory.check import check_plan
+from manipulator.trajectory.orientation import OrientationRule
 from manipulator.trajectory.path import Path, Tolerance, path_along, path_in_time
 from manipulator.trajectory.path_limits import PathLimits, fastest, path_limits
 from manipulator.trajectory.plan import MotionState, PosePlan
@@ -64,9 +65,9 @@ class TimedPath(PosePlan):
     def at(self, times: Array | float) -> MotionState:
         """The state at each of the times (...)."""
         s, rate, pull = (value[..., None] for value in self._progress(times))
-        way = self.path.at(s[..., 0])
-        acceleration = way.acceleration * rate**2 + way.twist * pull
-        return MotionState(way.pose, way.twist * rate, acceleration)
+        point = self.path.at(s[..., 0])
+        acceleration = point.acceleration * rate**2 + point.twist * pull
+        return MotionState(point.pose, point.twist * rate, acceleration)
 
     def where(self, time: float) -> str:
         """See `Plan`: by the poses' numbers and the length, whatever the timing is."""
@@ -86,12 +87,27 @@ class TimedPath(PosePlan):
 
 @dataclass(frozen=True, eq=False)
 class PathRequest:
-    """Poses (n,) to pass, n ≥ 1; at their stamps (s, (n,)), or at `speed` (m/s) at most."""
+    """Poses (n,) to pass, n ≥ 1; at their stamps (s, (n,)), or at `speed` (m/s) at most.
+
+    numbers (n,): those by which their sender knows them; None: from 1.
+    """
 
     poses: Pose
     speed: float
     tolerance: Tolerance
     stamps: Array | None = None
+    numbers: tuple[int, ...] | None = None
+
+    def oriented(self, rule: OrientationRule, start: Pose) -> 'PathRequest':
+        """With the orientations by a rule, and perhaps more poses; see `OrientationRule.along`."""
+        if rule.is_given:
+            return self
+        poses, places = rule.along(self.poses, start)
+        stamps = self.stamps
+        if stamps is not None:
+            stamps = np.interp(places, np.arange(len(stamps)), stamps)
+        numbers = tuple(int(place) + 1 for place in places)
+        return replace(self, poses=poses, stamps=stamps, numbers=numbers)
 
 
 def plan_path(
@@ -104,10 +120,12 @@ def plan_path(
     """
     turn_length = machine.motion.linear.speed / machine.motion.angular.speed
     if request.stamps is not None and len(request.stamps) > 1:
-        path: Path | Pose = path_in_time(request.poses, request.stamps, request.tolerance)
+        path: Path | Pose = path_in_time(
+            request.poses, request.stamps, request.tolerance, request.numbers
+        )
         speed = 1.0
     else:
-        path = path_along(request.poses, request.tolerance, turn_length)
+        path = path_along(request.poses, request.tolerance, turn_length, request.numbers)
         speed = request.speed
     if isinstance(path, Pose):
         return path
@@ -118,15 +136,15 @@ def plan_path(
             _check_stamped(path, limits)
         timed = timed_path(path, limits, speed)
         _check_length(timed, dt)
-        demand = check_plan(timed, machine, near, dt, effort)
-        if demand.fits:
+        peak = check_plan(timed, machine, near, dt, effort)
+        if peak.fits:
             return timed
     if request.stamps is None:
-        slower = replace(timed, squares=timed.squares / (1.01 * demand.slowness) ** 2)
+        slower = replace(timed, squares=timed.squares / (1.01 * peak.factor) ** 2)
         if check_plan(slower, machine, near, dt, effort).fits:
             return slower
     raise Refused(
-        f'{demand.quantity} stays {demand.slowness:.3f} times too high {timed.where(demand.time)}'
+        f'{peak.quantity} stays {peak.factor:.3f} times too high {timed.where(peak.time)}'
     )
 
 
@@ -153,17 +171,17 @@ def nodes_of(path: Path, refinement: int, length: float) -> Array:
 
 
 def timed_path(path: Path, limits: PathLimits, speed: float) -> TimedPath:
-    """The fastest way along a path at `speed` (per second, in the path's parameter) at most."""
+    """The fastest timing of a path at `speed` (per second, in the path's parameter) at most."""
     highest = np.minimum(limits.highest.min(axis=1), speed**2)
     return TimedPath(path, limits.nodes, fastest(limits.rows, highest), limits.joints[0])
 
 
 def _check_stamped(path: Path, limits: PathLimits) -> None:
-    slowness, quantity, s = limits.most_at(1.0)
-    if slowness > CHECK_TOLERANCE:
+    utilisation, quantity, s = limits.most_at(1.0)
+    if utilisation > CHECK_TOLERANCE:
         raise Refused(
             f'{path.where(s)}: by the stamps of the poses {quantity} would be '
-            f'{slowness:.3g} times too fast'
+            f'{utilisation:.3g} times too fast'
         )
 
 

@@ -1,4 +1,4 @@
-"""What a plan is: a motion in its own time, worked out and checked before it begins."""
+"""A plan: a motion in its own time, made and checked before it begins."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -19,7 +19,7 @@ class MotionState:
 
     @classmethod
     def at_rest(cls, pose: Pose) -> 'MotionState':
-        """Standing still at one pose."""
+        """At rest at one pose."""
         return cls(pose, frozen(np.zeros(6)), frozen(np.zeros(6)))
 
     @property
@@ -38,7 +38,7 @@ class Plan(Protocol):
 
     @property
     def checked_duration(self) -> float:
-        """Seconds after which nothing new comes: the duration, or the period of a cycle."""
+        """Seconds to check: the duration, or the period of a cycle."""
         ...
 
     def at(self, times: Array | float) -> MotionState:
@@ -46,7 +46,7 @@ class Plan(Protocol):
         ...
 
     def joints_at(self, times: Array | float) -> Array | None:
-        """The joints (..., n) at each of the times where the plan says them, else None.
+        """The joints (..., n) at each of the times where the plan has them, else None.
 
         Where it does not, they follow from the poses, on the branch that the machine is on.
         """
@@ -58,7 +58,7 @@ class Plan(Protocol):
 
 
 class PosePlan:
-    """What plans share that say poses alone."""
+    """Shared by plans that are given as poses alone."""
 
     def joints_at(self, times: Array | float) -> None:
         """See `Plan`: they follow from the poses."""
@@ -66,7 +66,7 @@ class PosePlan:
 
 @dataclass(frozen=True, eq=False)
 class Hold(PosePlan):
-    """Standing still."""
+    """Rest at one pose."""
 
     pose: Pose
     duration: float = 0.0
@@ -83,4 +83,4 @@ class Hold(PosePlan):
 
     def where(self, time: float) -> str:
         """See `Plan`."""
-        return 'where the machine stands'
+        return 'at the current pose'

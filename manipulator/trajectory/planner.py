@@ -1,7 +1,7 @@
-"""From a goal to a move that the machine can drive: retimed where it is too fast, or refused."""
+"""From a goal to a plan within all limits: slowed down where it is too fast, or refused."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,18 +16,18 @@ from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.joint_move import KNOTS, plan_joint_move
 from manipulator.trajectory.path_timing import TimedPath
 from manipulator.trajectory.plan import MotionState, Plan
-from manipulator.trajectory.point_to_point import plan_move, plan_straight
+from manipulator.trajectory.point_to_point import plan_line_move, plan_move_in_motion
 from manipulator.trajectory.worker import Effort, TooLong
 from manipulator.unit_hints import hint_at_metres
 
 ATTEMPTS = 8
 MARGIN = 1.01
-MOST_STRETCH = 30.0
+MOST_SLOWDOWN = 30.0
 """Times that a move may take of what platform or tool alone would need: what joints that must turn
 faster near a singular posture may cost."""
 
 FARTHEST = 1e5
-"""Characteristic lengths from home beyond which nothing is worked out: numbers would overflow."""
+"""Characteristic lengths from home beyond which nothing is computed: numbers would overflow."""
 
 FORWARD_COST = 10
 """Poses of an inverse that a forward solution costs: no joint move is planned within a tick."""
@@ -37,7 +37,7 @@ ROUNDING = 1e-6
 joints, and must not find one beyond it."""
 
 SAME_JOINTS = 1e-3
-"""rad or m within which joints count as those that were asked for."""
+"""rad or m within which joints count as the requested ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class Start:
 
 
 def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Plan:
-    """The plan to a goal in the way that it asks for; what it begins there is checked as well.
+    """The plan to a goal by its `motion`; a path or cycle that begins there is checked as well.
 
     Raises Unreachable when the goal itself is out of reach, and Refused when the path there is,
     cannot be slowed down enough, or costs more `effort` than a plan may.
@@ -62,8 +62,44 @@ def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pla
         return _plan_line(machine, start, goal, effort)
     except Refused as refusal:
         if goal.motion is Motion.LINE or not start.state.is_at_rest:
-            raise Refused(f'{refusal}{_way_out(machine, start, goal, effort)}') from refusal
+            raise Refused(f'{refusal}{_hint(machine, start, goal, effort)}') from refusal
     return _plan_joints(machine, start, goal, effort)
+
+
+@dataclass(frozen=True, eq=False)
+class ComparedPlan:
+    """A plan, and what it might take (s): along a line, by a joint move, at rated speed.
+
+    None where no such move is found. rated: what the joint with the longest way needs at its speed
+    limit, the other joints in proportion.
+    """
+
+    plan: Plan
+    durations: dict[Motion, float | None]
+    rated: float
+
+    def __str__(self) -> str:
+        found = [
+            f'{motion.value} {"none" if t is None else f"{t:.2f} s"}'
+            for motion, t in self.durations.items()
+        ]
+        return f'{", ".join(found)}; the joints at their speed limits alone: {self.rated:.2f} s'
+
+
+def compared(machine: Machine, start: Start, goal: Goal, effort: Effort) -> ComparedPlan:
+    """The plan of `plan_goal`, from rest, beside the other motions to the same goal."""
+    plan = plan_goal(machine, start, goal, effort)
+    durations: dict[Motion, float | None] = {}
+    for motion in (Motion.LINE, Motion.JOINT):
+        try:
+            durations[motion] = plan_goal(
+                machine, start, replace(goal, motion=motion), effort
+            ).duration
+        except (Refused, Unreachable, TooLong):
+            durations[motion] = None
+    end = machine.kinematics.inverse(goal.pose, start.joints)
+    rated = np.abs(end - start.joints) / machine.motion.joint.speed
+    return ComparedPlan(plan, durations, float(rated.max()))
 
 
 def _refuse_absurd(machine: Machine, pose: Pose) -> None:
@@ -82,10 +118,10 @@ def plan_to(machine: Machine, start: Start, pose: Pose, effort: Effort | None = 
     `plan_goal`.
     """
 
-    def line(limits: MotionLimits, slowness: float) -> Plan:
+    def line(limits: MotionLimits, slowdown: float) -> Plan:
         if start.state.is_at_rest:
-            return plan_straight(start.state.pose, pose, limits, slowness)
-        return plan_move(start.state, pose, limits, slowness)
+            return plan_line_move(start.state.pose, pose, limits, slowdown)
+        return plan_move_in_motion(start.state, pose, limits, slowdown)
 
     try:
         return _slowed_down(machine, start, line, effort or Effort())
@@ -105,8 +141,8 @@ def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> 
         joints = machine.kinematics.inverse(goal.pose, start.joints)
     joints = _off_the_stops(machine, joints)
 
-    def move(limits: MotionLimits, slowness: float) -> Plan:
-        return plan_joint_move(machine, start.state.pose, start.joints, joints, slowness)
+    def move(limits: MotionLimits, slowdown: float) -> Plan:
+        return plan_joint_move(machine, start.state.pose, start.joints, joints, slowdown)
 
     try:
         plan = _slowed_down(machine, start, move, effort)
@@ -131,11 +167,11 @@ def check_goal(machine: Machine, goal: Pose, near: Array) -> None:
 def check_cycle(
     machine: Machine, cycle: Cycle, near: Array, dt: float, effort: Effort | None = None
 ) -> None:
-    """Raises Refused when the machine cannot drive a cycle as it is: its speed is not ours."""
+    """Raises Refused when a cycle breaks a limit: its frequencies are never changed."""
     needed = check_plan(cycle, machine, near, dt, effort)
     if not needed.fits:
         raise Refused(
-            f'cycle: {needed.quantity} is {needed.slowness:.2f} times too fast: '
+            f'cycle: {needed.quantity} is {needed.factor:.2f} times too fast: '
             'lower the frequencies by that factor, or the amplitudes'
         )
 
@@ -161,15 +197,15 @@ def _check_arrival(machine: Machine, goal: Goal, joints: Array, dt: float, effor
     """Refused unless the goal can be met, and what it begins be driven, with `joints` (n,)."""
     if isinstance(goal.then, Cycle):
         check_cycle(machine, goal.then, joints, dt, effort)
-    wanted = goal.then.joints if isinstance(goal.then, TimedPath) else goal.joints
-    if wanted is None:
+    required = goal.then.joints if isinstance(goal.then, TimedPath) else goal.joints
+    if required is None:
         return
-    away = np.abs(joints - wanted)
+    away = np.abs(joints - required)
     worst = int(np.argmax(away))
     if away[worst] > SAME_JOINTS:
         name, unit = machine.kinematics.joint_names[worst], machine.kinematics.joint_unit
         raise Refused(
-            f'{name} would arrive {away[worst]:.3g} {unit} away from where it has to be, '
+            f'{name} would arrive {away[worst]:.3g} {unit} from its required position, '
             'on another branch of the inverse kinematics'
         )
 
@@ -177,24 +213,24 @@ def _check_arrival(machine: Machine, goal: Goal, joints: Array, dt: float, effor
 def _slowed_down(
     machine: Machine, start: Start, plan: Callable[[MotionLimits, float], Plan], effort: Effort
 ) -> Plan:
-    """The first of ever slower plans that the machine can drive; Refused where none is."""
-    slowness = 1.0
+    """The first of ever slower plans within all limits; Refused where none is."""
+    slowdown = 1.0
     for _ in range(ATTEMPTS):
-        move = plan(machine.motion.for_plans, slowness)
-        demand = check_plan(move, machine, start.joints, start.dt, effort)
-        if demand.fits:
+        move = plan(machine.motion.for_plans, slowdown)
+        peak = check_plan(move, machine, start.joints, start.dt, effort)
+        if peak.fits:
             return move
-        slowness *= demand.slowness * MARGIN
-        if slowness > MOST_STRETCH:
+        slowdown *= peak.factor * MARGIN
+        if slowdown > MOST_SLOWDOWN:
             break
     raise Refused(
-        f'{move.where(demand.time)}: {demand.quantity} would still be above its limit at '
-        f'1/{slowness:.3g} of full speed, as near singular postures'
+        f'{move.where(peak.time)}: {peak.quantity} would still be above its limit at '
+        f'1/{slowdown:.3g} of full speed, as near singular postures'
     )
 
 
-def _way_out(machine: Machine, start: Start, goal: Goal, effort: Effort) -> str:
-    """What would reach a goal to which no line leads, in words; '' where nothing is known."""
+def _hint(machine: Machine, start: Start, goal: Goal, effort: Effort) -> str:
+    """What would reach a goal that no line move reaches, in words; '' where nothing would."""
     if not start.state.is_at_rest:
         return ''
     try:
@@ -205,4 +241,4 @@ def _way_out(machine: Machine, start: Start, goal: Goal, effort: Effort) -> str:
         if effort.is_whole:
             return ''
         raise
-    return f'; a joint move gets there in {move.duration:.1f} s (parameter goal_motion: joint)'
+    return f'; a joint move reaches it in {move.duration:.1f} s (parameter goal_motion: joint)'

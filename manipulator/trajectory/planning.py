@@ -1,9 +1,9 @@
-"""The plan that is being worked out for a goal, while the machine goes on with what it does.
+"""Planning of goals, while the active plan continues.
 
 Short moves of machines with an explicit inverse are planned within the tick: a stream of goals is
-followed closest so. Other plans are worked out beside it, and begin where the present one will be
-in a moment: LEADS says how soon. Where such a plan comes too late it is planned again with more
-time, and at last from rest.
+followed closest this way. Other plans are made in a worker, and begin where the active plan will
+be LEADS ticks later. A plan that is finished too late is made again with more time, and at last
+from rest.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused, Unreachable
 from manipulator.machine import Machine
-from manipulator.trajectory.active_plan import Playing
+from manipulator.trajectory.active_plan import ActivePlan
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.plan import MotionState, Plan
 from manipulator.trajectory.planner import Start, plan_goal
@@ -27,10 +27,10 @@ TICK_POSES = 200
 """Poses that may be solved for a plan within a tick: 2 ms of an arm, 0.2 ms of a platform."""
 
 NOTABLE = 5
-"""Ticks of planning after which that is reported: most plans take less, and streams of goals."""
+"""Ticks of planning after which that is reported: most plans, and streams of goals, take less."""
 
 SAME_POSE = 1e-9
-"""m and rad between where a plan begins and where the machine stands."""
+"""m and rad between the start of a plan and the pose that is held."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class Planned:
 
     goal: Goal
     start: MotionState
-    source: Playing
+    source: ActivePlan
     begin: float
     job: Job[Plan]
 
@@ -53,12 +53,12 @@ class Planned:
         """Whether it is done, and would have cost too many poses."""
         return self.job.is_done and isinstance(self.job.error, TooLong)
 
-    def fits(self, playing: Playing) -> bool:
-        """Whether it can still be begun from what is played now."""
-        if playing.is_hold:
-            away = playing.state.pose.twist_to(self.start.pose)
+    def fits(self, active: ActivePlan) -> bool:
+        """Whether it can still begin from the active plan."""
+        if active.is_hold:
+            away = active.state.pose.twist_to(self.start.pose)
             return self.is_from_rest and float(np.abs(away).max()) < SAME_POSE
-        return playing is self.source and playing.time <= self.begin
+        return active is self.source and active.time <= self.begin
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,9 @@ class Failed:
 
 
 class Planning:
-    """The newest goal: waiting, planned for, or planned and not yet begun. Changes every tick.
+    """The newest goal: waiting, being planned, or planned and not yet begun. Changes every tick.
 
-    While one goal is planned for, the newest other one waits; what came between is dropped.
+    While one goal is planned, the newest other one waits; those between are dropped.
     """
 
     def __init__(self, machine: Machine, dt: float, worker: Worker) -> None:
@@ -95,25 +95,25 @@ class Planning:
         """Whether a plan has just become worth a report, by how long it takes."""
         return self._request is not None and self._ticks == NOTABLE
 
-    def ask(self, goal: Goal) -> None:
-        """Has a goal planned for at the next `step`."""
+    def request(self, goal: Goal) -> None:
+        """Plans a goal at the next `step`."""
         self._newest = goal
 
     def cancel(self) -> None:
-        """Nobody waits for a plan any more."""
+        """Gives up all plans that have not begun."""
         if self._request is not None:
             self._request.job.cancel()
         self._newest = self._request = self.ready = None
 
-    def step(self, playing: Playing, joints: Array) -> Failed | None:
-        """One tick beside what is `playing`, at joints (n,): begins a plan, or takes it up.
+    def step(self, active: ActivePlan, joints: Array) -> Failed | None:
+        """One tick of planning beside the `active` plan, at joints (n,).
 
-        A plan is `ready` then, or has failed, or was too late and is made anew.
+        Afterwards a plan is `ready`, or has failed, or was too late and is made again.
         """
         if self._newest is not None and self._request is None and self.ready is None:
             goal, self._newest = self._newest, None
             self._attempts = self._ticks = 0
-            failed = self._begun(goal, playing, joints)
+            failed = self._begun(goal, active, joints)
             if failed is not None:
                 return failed
         self._ticks += 1
@@ -126,43 +126,43 @@ class Planning:
         except ManipulatorError as error:
             is_final = request.is_from_rest or isinstance(error, Unreachable)
             return Failed(request.goal, error, is_final)
-        if request.fits(playing):
+        if request.fits(active):
             self.ready = request
             return None
         self._attempts += 1
         if self._attempts == len(LEADS):
-            late = Refused('its plan came too late to be joined in motion')
+            late = Refused('the plan was finished too late to join it in motion')
             return Failed(request.goal, late, is_final=False)
-        return self._begun(request.goal, playing, joints)
+        return self._begun(request.goal, active, joints)
 
-    def _begun(self, goal: Goal, playing: Playing, joints: Array) -> Failed | None:
-        """Begins to plan; what the worker does not take is refused."""
+    def _begun(self, goal: Goal, active: ActivePlan, joints: Array) -> Failed | None:
+        """Begins to plan; a goal that the worker does not accept is refused."""
         try:
-            self._begin(goal, playing, joints)
+            self._begin(goal, active, joints)
         except Refused as error:
             return Failed(goal, error, is_final=True)
         return None
 
-    def _begin(self, goal: Goal, playing: Playing, joints: Array) -> None:
-        """Plans within this tick where that is cheap enough, else beside it."""
+    def _begin(self, goal: Goal, active: ActivePlan, joints: Array) -> None:
+        """Plans within this tick where that is cheap enough, else in the worker."""
         if self._quick is not None and self._worker.is_beside and self._attempts == 0:
-            quick = self._submitted(self._quick, goal, playing, joints)
+            quick = self._submitted(self._quick, goal, active, joints)
             if not quick.is_too_long:
                 self._request = quick
                 return
-        self._request = self._submitted(self._worker, goal, playing, joints)
+        self._request = self._submitted(self._worker, goal, active, joints)
 
-    def _submitted(self, worker: Worker, goal: Goal, playing: Playing, joints: Array) -> Planned:
-        """A plan under way that begins in a moment; joints (n,) are those of now."""
-        lead = LEADS[self._attempts] if worker.is_beside and not playing.is_hold else 0
-        begin = min(playing.time + lead * self._dt, playing.plan.duration)
-        times = np.linspace(playing.time, begin, lead + 1)
-        ahead = _Ahead(playing.plan, times, playing.plan.at(begin), joints)
+    def _submitted(self, worker: Worker, goal: Goal, active: ActivePlan, joints: Array) -> Planned:
+        """A job for a plan that begins some ticks ahead; joints (n,) are those of now."""
+        lead = LEADS[self._attempts] if worker.is_beside and not active.is_hold else 0
+        begin = min(active.time + lead * self._dt, active.plan.duration)
+        times = np.linspace(active.time, begin, lead + 1)
+        ahead = _Ahead(active.plan, times, active.plan.at(begin), joints)
         job = worker.submit(partial(self._plan, goal, ahead))
-        return Planned(goal, ahead.state, playing, begin, job)
+        return Planned(goal, ahead.state, active, begin, job)
 
     def _plan(self, goal: Goal, ahead: '_Ahead', effort: Effort) -> Plan:
-        """What the worker does: no tick waits for the joints where the plan begins, either."""
+        """Runs in the worker, with the inverse kinematics up to the plan's start."""
         effort.spend(len(ahead.times))
         start = Start(ahead.state, ahead.joints_at_end(self._machine), self._dt)
         return plan_goal(self._machine, start, goal, effort)
@@ -170,7 +170,7 @@ class Planning:
 
 @dataclass(frozen=True, eq=False)
 class _Ahead:
-    """Some moments (k,) of a plan, with the state at the last and the joints (n,) at the first."""
+    """Times (k,) of a plan, with the state at the last and the joints (n,) at the first."""
 
     plan: Plan
     times: Array
@@ -178,7 +178,7 @@ class _Ahead:
     joints: Array
 
     def joints_at_end(self, machine: Machine) -> Array:
-        """The joints (n,) at the last of the moments."""
+        """The joints (n,) at the last of the times."""
         if len(self.times) == 1:
             return self.joints
         rows = self.plan.joints_at(self.times)

@@ -39,13 +39,13 @@ class Profile:
         return np.clip(s, 0.0, 1.0), rate, pull
 
 
-def profile_within(bounds: Sequence[float], slowness: float = 1.0) -> Profile:
-    """bounds: the most that ṡ, s̈ and s⃛ may be; slowness k ≥ 1 makes it take k times as long."""
+def profile_within(bounds: Sequence[float], slowdown: float = 1.0) -> Profile:
+    """bounds: the most that ṡ, s̈ and s⃛ may be; slowdown k ≥ 1 makes it take k times as long."""
     request = ruckig.InputParameter(1)
     request.target_position = [1.0]
     names = ('velocity', 'acceleration', 'jerk')
     for power, (name, bound) in enumerate(zip(names, bounds, strict=True), start=1):
-        setattr(request, f'max_{name}', [min(bound, FASTEST) / slowness**power])
+        setattr(request, f'max_{name}', [min(bound, FASTEST) / slowdown**power])
     trajectory = ruckig.Trajectory(1)
     result = ruckig.Ruckig(1).calculate(request, trajectory)
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
@@ -57,7 +57,7 @@ DIFFERENCE_STEP = 1e-4
 
 
 def coordinates(state: MotionState, reference: Array) -> tuple[Array, Array, Array]:
-    """One state in the chart about `reference` (3, 3): (6,) coordinates and two derivatives."""
+    """One state in local coordinates about `reference` (3, 3): (6,), with two derivatives."""
     w = so3.log(state.pose.rotation @ reference.T)
     inverse = np.linalg.inv(so3.left_jacobian(w))
     w_rate = inverse @ state.twist[3:]
@@ -91,11 +91,11 @@ def _jacobian_change(w: Array, w_rate: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class StraightMove(PosePlan):
-    """start.moved(s·way): s goes from 0 to 1 along the profile, way is start.twist_to(goal)."""
+class LineMove(PosePlan):
+    """start.moved(s·d): s goes from 0 to 1 along the profile, d (6,) is start.twist_to(goal)."""
 
     start: Pose
-    way: Array
+    displacement: Array
     profile: Profile
 
     @property
@@ -111,9 +111,11 @@ class StraightMove(PosePlan):
     def at(self, times: Array | float) -> MotionState:
         """The state at each of the times (...)."""
         s, rate, pull = (value[..., None] for value in self.profile.at(times))
-        position = self.start.position + s * self.way[:3]
-        turn = so3.exp(s * self.way[3:]) @ self.start.rotation
-        return MotionState(Pose(position, turn), rate * self.way, pull * self.way)
+        position = self.start.position + s * self.displacement[:3]
+        turn = so3.exp(s * self.displacement[3:]) @ self.start.rotation
+        return MotionState(
+            Pose(position, turn), rate * self.displacement, pull * self.displacement
+        )
 
     def where(self, time: float) -> str:
         """See `Plan`."""
@@ -121,12 +123,15 @@ class StraightMove(PosePlan):
         return f'at {100 * float(share):.0f} % of the line'
 
 
-def plan_straight(
-    start: Pose, goal: Pose, limits: MotionLimits, slowness: float = 1.0
-) -> StraightMove:
-    """The quickest such move; slowness k ≥ 1 makes it take k times as long."""
-    way = start.twist_to(goal)
-    lengths = float(np.linalg.norm(way[:3])), float(np.linalg.norm(way[3:]))
+def plan_line_move(
+    start: Pose, goal: Pose, limits: MotionLimits, slowdown: float = 1.0
+) -> LineMove:
+    """The quickest such move; slowdown k ≥ 1 makes it take k times as long."""
+    displacement = start.twist_to(goal)
+    lengths = (
+        float(np.linalg.norm(displacement[:3])),
+        float(np.linalg.norm(displacement[3:])),
+    )
     parts = tuple(zip((limits.linear, limits.angular), lengths, strict=True))
     bounds = [
         min(
@@ -135,11 +140,11 @@ def plan_straight(
         )
         for name in ('speed', 'acceleration', 'jerk')
     ]
-    return StraightMove(start, way, profile_within(bounds, slowness))
+    return LineMove(start, displacement, profile_within(bounds, slowdown))
 
 
 @dataclass(frozen=True, eq=False)
-class Move(PosePlan):
+class MoveInMotion(PosePlan):
     """A ruckig trajectory in the coordinates about the goal's orientation."""
 
     goal: Pose
@@ -163,10 +168,12 @@ class Move(PosePlan):
         return f'at {100 * min(time / self.duration, 1.0):.0f} % of the time to the goal'
 
 
-def plan_move(start: MotionState, goal: Pose, limits: MotionLimits, slowness: float = 1.0) -> Move:
+def plan_move_in_motion(
+    start: MotionState, goal: Pose, limits: MotionLimits, slowdown: float = 1.0
+) -> MoveInMotion:
     """The quickest move within the limits on speed, acceleration and jerk of each coordinate.
 
-    slowness k ≥ 1 divides speed by k, acceleration by k² and jerk by k³. Raises Refused where
+    slowdown k ≥ 1 divides speed by k, acceleration by k² and jerk by k³. Raises Refused where
     ruckig finds none.
     """
     request = ruckig.InputParameter(6)
@@ -175,12 +182,12 @@ def plan_move(start: MotionState, goal: Pose, limits: MotionLimits, slowness: fl
     request.current_acceleration = a.tolist()
     request.target_position = [*goal.position.tolist(), 0.0, 0.0, 0.0]
     for name, power in (('speed', 1), ('acceleration', 2), ('jerk', 3)):
-        bounds = [getattr(limits.linear, name) / slowness**power] * 3
-        bounds += [getattr(limits.angular, name) / slowness**power] * 3
+        bounds = [getattr(limits.linear, name) / slowdown**power] * 3
+        bounds += [getattr(limits.angular, name) / slowdown**power] * 3
         ruckig_name = 'velocity' if name == 'speed' else name
         setattr(request, f'max_{ruckig_name}', bounds)
     trajectory = ruckig.Trajectory(6)
     result = ruckig.Ruckig(6).calculate(request, trajectory)
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
         raise Refused(f'no jerk-limited move was found ({result.name})')
-    return Move(goal, float(trajectory.duration), trajectory)
+    return MoveInMotion(goal, float(trajectory.duration), trajectory)

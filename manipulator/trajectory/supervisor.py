@@ -1,97 +1,64 @@
-"""The motion supervisor: commands, measurements, the bridge's state in; one setpoint a tick out.
+"""The motion supervisor: takes the machine over at its measured joints, and releases it.
 
-It joins who may drive (pilot.py), who jogs (teleop.py), paths that are being planned and commands
-that came too early, in the order that a tick has. It knows how late ticks come, and how far the
-machine lags behind a stream of goals that asks for more than it can do.
+The machine is supervised while it is enabled, its pose is received and its joints follow. Whatever
+ends that drops every goal; later motion begins where the joints then are.
 """
 
-from collections import deque
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from math import degrees
-
-import numpy as np
+from collections.abc import Sequence
+from dataclasses import replace
 
 from manipulator.arrays import Array
-from manipulator.errors import ManipulatorError, NoSolution, Refused
+from manipulator.deadlines import POSE_DEADLINE, POSE_PAUSE, STATE_DEADLINE
+from manipulator.errors import Refused
+from manipulator.framed_machine import in_frames
+from manipulator.frames import Frames
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.early_command import EarlyCommand
-from manipulator.trajectory.following import Tolerances
-from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.motion_status import MotionNews, MotionStatus
-from manipulator.trajectory.path_planning import PathGoal, PathPlanning
-from manipulator.trajectory.pilot import Pilot
-from manipulator.trajectory.player import STOPPED
-from manipulator.trajectory.teleop import Teleop
-from manipulator.trajectory.worker import InPlace, Worker
+from manipulator.states import MachineState, MotionMode, MotionResult
+from manipulator.trajectory.closed_loop import ClosedLoop, dead_band_of
+from manipulator.trajectory.executor import Executor
+from manipulator.trajectory.following_error import (
+    Arrival,
+    FollowingError,
+    PoseMatch,
+    Tolerances,
+    missed,
+)
+from manipulator.trajectory.motion_status import MotionStatus
+from manipulator.trajectory.worker import Worker
 
+DRIVABLE = (MachineState.ENABLED, MachineState.HOLDING)
+"""Machine states in which the board follows setpoints; it holds after its deadline."""
 
-class Jitter:
-    """The lateness of the last thousand ticks against the period, in seconds."""
-
-    def __init__(self, period: float) -> None:
-        self._period = period
-        self._last: float | None = None
-        self._lateness: deque[float] = deque(maxlen=1000)
-
-    def tick(self, now: float) -> float:
-        """Notes that a tick begins now; returns the seconds since the last one, 0 at first."""
-        elapsed = 0.0 if self._last is None else now - self._last
-        if self._last is not None:
-            self._lateness.append(abs(elapsed - self._period))
-        self._last = now
-        return elapsed
-
-    def quantile(self, q: float) -> float:
-        """The q-quantile of the lateness, 0 before the second tick."""
-        if not self._lateness:
-            return 0.0
-        return sorted(self._lateness)[int(q * (len(self._lateness) - 1))]
-
-
-def lag_of(pilot: Pilot) -> dict[str, float]:
-    """From the commanded pose to the newest goal: `lag_mm` and `lag_deg`, 0 where there is none.
-
-    The newest goal is always the one pursued; those in between were dropped.
-    """
-    way = np.zeros(6)
-    try:
-        goal = pilot.player.pursued
-    except Refused:
-        goal = None
-    if goal is not None:
-        way = pilot.player.state.pose.twist_to(goal)
-    shift, turn = (float(np.linalg.norm(part)) for part in (way[:3], way[3:]))
-    return {'lag_mm': 1e3 * shift, 'lag_deg': degrees(turn)}
-
+REMEDIES = {
+    '': 'no machine_state received from serial_bridge',
+    MachineState.DISCONNECTED: 'the board does not answer',
+    MachineState.BOOTING: 'its board is still booting',
+    MachineState.ARMING: 'its servos are being switched on',
+    MachineState.PLAYING: 'its board plays a program of its own',
+    MachineState.STOPPED: 'clear the stop first',
+    MachineState.FAULT: 'clear the fault first',
+}
+"""What is missing before the machine can be driven, by machine state."""
 
 MEASUREMENT_DELAY = 0.06
 """Seconds from a measured pose to the moment that its correction moves the joints, by default."""
 
-OVERTAKING = 0.5
-"""Seconds by which a goal may overtake a path, which takes longer to send, or a path a goal."""
+RESULTS = (MotionResult.REACHED, MotionResult.REFUSED, MotionResult.STOPPED)
+"""Results of goals: still reported where a machine that held is taken over again at once."""
 
-Refuse = Callable[[ManipulatorError], object]
-"""Is told why a command that was taken came to nothing before it began."""
-
-
-@dataclass(frozen=True)
-class Answer:
-    """To a request: whether it is obeyed, and in words what will happen, or why it will not."""
-
-    is_obeyed: bool
-    text: str
+DISABLED = MotionStatus(MotionMode.DISABLED, MotionResult.IDLE, 0.0, 'the servos are not enabled')
+CONNECTING = MotionStatus(
+    MotionMode.DISABLED, MotionResult.IDLE, 0.0, 'the board does not follow setpoints yet'
+)
 
 
-class Supervisor:
-    """One machine's; poses are the platform's in the base frame, unless it says otherwise.
+class NotYet(Refused):
+    """The machine cannot be driven yet, but is about to be taken over."""
 
-    Times are monotonic, in seconds; stamps are those of the messages, and name their commands. It
-    is called from one thread. Commands raise Refused where nobody may drive; what comes while the
-    machine is about to be taken over waits for that (early_command.py).
-    """
+
+class MotionSupervisor:
+    """One machine's; poses in arguments and results are the platform's, in the base frame."""
 
     def __init__(
         self,
@@ -101,148 +68,218 @@ class Supervisor:
         worker: Worker | None = None,
         delay: float = MEASUREMENT_DELAY,
     ) -> None:
-        """tolerances, worker: see `Pilot`; delay: see `Teleop`."""
-        self.pilot = Pilot(machine, dt, tolerances, worker)
-        self.teleop = Teleop(self.pilot, delay)
-        self.jitter = Jitter(dt)
-        self.news = MotionNews()
+        """tolerances: by default by the joints' ranges; worker: where plans are made.
+
+        delay: seconds from a measurement to the moment that its correction moves the joints.
+        """
+        self.status = DISABLED
+        self.machine = in_frames(machine, machine.frames)
+        self._bare = machine
         self._dt = dt
-        self._paths = PathPlanning(self.pilot, dt, worker or InPlace(), self.news)
-        self._early = EarlyCommand()
-        self._newest = float('-inf'), float('-inf')
-        self._state_at = self._pose_at = self._tick_at = float('-inf')
+        self._tolerances = tolerances or Tolerances.of(machine)
+        self._worker = worker
+        self._delay = delay
+        self._dead_band = dead_band_of(machine)
+        self._loop: ClosedLoop | None = None
+        self._executor: Executor | None = None
+        self._following_error: FollowingError | None = None
+        self._state = ''
+        self._is_followed = False
+        self._is_measured = False
+        self._joints: Array | None = None
         self._pose: Pose | None = None
+        self._arrival = Arrival(dt, delay)
+        self._match = PoseMatch(machine, self._tolerances.following)
+        self._override = 1.0
+        self._is_paused = False
+        self._next_frames: Frames | None = None
 
-    # What is reported
+    @property
+    def executor(self) -> Executor:
+        """Takes commands; Refused while the machine cannot be driven, NotYet where it soon can."""
+        if self._executor is None:
+            is_soon = self._state in DRIVABLE and not self._match.reason
+            kind = NotYet if is_soon else Refused
+            raise kind(f'the machine is {self._state or "unknown"}: {self._missing}')
+        if not self._is_followed:
+            raise NotYet(CONNECTING.reason)
+        return self._executor
 
-    def note_machine_state(
-        self, state: str, is_followed: bool, is_measured: bool, now: float
-    ) -> None:
-        """What the bridge says: see `Pilot`. A stop ends what waits."""
-        self._state_at = now
-        self.pilot.note_machine_state(state, is_followed, is_measured)
-        self._early.poll(now)
-        self.news.look(self.pilot.status)
+    @property
+    def _missing(self) -> str:
+        if self._state in DRIVABLE:
+            return self._match.reason or 'its pose is not known yet'
+        return REMEDIES.get(self._state, 'enable it first')
 
-    def note_joints(self, joints: Array | None) -> None:
-        """Where the joints (n,) are; None, not known of all of them, changes nothing."""
-        if joints is not None:
-            self.pilot.note_joints(joints)
+    @property
+    def is_driving(self) -> bool:
+        """Whether setpoints go out."""
+        return self._executor is not None
 
-    def note_pose(self, T_base_platform: Pose, now: float) -> None:
-        """Where the platform is."""
-        self.pilot.note_pose(T_base_platform)
-        self._pose_at = now
+    @property
+    def is_measured(self) -> bool:
+        """Whether poses come from measured joints, not from commanded ones."""
+        return self._is_measured
 
-    # What is asked for
+    def note_machine_state(self, state: str, is_followed: bool, is_measured: bool = False) -> None:
+        """The reported machine state; whether the board follows setpoints, and measures."""
+        self._is_measured = is_measured
+        is_lost = state not in DRIVABLE or (state == MachineState.HOLDING and state != self._state)
+        is_new = state in DRIVABLE and self._state not in DRIVABLE
+        was_followed, self._state, self._is_followed = self._is_followed, state, is_followed
+        if is_lost:
+            self._clear_mismatch()
+            self.release(f'the machine is {state}')
+        elif self._executor is None and is_new:
+            self.status = DISABLED
+        elif self._executor is not None and is_followed and not was_followed:
+            self.status = self._executor.status
 
-    def pursue(self, goal: Goal, refuse: Refuse, now: float, is_of_platform: bool = True) -> None:
-        """A goal: the platform's pose in the base frame, or the pivot's in the work frame."""
-        self._check_order(goal.stamp, now)
-        self._pursue(goal, refuse, now, is_of_platform)
+    def note_joints(self, joints: Array) -> None:
+        """The reported joints (n,): they select the branch at takeover, and must follow."""
+        self._joints = joints
+        if self._following_error is None:
+            return
+        self._following_error.measure(joints)
+        if self._is_measured:
+            self._loop = self._loop or ClosedLoop(
+                self._dead_band, self._tolerances, self._delay, self._dt
+            )
+            self._loop.measure(joints)
 
-    def follow(self, path: PathGoal, refuse: Refuse, now: float) -> None:
-        """A path: it is worked out, then driven like a goal, unless a newer command comes."""
-        self._check_order(path.stamp, now)
-        self._early.take(lambda: self._paths.begin(path), refuse, now)
+    def note_pose(self, T_base_platform: Pose) -> None:
+        """The reported pose: a machine that can be driven is taken over there."""
+        self._pose = T_base_platform
+        if self._executor is not None:
+            if self._is_measured:
+                self._executor.note_measured(self.machine.frames.pivot(T_base_platform))
+            return
+        if self._joints is None or self._state not in DRIVABLE:
+            return
+        if self._match.fits(T_base_platform, self._joints):
+            self._take_over(T_base_platform, self._joints)
+        elif self._match.reason:
+            stamp, reason = self.status.goal_stamp, self._match.reason
+            self.status = MotionStatus(MotionMode.DISABLED, MotionResult.IDLE, stamp, reason)
 
-    def home(self, stamp: float, now: float) -> None:
-        """A goal at home, along a line or else by a joint move."""
-        kinematics = self.pilot.machine.kinematics
-        self._go(kinematics.home, kinematics.inverse(kinematics.home), stamp, now)
+    def note_silence(self, seconds: float) -> None:
+        """Seconds without a pose: first the plan brakes on its path, later it is dropped."""
+        if seconds > POSE_DEADLINE:
+            self.release(f'no pose received for {POSE_DEADLINE:g} s')
+        elif self._executor is not None:
+            self._executor.blind(seconds > POSE_PAUSE)
 
-    def park(self, stamp: float, now: float) -> None:
-        """As `home`, to where the servos are switched on and off."""
-        machine = self.pilot.machine
-        if machine.park is None:
-            raise Refused('the machine file has no usable park position (section servos)')
-        try:
-            pose = machine.kinematics.forward(machine.park).pose
-        except NoSolution as error:
-            raise Refused(f'the park position is no pose that can be trusted: {error}') from error
-        self._go(pose, machine.park, stamp, now)
+    def note_bridge_silence(self, seconds: float) -> None:
+        """Seconds without a machine state: that of a dead bridge must not be used."""
+        if seconds > STATE_DEADLINE and self._state:
+            self._state, self._is_followed = '', False
+            self._clear_mismatch()
+            self.release(f'machine_state timed out ({STATE_DEADLINE:g} s)')
 
-    def stop(self) -> None:
-        """Brakes along the way, then holds; whoever jogs is not heard until he lets go."""
-        self._early.drop(STOPPED)
-        self.pilot.player.stop()
-        self.teleop.stop()
+    def note_stall(self, seconds: float) -> None:
+        """Seconds for which the caller stalled: by then the board holds, and goals are stale."""
+        if seconds > POSE_DEADLINE:
+            self.release(f'the control loop stalled for {seconds:.1f} s')
 
-    def start_cycle(self, made: Callable[[Pose], Cycle], stamp: float) -> None:
-        """The cycle that is made about the present pose; `cycle_answer` says what comes of it."""
-        player = self.pilot.player
-        player.start_cycle(made(player.state.pose), stamp)
+    def release(self, reason: str) -> None:
+        """Releases the machine: no setpoints until its pose is known again."""
+        if self._executor is not None:
+            stamp = self._executor.newest_stamp
+            self._executor.close()
+            self._executor = self._following_error = self._loop = None
+            self.status = MotionStatus(MotionMode.DISABLED, MotionResult.STOPPED, stamp, reason)
 
-    def cycle_answer(self, stamp: float) -> Answer | None:
-        """Whether the cycle of that stamp has begun, or why not; None while it is on its way."""
-        status = self.pilot.status
-        if status.goal_stamp == stamp and status.result == 'moving':
-            return Answer(True, 'cycling until stopped')
-        if status.goal_stamp == stamp and status.result in ('refused', 'stopped'):
-            return Answer(False, status.reason or status.result)
-        if self._is_newest(stamp):
+    def override(self, rate: float) -> None:
+        """Scales all motion, now and later; Refused outside [0, 1]."""
+        if not 0.0 <= rate <= 1.0:
+            raise Refused(f'speed override {rate:g} outside [0, 1]')
+        self._override = rate
+        if self._executor is not None:
+            self._executor.override(rate)
+
+    def pause(self, is_paused: bool) -> None:
+        """Pauses all motion, or continues it; Refused while the machine cannot be driven.
+
+        A machine that is lost while paused is paused when it is taken over again.
+        """
+        self.executor.pause(is_paused)
+        self._is_paused = is_paused
+
+    def set_pivot(self, point: Sequence[float]) -> None:
+        """Another pivot (platform frame, m), used once the machine is at rest."""
+        self._next_frames = self.machine.frames.with_pivot(point)
+
+    def step(self) -> Pose | None:
+        """Advances by one tick: the pose to command, None while not driving."""
+        if self._next_frames is not None and self._is_settled:
+            self._take_frames(self._next_frames)
+        if self._following_error is not None and self._following_error.violation:
+            self.release(self._following_error.violation)
+        if self._executor is None or self._following_error is None:
             return None
-        return Answer(False, 'a newer command came before it began')
+        executor, pose = self._executor, self._executor.step()
+        self._following_error.command(executor.joints)
+        deviation = ''
+        if self._is_followed:
+            deviation = self._deviation(executor, self._following_error)
+            self.status = self._arrival.judged(executor.status, deviation) or self.status
+        if self._loop is not None:
+            self._loop.prepare(executor, not deviation)
+            pose = self._loop.step(self.machine, executor, pose, self._is_correcting(executor))
+        return self.machine.frames.platform(pose)
 
-    def refuse(self, stamp: float, error: ManipulatorError) -> None:
-        """Makes it news that the goal or path of that stamp came to nothing."""
-        self.news.add(MotionStatus(self.pilot.status.mode, 'refused', stamp, str(error)))
+    def _is_correcting(self, executor: Executor) -> bool:
+        """Whether a plan is executed, or its end not yet reached, by measured joints."""
+        is_over = executor.is_at_rest and self._arrival.has_judged(executor.status)
+        return self._is_measured and executor.is_executing and not is_over
 
-    # The tick
+    @property
+    def _is_settled(self) -> bool:
+        """Whether nothing moves, and the result of the last goal has been reported."""
+        if self._executor is None:
+            return True
+        status = self._executor.status
+        is_awaited = self._is_followed and status.result == MotionResult.REACHED
+        return self._executor.is_at_rest and (self._arrival.has_judged(status) or not is_awaited)
 
-    def begin_tick(self, now: float) -> None:
-        """Advances by one tick; take the setpoint's stamp before `end_tick`."""
-        since_last, self._tick_at = self.jitter.tick(now), now
-        # What the bridge said while this process stood still is not heard yet.
-        self._state_at += max(since_last - self._dt, 0.0)
-        self.pilot.note_stall(since_last)
-        self.pilot.note_silence(now - self._pose_at)
-        self.pilot.note_bridge_silence(now - self._state_at)
-        self.teleop.drive(now)
-        self._paths.step()
-        self._early.poll(now)
-        self._pose = self.pilot.step()
+    def _deviation(self, executor: Executor, following: FollowingError) -> str:
+        """How far the machine is from the commanded pose, in words; '' within tolerance."""
+        joint = following.deviation(self._is_measured)
+        if not self._is_measured or self._pose is None:
+            return joint
+        gap = executor.state.pose.twist_to(self.machine.frames.pivot(self._pose))
+        if joint:
+            return f'{joint}: {missed(gap)}'
+        is_closest = following.is_within(self._dead_band)
+        return '' if is_closest else self._tolerances.violation(gap)
 
-    def end_tick(self, now: float) -> Pose | None:
-        """The setpoint, None while nobody drives or where the tick took too long.
+    def _take_over(self, T_base_platform: Pose, near: Array) -> None:
+        self._clear_mismatch()
+        pose = self.machine.frames.pivot(T_base_platform)
+        joints = self.machine.kinematics.inverse(pose, near)
+        if self._executor is not None:
+            self._executor.close()
+        executor = self._executor = Executor(self.machine, pose, joints, self._dt, self._worker)
+        executor.override(self._override)
+        executor.pause(self._is_paused)
+        if self.status.result in RESULTS:
+            executor.status = replace(self.status, mode=executor.status.mode)
+        kinematics = self.machine.kinematics
+        self._following_error = FollowingError(
+            kinematics.joint_names, kinematics.joint_unit, self._tolerances, self._dt
+        )
+        self._arrival = Arrival(self._dt, self._delay)
+        self.status = executor.status if self._is_followed else CONNECTING
 
-        Frozen before its stamp was taken, it is late; frozen from then on, its stamp tells.
-        """
-        self.pilot.note_stall(now - self._tick_at)
-        self.news.look(self.pilot.status)
-        return self._pose if self.pilot.is_driving else None
+    def _clear_mismatch(self) -> None:
+        if self._match.reason:
+            self.status = DISABLED
+        self._match.clear()
 
-    def close(self) -> None:
-        """Gives up the path that is being worked out."""
-        self._paths.cancel()
-
-    def _go(self, pose: Pose, joints: Array, stamp: float, now: float) -> None:
-        """To joints (n,) at a pose of the pivot in the work frame."""
-        goal = Goal(pose, stamp, motion=Motion.ANY, joints=joints)
-        self._pursue(goal, lambda error: self.refuse(stamp, error), now, is_of_platform=False)
-
-    def _pursue(self, goal: Goal, refuse: Refuse, now: float, is_of_platform: bool) -> None:
-        def act() -> None:
-            frames = self.pilot.machine.frames
-            pose = frames.pivot(goal.pose) if is_of_platform else goal.pose
-            self.pilot.player.pursue(replace(goal, pose=pose))
-
-        self._early.take(act, refuse, now)
-
-    def _check_order(self, stamp: float, now: float) -> None:
-        """Refused for a goal or a path that one published later has overtaken on its topic.
-
-        Stamps that are farther apart, or come so, may be those of two clocks.
-        """
-        newest, received = self._newest
-        ahead = newest - stamp
-        if stamp and 0.0 < ahead < OVERTAKING and now - received < OVERTAKING:
-            raise Refused(f'stamped {ahead:.3f} s before the last goal or path: ignored')
-        if stamp:
-            self._newest = stamp, now
-
-    def _is_newest(self, stamp: float) -> bool:
-        try:
-            return self.pilot.player.newest_stamp == stamp
-        except Refused:
-            return False
+    def _take_frames(self, frames: Frames) -> None:
+        old, self.machine = self.machine, in_frames(self._bare, frames)
+        self._next_frames = None
+        before = self._executor
+        if before is not None:
+            pose = old.frames.platform(before.state.pose)
+            self._take_over(pose, before.joints)

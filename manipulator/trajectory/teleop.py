@@ -1,4 +1,4 @@
-"""From the sources of twists to the player: who has the machine, in which mode, what he wants."""
+"""From the sources of twists to the executor: the owner, its jog mode and its jog commands."""
 
 from typing import NoReturn
 
@@ -6,55 +6,56 @@ import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.errors import Refused
+from manipulator.frames import Frames
 from manipulator.teleop.arbiter import Arbiter
 from manipulator.teleop.jog_modes import Feedback, JogMode
 from manipulator.teleop.jogger import check_axes
 from manipulator.teleop.modes import check_name, jog_mode
-from manipulator.trajectory.jogging import Wish
-from manipulator.trajectory.pilot import Pilot
+from manipulator.trajectory.jogging import JogCommand
+from manipulator.trajectory.supervisor import MotionSupervisor
 
 PLAIN = 'free'
 
 
 class Teleop:
-    """Hears twists and modes; `drive` hands what counts to the player, once a tick.
+    """Receives twists and jog modes; `drive` passes the jog command to the executor, once a tick.
 
     Times are monotonic, in seconds.
     """
 
-    def __init__(self, pilot: Pilot, delay: float) -> None:
+    def __init__(self, supervisor: MotionSupervisor, delay: float) -> None:
         """delay: how old a measured pose is by the time that its correction moves the joints."""
-        self._pilot = pilot
+        self._supervisor = supervisor
         self._delay = delay
         self._arbiter = Arbiter()
-        self._wish: tuple[Array, str] = (np.zeros(6), '')
+        self._twist: tuple[Array, str] = (np.zeros(6), '')
         self._name = PLAIN
         self._point: Array | None = None
-        self._is_measured = pilot.is_measured
+        self._is_measured = supervisor.is_measured
         self._made_name, self._mode = PLAIN, self._made(PLAIN)
 
     @property
     def mode(self) -> str:
-        """The name of the jog mode that was asked for last."""
+        """The name of the jog mode that was requested last."""
         return self._name
 
     def owner(self, now: float) -> str:
-        """The source that has the machine, '' where nobody has."""
+        """The source that controls the machine, '' where none does."""
         return self._arbiter.owner(now)
 
-    def hear(self, source: str, twist: Array, frame: str, now: float) -> None:
-        """A twist (6,) of the pivot in the axes of `frame`; Refused says why it does not count."""
+    def receive(self, source: str, twist: Array, frame: str, now: float) -> None:
+        """A twist (6,) of the pivot in the axes of `frame`; Refused with the reason."""
         check_axes(frame)
         try:
-            is_busy = self._pilot.player.is_busy
+            is_busy = self._supervisor.executor.is_busy
         except Refused as refusal:
-            self._arbiter.turn_away(source, now, str(refusal))
-        self._arbiter.hear(source, now, is_busy)
-        self._wish = frozen(twist), frame
+            self._arbiter.reject(source, now, str(refusal))
+        self._arbiter.receive(source, now, is_busy)
+        self._twist = frozen(twist), frame
 
-    def turn_away(self, source: str, now: float, reason: str) -> NoReturn:
-        """Raises Refused with the reason; the source must let go before it is heard again."""
-        self._arbiter.turn_away(source, now, reason)
+    def reject(self, source: str, now: float, reason: str) -> NoReturn:
+        """Raises Refused with the reason; the source must release before it is accepted again."""
+        self._arbiter.reject(source, now, reason)
 
     def set_mode(self, name: str) -> None:
         """Another jog mode; Refused for unknown names, the last one stays.
@@ -67,30 +68,37 @@ class Teleop:
 
     def look_at(self, point: Array, is_in_work: bool = False) -> None:
         """The point (3,) of the mode look_at, in the base frame or the work frame."""
-        to_work = self._pilot.machine.frames.T_base_work.inverse()
+        to_work = self._supervisor.machine.frames.T_base_work.inverse()
         self._point = frozen(point if is_in_work else to_work.transform(point[None])[0])
         self._take(self._name)
 
+    def point_in(self, frames: Frames, is_in_work: bool) -> Array | None:
+        """The point (3,) of look_at, in the work frame or the base frame; None until it is set."""
+        if self._point is None or is_in_work:
+            return self._point
+        point: Array = frames.T_base_work.transform(self._point[None])[0]
+        return point
+
     def stop(self) -> None:
-        """Whoever has the machine is not heard until he has let go."""
+        """The owning source is rejected until it releases."""
         self._arbiter.stop()
 
     def drive(self, now: float) -> None:
-        """Hands on what the source that has the machine wants."""
+        """Passes on the jog command of the owning source."""
         try:
-            player = self._pilot.player
+            executor = self._supervisor.executor
         except Refused:
             self._arbiter.stop()
             return
         source = self._arbiter.owner(now)
         if not source:
-            player.jog(None)
+            executor.jog(None)
             return
-        if self._pilot.is_measured != self._is_measured:
-            self._is_measured = self._pilot.is_measured
+        if self._supervisor.is_measured != self._is_measured:
+            self._is_measured = self._supervisor.is_measured
             self._take(self._made_name)
-        twist, frame = self._wish
-        player.jog(Wish(source, twist, frame, self._mode))
+        twist, frame = self._twist
+        executor.jog(JogCommand(source, twist, frame, self._mode))
 
     def _take(self, name: str) -> None:
         self._mode = self._made(name)

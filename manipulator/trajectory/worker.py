@@ -1,4 +1,4 @@
-"""Working plans out beside the control loop: one job at a time, bounded, and given up on request.
+"""Planning beside the control loop: one job at a time, bounded, and cancelled on request.
 
 A plan costs milliseconds where the inverse kinematics has a closed form, tenths of a second where
 it has none; a tick has ten milliseconds. So the executor submits a task, looks at each tick
@@ -18,7 +18,7 @@ MOST_POSES = 300_000
 
 
 class Cancelled(ManipulatorError):
-    """A newer command came: nobody waits for this plan any more."""
+    """A newer command came: this plan is not needed any more."""
 
 
 class TooLong(ManipulatorError, ValueError):
@@ -42,10 +42,10 @@ class Effort:
         """Call before solving `poses`: TooLong above the limit, Cancelled after `cancel`."""
         self.poses += poses
         if self._is_cancelled():
-            raise Cancelled('a newer command came while it was planned')
+            raise Cancelled('replaced by a newer command while it was planned')
         if self.poses > self._most:
             raise TooLong(
-                f'planning takes more than {self._most} poses: ask for a shorter or quicker motion'
+                f'planning needs more than {self._most} poses: command a shorter or quicker motion'
             )
 
 
@@ -53,7 +53,7 @@ Task = Callable[[Effort], T]
 
 
 class Job(Generic[T]):
-    """A task that is being worked out."""
+    """A task that is running."""
 
     def __init__(self, future: 'Future[T]', give_up: Callable[[], object]) -> None:
         """give_up: has the task's effort end it."""
@@ -74,17 +74,17 @@ class Job(Generic[T]):
         return self._future.exception(timeout=0)
 
     def cancel(self) -> None:
-        """Nobody wants the result any more: the task ends at its next `spend`."""
+        """The result is not needed any more: the task ends at its next `spend`."""
         self._give_up()
         self._future.cancel()
 
 
 class Worker(Protocol):
-    """Where tasks are worked out."""
+    """Where tasks run."""
 
     @property
     def is_beside(self) -> bool:
-        """Whether a task is worked out beside its submitter, and done later."""
+        """Whether a task runs beside its submitter, and is done later."""
         ...
 
     def submit(self, task: Task[T]) -> Job[T]:
@@ -93,7 +93,7 @@ class Worker(Protocol):
 
 
 class InPlace:
-    """Works each task out at once, in the caller's thread: where there is no control loop."""
+    """Runs each task at once, in the caller's thread: where there is no control loop."""
 
     is_beside = False
 

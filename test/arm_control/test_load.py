@@ -5,8 +5,8 @@ import pytest
 
 from arm_control.closed_forms import ParallelAxes, SphericalWrist
 from arm_control.geometry import ArmLimits
-from arm_control.inverse_method import Numerical
 from arm_control.load import arm, jogging, serial_arm
+from arm_control.numerical import Numerical
 from bridge.servo_config import BoardConfig
 from manipulator.config import build
 from manipulator.errors import ConfigError

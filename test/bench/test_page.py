@@ -30,7 +30,7 @@ def test_a_table_without_rows_is_a_table_still():
     assert '0 figures' in table({}, (Section('empty', 'Nothing', (), 0),))
 
 
-def test_the_computer_is_told_with_processor_load_and_versions():
-    told = this_computer()
-    assert {'date', 'commit', 'processor', 'Python, numpy'} <= set(told)
-    assert all(told.values())
+def test_the_computer_is_reported_with_processor_load_and_versions():
+    reported = this_computer()
+    assert {'date', 'commit', 'processor', 'Python, numpy'} <= set(reported)
+    assert all(reported.values())

@@ -44,7 +44,7 @@ def test_a_section_holds_the_rows_under_the_modules_first_line(room):
     assert found.rows == (Row('speed', '1 m/s'),)
 
 
-def test_a_missing_library_is_told_with_the_way_out_and_misses_no_goal(room):
+def test_a_missing_library_is_reported_with_its_remedy_and_misses_no_goal(room):
     write(room, 'made_up_peer', f'import no_such_library\n{GOOD}')
     (row,) = section.measured('made_up_peer').rows
     assert row.name == 'no_such_library is not installed'
@@ -59,7 +59,7 @@ def test_a_module_that_fails_is_missed_and_ends_nothing(room):
     assert not row.reached
 
 
-def test_a_run_prints_the_table_writes_the_page_and_tells_of_missed_goals(room, capsys):
+def test_a_run_prints_the_table_writes_the_page_and_reports_missed_goals(room, capsys):
     write(room, 'made_up_good', GOOD)
     write(room, 'made_up_bad', "def rows():\n    raise ValueError('leg 3 fell off')")
     page = room / 'page.md'

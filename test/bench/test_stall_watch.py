@@ -6,7 +6,7 @@ import time
 from bench.stall_watch import StallWatch
 
 
-def test_a_core_that_was_away_is_told_and_only_since_then():
+def test_a_core_that_was_away_is_reported_and_only_since_then():
     with StallWatch() as watch:
         time.sleep(1.0)  # it starts
         watch.process.send_signal(signal.SIGSTOP)
@@ -20,5 +20,5 @@ def test_a_core_that_was_away_is_told_and_only_since_then():
         assert watch.longest(since=time.monotonic()) == 0.0
 
 
-def test_a_computer_that_went_on_has_nothing_to_tell():
+def test_a_computer_that_went_on_has_nothing_to_report():
     assert StallWatch().summary == 'less than 0.1 s'

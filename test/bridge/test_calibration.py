@@ -133,7 +133,7 @@ def test_a_park_pose_out_of_reach_is_a_config_error():
         ([servo(centre_us=3000.0)], {}, r'centre_us: 3000 outside \[500, 2500\]'),
         ([servo(us_per_deg=None)], {}, 'needs centre_deg and us_per_deg'),
         ([servo(centre_mm=1.0, us_per_mm=1.0)], {}, 'needs centre_deg and us_per_deg'),
-        ([servo('a'), servo('a', 1)], {}, 'names stand twice'),
+        ([servo('a'), servo('a', 1)], {}, 'duplicate names'),
         ([servo('a'), servo('b', 2)], {}, r'channels \[0, 2\] are not 0 to 1'),
         ([servo()], {'park_deg': [0.0, 0.0]}, 'park_deg: 2 values for 1 joint$'),
         ([servo()], {'park_deg': None}, 'park_deg: missing'),
@@ -143,7 +143,7 @@ def test_a_park_pose_out_of_reach_is_a_config_error():
         ([], {}, '0 joints, 1 to 8 fit'),
     ],
 )
-def test_what_is_wrong_with_the_servos_is_said(joints, changes, problem):
+def test_what_is_wrong_with_the_servos_is_reported(joints, changes, problem):
     with pytest.raises(ConfigError, match=problem):
         servos(*joints, **changes)
 

@@ -64,7 +64,7 @@ class Rig:
         self.run(0.3)
         assert self.answered(self.driver.enable(True))[0]
         self.run(1.0)
-        assert self.state.status.word == 'enabled'
+        assert self.state.status.state == 'enabled'
 
     def command(self, positions, names=None):
         stamp = EPOCH + self.now
@@ -102,7 +102,7 @@ def test_a_machine_that_was_stopped_is_followed_again_with_the_next_frame(enable
     enabled.command(enabled.park)
     enabled.answered(enabled.driver.stop())
     enabled.answered(enabled.driver.clear_fault())
-    assert (enabled.state.status.word, enabled.state.is_followed) == ('enabled', False)
+    assert (enabled.state.status.state, enabled.state.is_followed) == ('enabled', False)
     enabled.command(enabled.park)
     assert enabled.state.is_followed
 
@@ -116,23 +116,23 @@ def test_a_jump_is_refused_and_nothing_is_sent(enabled, turn):
     assert len(enabled.sent(Setpoint)) == 1
 
 
-def test_what_is_not_enabled_says_why_it_takes_no_command(rig):
+def test_what_is_not_enabled_reports_why_it_takes_no_command(rig):
     rig.run(0.3)
     with pytest.raises(Refused, match=r'^disarmed$'):
         rig.command(rig.park)
     rig.enable()
     rig.command(rig.park)
     rig.run(0.3)
-    assert rig.state.status.word == 'holding'
+    assert rig.state.status.state == 'holding'
     rig.driver.stop()
     rig.run(0.1)
     with pytest.raises(Refused, match=r'^stopped \(until ~/clear_fault is called\)$'):
         rig.command(rig.park)
 
 
-def test_a_command_while_a_stop_is_under_way_says_so(enabled):
-    enabled.driver.session.is_stop_wanted = True
-    with pytest.raises(Refused, match=r'^a STOP is under way$'):
+def test_a_command_while_a_stop_is_in_progress_reports_that(enabled):
+    enabled.driver.session.is_stop_requested = True
+    with pytest.raises(Refused, match=r'^a STOP is in progress$'):
         enabled.command(enabled.park)
 
 
@@ -159,7 +159,7 @@ def test_after_an_answer_the_next_command_must_start_where_the_joints_are(enable
         rig.driver.clear_fault()
     while not rig.driver.session.accepts_setpoints:
         rig.run(STEP)
-    with pytest.raises(Refused, match='where the joint is'):
+    with pytest.raises(Refused, match='the reported position'):
         rig.command(far)
 
 
@@ -196,11 +196,11 @@ def test_what_is_so_already_is_not_asked_of_a_machine_that_may_be_moving(enabled
     assert enabled.sent(Arm | Clear) == []
 
 
-def test_a_refusal_is_told_with_what_is_wrong_with_the_board(rig):
-    rig.driver.link.lost('/dev/ttyACM0 has vanished', rig.now)
+def test_a_refusal_is_reported_with_what_is_wrong_with_the_board(rig):
+    rig.driver.link.lost('/dev/ttyACM0 was disconnected', rig.now)
     asked = rig.driver.enable(True)
     rig.run(STEP)
-    reason = 'no board to talk to: no port: /dev/ttyACM0 has vanished'
+    reason = 'no board is connected: no port: /dev/ttyACM0 was disconnected'
     assert rig.driver.answer(asked) == (False, reason)
 
 
@@ -242,7 +242,7 @@ def test_a_gripper_stays_until_it_is_asked_and_forgets_that_with_the_enable():
     assert rig.sent(Setpoint)[-1].counts == at_park
 
 
-def test_a_machine_without_a_gripper_says_so(enabled):
+def test_a_machine_without_a_gripper_reports_that(enabled):
     with pytest.raises(InvalidInput, match='no gripper'):
         enabled.driver.aim_gripper(0.5)
 
@@ -261,5 +261,5 @@ def test_what_goes_wrong_is_announced_in_words(enabled):
     enabled.driver.enable(False)
     enabled.run(0.6)
     assert enabled.troubles[0] == 'DISARM: no answer from the board after 4 tries'
-    assert 'silent' in enabled.troubles[1]
-    assert enabled.state.status.word == 'disconnected'
+    assert 'no frame' in enabled.troubles[1]
+    assert enabled.state.status.state == 'disconnected'

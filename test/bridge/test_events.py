@@ -6,7 +6,7 @@ from bridge.events import Disconnected, StateReceived, without_passed_states
 from bridge.protocol import Mode
 
 
-def told(*modes):
+def reported(*modes):
     """STATEs of these modes, numbered; None is an event of another kind."""
     return [
         Disconnected('why')
@@ -27,6 +27,6 @@ def told(*modes):
         ((Mode.ARMED, None, Mode.ARMED), [0, 1, 2]),
     ],
 )
-def test_the_last_state_of_each_mode_is_told_in_order(modes, kept):
-    events = told(*modes)
+def test_the_last_state_of_each_mode_is_reported_in_order(modes, kept):
+    events = reported(*modes)
     assert without_passed_states(events) == [events[i] for i in kept]

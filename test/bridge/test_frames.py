@@ -139,7 +139,9 @@ def framed(code, payload=b''):
         (0x83, b'\1\0\x63', True),  # unknown result
     ],
 )
-def test_whole_frames_that_mean_nothing_are_told_from_damaged_ones(code, payload, is_known):
+def test_whole_frames_that_mean_nothing_are_distinguished_from_damaged_ones(
+    code, payload, is_known
+):
     with pytest.raises(Unreadable) as caught:
         decode(framed(code, payload))
     assert caught.value.type_code == code

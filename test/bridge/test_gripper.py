@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from bridge.calibration import Calibration
-from bridge.command_gate import CommandGate
+from bridge.command_validator import CommandValidator
 from bridge.gripper import Gripper
 from bridge.servo_config import BoardConfig
 from hexarm.machines import read
@@ -56,11 +56,11 @@ def test_it_does_not_move_after_a_restart_until_it_is_asked_again(gripper):
     assert gripper.step(3 * PERIOD, -0.2) == -0.2
 
 
-def test_a_command_without_it_becomes_one_that_the_gate_admits(gripper):
+def test_a_command_without_it_becomes_one_that_the_validator_admits(gripper):
     present = CALIBRATION.park
     names, positions = gripper.joined((CALIBRATION.names[:6], present[:6]), 0.0, present)
     assert tuple(names) == CALIBRATION.names
-    setpoint = CommandGate(CALIBRATION, 0.2).admit(names, positions, None, 0.0, present)
+    setpoint = CommandValidator(CALIBRATION, 0.2).admit(names, positions, None, 0.0, present)
     assert setpoint.counts == CALIBRATION.counts(present)
 
 

@@ -38,7 +38,7 @@ class Rig:
         self.log.append(event)
 
     def pass_time(self, seconds):
-        """The board goes on, and nobody listens."""
+        """The board goes on, and no machine subscribes."""
         for _ in range(round(seconds / STEP)):
             self.now += STEP
             self.board.step(STEP)
@@ -86,7 +86,7 @@ def rig():
     return rig
 
 
-def test_the_newest_setpoint_is_written_and_its_ticket_told(rig):
+def test_the_newest_setpoint_is_written_and_its_ticket_reported(rig):
     for count in range(3000, 3100):
         rig.put(count)
     rig.turn()
@@ -152,7 +152,7 @@ def test_a_setpoint_waits_while_the_port_has_not_taken_the_last_one(rig):
 
 
 @pytest.mark.parametrize('command', [Stop(), Arm(PARK), Clear(), Disarm()])
-def test_a_frame_is_written_first_then_the_answer_told_then_the_future_done(rig, command):
+def test_a_frame_is_written_first_then_the_answer_reported_then_the_future_done(rig, command):
     asked = rig.link.request(command)
     asked.add_done_callback(lambda done: rig.log.append('answered'))
     rig.run(0.1)
@@ -182,7 +182,7 @@ def test_a_request_that_was_withdrawn_is_not_sent(rig):
     assert rig.logged(Disarm) == []
 
 
-def test_what_piled_up_while_nobody_listened_is_told_as_its_last(rig):
+def test_what_piled_up_while_nobody_listened_is_reported_as_its_last(rig):
     rig.put(3100)
     rig.turn()
     rig.log.clear()
@@ -204,7 +204,7 @@ def test_a_board_that_is_silent_is_lost(rig):
     for _ in range(12):
         rig.now += TICK
         rig.turn()
-    assert 'silent for 0.5 s' in rig.logged(Disconnected)[0].reason
+    assert 'no frame from the board for 0.5 s' in rig.logged(Disconnected)[0].reason
 
 
 def test_at_first_the_port_is_to_be_opened_and_nothing_is_read():
@@ -218,9 +218,9 @@ def test_a_lost_port_is_looked_for_again_and_its_board_comes_back_disarmed(rig):
     rig.put(3200)
     asked = rig.link.request(Disarm())
     rig.link.turn(b'', rig.now)
-    rig.link.lost('the port has vanished', rig.now)
-    assert str(asked.exception(0.0)) == 'the port has vanished'
-    assert rig.logged(Ticket, Disconnected) == [Disconnected('the port has vanished')]
+    rig.link.lost('the port was disconnected', rig.now)
+    assert str(asked.exception(0.0)) == 'the port was disconnected'
+    assert rig.logged(Ticket, Disconnected) == [Disconnected('the port was disconnected')]
     assert not rig.link.wants_port(rig.now)
     assert rig.link.rest(rig.now) == LOOK_AGAIN_AFTER
     rig.now += LOOK_AGAIN_AFTER
@@ -233,11 +233,11 @@ def test_a_lost_port_is_looked_for_again_and_its_board_comes_back_disarmed(rig):
     assert rig.board.pulses == (None,) * 6
 
 
-def test_without_a_port_requests_are_refused_and_a_stop_is_said_as_soon_as_there_is_one(rig):
-    rig.link.lost('the port has vanished', rig.now)
+def test_without_a_port_requests_are_refused_and_a_stop_is_sent_as_soon_as_there_is_one(rig):
+    rig.link.lost('the port was disconnected', rig.now)
     asked = rig.link.request(Stop())
     rig.run(0.1)
-    with pytest.raises(Refused, match='no board to talk to: no port'):
+    with pytest.raises(Refused, match='no board is connected: no port'):
         asked.result(0.0)
     assert rig.logged(Stop) == []
     rig.link.opened(rig.now)

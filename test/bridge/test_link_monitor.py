@@ -48,19 +48,19 @@ def monitor():
     return LinkMonitor(Session(6), Calibration.from_config(config.servos))
 
 
-def receive(monitor, heard, now=0.0):
+def receive(monitor, received, now=0.0):
     monitor.session.phase = Phase.READY
-    monitor.session.state = heard
-    monitor.note(StateReceived(heard), now)
+    monitor.session.state = received
+    monitor.note(StateReceived(received), now)
 
 
 def test_words_from_the_port_to_the_board(monitor):
-    assert monitor.status.word == 'disconnected'
+    assert monitor.status.state == 'disconnected'
     monitor.session.opened(0.0)
     monitor.note(Opened(), 0.0)
-    assert monitor.status.word == 'booting'
-    monitor.note(Disconnected('nobody said HELLO'), 5.0)
-    assert (monitor.status.word, monitor.status.reason) == ('disconnected', 'nobody said HELLO')
+    assert monitor.status.state == 'booting'
+    monitor.note(Disconnected('no HELLO came'), 5.0)
+    assert (monitor.status.state, monitor.status.reason) == ('disconnected', 'no HELLO came')
 
 
 @pytest.mark.parametrize(
@@ -78,14 +78,14 @@ def test_one_word_for_each_mode(monitor, mode, word):
     monitor.note(Connected(HELLO), 0.0)
     monitor.note(Acknowledged(Arm(PARK)), 0.0)
     receive(monitor, state(mode))
-    assert monitor.status.word == word
+    assert monitor.status.state == word
 
 
 @pytest.mark.parametrize('mode', [Mode.DISARMED, Mode.ARMING, Mode.ARMED, Mode.PLAYING])
-def test_there_is_nothing_to_clear_unless_a_stop_is_still_to_be_said(monitor, mode):
+def test_there_is_nothing_to_clear_unless_a_stop_is_still_to_be_sent(monitor, mode):
     receive(monitor, state(mode))
     assert monitor.is_clear
-    monitor.session.is_stop_wanted = True
+    monitor.session.is_stop_requested = True
     assert not monitor.is_clear
 
 
@@ -99,13 +99,13 @@ def test_a_stop_and_a_fault_are_to_be_cleared_and_an_absent_board_is_to_be_asked
 def test_a_board_that_somebody_else_armed_is_not_enabled(monitor):
     monitor.note(Connected(HELLO), 0.0)
     receive(monitor, state(Mode.ARMED))
-    assert monitor.status.word == 'unclaimed'
+    assert monitor.status.state == 'unclaimed'
     monitor.note(Acknowledged(Arm(PARK)), 0.0)
-    assert monitor.status.word == 'enabled'
+    assert monitor.status.state == 'enabled'
     monitor.note(Disconnected('gone'), 0.0)
     monitor.note(Connected(HELLO), 0.0)
     receive(monitor, state(Mode.ARMED))
-    assert monitor.status.word == 'unclaimed'
+    assert monitor.status.state == 'unclaimed'
 
 
 def test_the_fault_is_named(monitor):
@@ -113,7 +113,7 @@ def test_the_fault_is_named(monitor):
     assert monitor.status.reason == 'the battery is too low'
 
 
-def test_unknown_joints_are_told_from_known_ones(monitor):
+def test_unknown_joints_are_distinguished_from_known_ones(monitor):
     assert len(monitor.unknown_joints) == 6
     receive(monitor, state(Mode.ARMING, (3000, 3000, None, None, None, None)))
     assert monitor.joints.is_known == (True, True, False, False, False, False)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from bridge.events import StateReceived
 from bridge.fake.board import Board
-from bridge.fake.board_modes import BoardSettings
+from bridge.fake.board_settings import BoardSettings
 from bridge.framing import FrameReader
 from bridge.link import Link
 from bridge.link_thread import LinkThread, SerialPort
@@ -92,7 +92,7 @@ def test_noise_neither_arms_a_board_nor_makes_a_host_ready(noise):
 
 
 @pytest.mark.parametrize('noise', [b'\0', b'\x01\0', b'\xff', b'noise without end, '])
-def test_endless_noise_takes_little_of_the_processor_and_requests_are_heard(noise):
+def test_endless_noise_takes_little_of_the_processor_and_requests_are_received(noise):
     ours, theirs = pty.openpty()
     tty.setraw(theirs)
     name, seen = os.ttyname(theirs), []

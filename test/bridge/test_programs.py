@@ -39,7 +39,7 @@ def test_each_command_waits_for_the_answer_to_the_one_before():
     assert line.ends == ['']
 
 
-def test_a_refusal_ends_it_and_says_why():
+def test_a_refusal_ends_it_and_reports_why():
     line = Line()
     Upload(line.request, [Stop(), Disarm()], line.ends.append).begin()
     line.sent[0][1].set_exception(Refused('no board'))

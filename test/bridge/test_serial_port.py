@@ -44,7 +44,7 @@ def test_a_port_that_cannot_be_one_is_named(tmp_path, name, reason):
     assert '\n' not in str(caught.value)
 
 
-def test_a_forbidden_port_says_dialout(line, monkeypatch):
+def test_a_forbidden_port_reports_dialout(line, monkeypatch):
     real_open = os.open
 
     def forbid(path, *arguments, **options):
@@ -58,7 +58,7 @@ def test_a_forbidden_port_says_dialout(line, monkeypatch):
         SerialPort(str(line.path), 250_000)
 
 
-def test_a_second_host_is_told_that_the_port_is_in_use(line):
+def test_a_second_host_is_informed_that_the_port_is_in_use(line):
     first = SerialPort(str(line.path), 250_000)
     with pytest.raises(LinkError, match='in use by another program'):
         SerialPort(str(line.path), 250_000)
@@ -70,8 +70,8 @@ def test_a_port_that_vanishes_is_noticed_on_read_and_write(tmp_path):
     line = FakeLine(tmp_path / 'board')
     port = SerialPort(str(line.path), 250_000)
     line.close()
-    with pytest.raises(LinkError, match='has vanished'):
+    with pytest.raises(LinkError, match='was disconnected'):
         port.read()
-    with pytest.raises(LinkError, match='has vanished'):
+    with pytest.raises(LinkError, match='was disconnected'):
         port.write(b'x')
     port.close()

@@ -5,7 +5,6 @@ import dataclasses
 import numpy as np
 import pytest
 
-from bridge.calibration import Calibration
 from bridge.fake.board import Board
 from bridge.fake.board_settings import BoardSettings
 from bridge.frames import encode, table_crc
@@ -22,12 +21,9 @@ from bridge.protocol import (
     TableEnd,
     TableRow,
 )
-from bridge.servo_config import BoardConfig
 from firmware.simulator.board import SimulatedBoard
-from hexarm import machines
-from hexarm.board.solver import board_solver
+from hexarm.board.header import settings_of
 
-ROBOCAKE = BoardConfig.from_machine(machines.read('robocake'))
 RANGE = (1100, 4900)
 JOINTS = 6
 PARK = (3000, 2900, 3100, 3000, 2900, 3100)
@@ -37,7 +33,7 @@ SETTINGS = BoardSettings(
     arm_interval_us=150_000,
     minimum_battery_mv=6400,
     boot_us=300_000,
-    solve=board_solver(machines.load('robocake'), Calibration.from_config(ROBOCAKE.servos)),
+    hexapod=settings_of('robocake').hexapod,
 )
 
 
@@ -59,7 +55,7 @@ class BoardHost:
             steps -= 1
         return messages
 
-    def say(self, message, sequence=None):
+    def send(self, message, sequence=None):
         """Under the next sequence number, or a given one."""
         if sequence is None:
             sequence = self.sequence = (self.sequence + 1) & 0xFFFF
@@ -68,7 +64,7 @@ class BoardHost:
 
     def ask(self, message, sequence=None):
         """The result of a command."""
-        sequence = self.say(message, sequence)
+        sequence = self.send(message, sequence)
         (ack,) = [m for m in self.run(0.04) if isinstance(m, Ack)]
         assert ack.sequence == sequence
         return ack.result
@@ -115,7 +111,7 @@ class BoardHost:
         self.board.reset(cause)
 
 
-BOARDS = {'python': Board, 'chip': SimulatedBoard}
+BOARDS = {'computer': Board, 'chip': SimulatedBoard}
 
 
 @pytest.fixture

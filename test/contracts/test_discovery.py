@@ -1,5 +1,6 @@
-"""Processes announce themselves as often as the profile says, or as the user's own does."""
+"""How processes find each other: by sockets alone, announced every 0.2 s, or as the user says."""
 
+import json
 import os
 import subprocess
 import sys
@@ -10,30 +11,62 @@ import pytest
 import hexarm
 
 JOIN = 'import rclpy; rclpy.init(); rclpy.create_node("x").destroy_node(); rclpy.shutdown()'
-PROFILE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
+PROFILE, RANGE = 'FASTRTPS_DEFAULT_PROFILES_FILE', 'ROS_AUTOMATIC_DISCOVERY_RANGE'
+OTHERS = ('RMW_IMPLEMENTATION', 'ROS_STATIC_PEERS')
+FOLDER = Path(hexarm.__file__).parent
+EVERYWHERE, LOOPBACK = (str(FOLDER / f'{name}.xml') for name in ('fastdds', 'fastdds_loopback'))
+
+MAPPED = """
+import hexarm, json, rclpy
+rclpy.init()
+node = rclpy.create_node("x")
+mapped = [line.split()[-1] for line in open("/proc/self/maps")]
+print(json.dumps([name for name in mapped if "fastrtps" in name and "/shm/" in name]))
+"""
 
 
-def said_on_joining(profile):
-    """What Fast DDS says of a profile; it is silent where it understands all of it."""
-    command = [sys.executable, '-c', JOIN]
-    environment = os.environ | {PROFILE: str(profile)}
+def run(code, **variables):
+    """What a new Python prints, with only these of the variables that matter."""
+    neutral = {k: v for k, v in os.environ.items() if k not in (PROFILE, RANGE, *OTHERS)}
+    command = [sys.executable, '-c', code]
+    environment = neutral | variables
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     return done.stdout + done.stderr
 
 
-def test_the_profile_is_understood_and_what_is_wrong_in_one_would_be_said(tmp_path):
-    profile = Path(hexarm.__file__).with_name('fastdds.xml')
-    assert said_on_joining(profile) == ''
+@pytest.mark.parametrize('profile', [EVERYWHERE, LOOPBACK])
+def test_the_profile_is_understood_and_what_is_wrong_in_one_would_be_said(tmp_path, profile):
+    assert run(JOIN, **{PROFILE: profile}) == ''
     wrong = tmp_path / 'wrong.xml'
-    wrong.write_text(profile.read_text().replace('leaseAnnouncement', 'leaseAnouncement'))
-    assert 'leaseAnouncement' in said_on_joining(wrong)
+    wrong.write_text(Path(profile).read_text().replace('leaseAnnouncement', 'leaseAnouncement'))
+    assert 'leaseAnouncement' in run(JOIN, **{PROFILE: str(wrong)})
 
 
-@pytest.mark.parametrize('own', [None, '/somewhere/mine.xml'])
-def test_the_profile_is_used_unless_the_user_has_one(own):
-    environment = {k: v for k, v in os.environ.items() if k != PROFILE}
-    environment |= {} if own is None else {PROFILE: own}
-    command = [sys.executable, '-c', f'import hexarm, os; print(os.environ["{PROFILE}"])']
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    expected = own or str(Path(hexarm.__file__).with_name('fastdds.xml'))
-    assert done.stdout.strip() == expected
+def chosen(**variables):
+    code = f'import hexarm, os; print(os.environ["{PROFILE}"], os.environ.get("{RANGE}"))'
+    return tuple(run(code, **variables).split())
+
+
+@pytest.mark.parametrize(
+    ('variables', 'expected'),
+    [
+        ({}, (EVERYWHERE, 'None')),
+        ({RANGE: 'SUBNET'}, (EVERYWHERE, 'SUBNET')),
+        ({RANGE: 'LOCALHOST'}, (LOOPBACK, 'SUBNET')),
+        ({RANGE: 'SUBNET', PROFILE: LOOPBACK}, (LOOPBACK, 'SUBNET')),
+        ({RANGE: 'LOCALHOST', PROFILE: EVERYWHERE}, (LOOPBACK, 'SUBNET')),
+        ({RANGE: 'LOCALHOST', PROFILE: '/mine.xml'}, ('/mine.xml', 'LOCALHOST')),
+        ({PROFILE: '/mine.xml'}, ('/mine.xml', 'None')),
+        ({RANGE: 'LOCALHOST', 'ROS_STATIC_PEERS': '10.0.0.2'}, (EVERYWHERE, 'LOCALHOST')),
+        ({RANGE: 'LOCALHOST', 'RMW_IMPLEMENTATION': 'rmw_zenoh_cpp'}, (EVERYWHERE, 'LOCALHOST')),
+    ],
+)
+def test_the_range_localhost_becomes_the_loopback_profile_unless_the_user_has_another(
+    variables, expected
+):
+    assert chosen(**variables) == expected
+
+
+@pytest.mark.parametrize('reach', ['LOCALHOST', 'SUBNET'])
+def test_no_memory_is_shared_that_a_killed_process_could_leave_behind(reach):
+    assert json.loads(run(MAPPED, **{RANGE: reach})) == []

@@ -1,4 +1,4 @@
-"""machine.h: the machine file stays the one source."""
+"""parameters.h: the machine file stays the one source."""
 
 import dataclasses
 import re
@@ -16,7 +16,7 @@ from manipulator.errors import ConfigError
 
 
 def definitions(text):
-    return dict(re.findall(r'^#define (\w+) (.+)$', text, re.MULTILINE))
+    return dict(re.findall(r'^    \.(\w+) = (.+), \\$', text, re.MULTILINE))
 
 
 def test_every_number_comes_from_the_machine_file(capsys):
@@ -24,46 +24,47 @@ def test_every_number_comes_from_the_machine_file(capsys):
     found = definitions(capsys.readouterr().out)
     config = BoardConfig.from_machine(machines.read('robocake'))
     ranges = Calibration.from_config(config.servos).count_ranges
-    assert found['JOINT_COUNT'] == '6'
-    assert found['BAUD'] == '250000UL'
-    assert found['LOWEST_COUNTS'] == '{' + ', '.join(str(low) for low, _ in ranges) + '}'
-    assert found['HIGHEST_COUNTS'] == '{' + ', '.join(str(high) for _, high in ranges) + '}'
+    assert found['joint_count'] == '6'
+    assert found['baud'] == '250000'
+    unused = ', 0, 0}'
+    assert found['lowest_counts'] == '{' + ', '.join(str(low) for low, _ in ranges) + unused
+    assert found['highest_counts'] == '{' + ', '.join(str(high) for _, high in ranges) + unused
     # 600 °/s at 10.5 us a degree: 6300 us/s, so 252 half microseconds in a period of 20 ms.
-    steps = [float(n.rstrip('f')) for n in found['STEP_COUNTS'].strip('{}').split(', ')]
-    assert steps == pytest.approx([252.0] * 6, rel=1e-6)
-    assert (found['ARM_INTERVAL_MS'], found['MINIMUM_BATTERY_MV']) == ('150', '6400')
-    assert found['RELEASE_ON_LINK_LOSS'] == '0'
+    steps = [float(n.rstrip('f')) for n in found['step_counts'].strip('{}').split(', ')]
+    assert steps == pytest.approx([252.0] * 6 + [0.0] * 2, rel=1e-6)
+    assert (found['arm_interval_ms'], found['minimum_battery_mv']) == ('150', '6400')
+    assert found['releases_on_link_loss'] == 'false'
 
 
 def test_pulses_that_do_not_fit_a_period_are_refused():
     settings = BoardSettings(count_ranges=((1100, 36_001),), count_speeds=(100.0,))
     with pytest.raises(ConfigError, match=r'channel 0 reach 18000\.5 us'):
-        header(settings, 250_000, 'wide')
+        header(settings, 'wide')
 
 
 @pytest.mark.parametrize('baud', [57_600, 115_200, 250_000, 1_000_000, 2_000_000])
 def test_rates_that_the_chip_comes_near_to_are_taken(baud):
-    settings = BoardSettings(count_ranges=((1100, 4900),), count_speeds=(100.0,))
-    assert definitions(header(settings, baud, 'one'))['BAUD'] == f'{baud}UL'
+    settings = BoardSettings(((1100, 4900),), (100.0,), baud=baud)
+    assert definitions(header(settings, 'one'))['baud'] == str(baud)
 
 
 @pytest.mark.parametrize('baud', [230_400, 460_800, 1_500_000, 4_000_000])
 def test_a_rate_that_the_chip_cannot_make_is_refused(baud):
-    settings = BoardSettings(count_ranges=((1100, 4900),), count_speeds=(100.0,))
+    settings = BoardSettings(((1100, 4900),), (100.0,), baud=baud)
     with pytest.raises(ConfigError, match=f'link.baud: {baud} bit/s; the board makes'):
-        header(settings, baud, 'one')
+        header(settings, 'one')
 
 
 def test_a_battery_that_the_board_cannot_measure_is_refused():
     settings = BoardSettings(((1100, 4900),), (100.0,), minimum_battery_mv=11_100)
     with pytest.raises(ConfigError, match=r'minimum_battery_v: 11\.1 V, the board measures below'):
-        header(settings, 250_000, 'one')
+        header(settings, 'one')
 
 
 def test_release_on_link_loss_reaches_the_board():
     settings = BoardSettings(count_ranges=((1100, 4900),), count_speeds=(100.0,))
     released = dataclasses.replace(settings, on_link_loss='release')
-    assert definitions(header(released, 250_000, 'one'))['RELEASE_ON_LINK_LOSS'] == '1'
+    assert definitions(header(released, 'one'))['releases_on_link_loss'] == 'true'
 
 
 @pytest.mark.parametrize('machine', ['robocake', 'arm_6r'])

@@ -1,4 +1,4 @@
-"""kinematics.c on the host against the Python kinematics, over the whole workspace."""
+"""kinematics.c on this computer against the Python kinematics, over the whole workspace."""
 
 import ctypes
 
@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from bridge.calibration import Calibration
+from bridge.fake.program import program
 from bridge.servo_config import BoardConfig
 from hexapod_control.workspace import sample
 from hexarm import machines
-from hexarm.board import build as firmware_build
-from hexarm.board.header import header_of
+from hexarm.board.kinematics import crank_hexapod
 from manipulator import rotation
 from manipulator.pose import Pose
 
@@ -18,12 +18,33 @@ POSES = 2000
 FLOATS = ctypes.POINTER(ctypes.c_float)
 
 
+class Solver:
+    """The functions of kinematics.c, for RoboCake."""
+
+    def __init__(self):
+        config = BoardConfig.from_machine(machines.read('robocake'))
+        calibration = Calibration.from_config(config.servos)
+        self._hexapod = ctypes.byref(crank_hexapod(machines.load('robocake'), calibration))
+        self._library = program()
+
+    def kinematics_cranks(self, *arguments):
+        self._library.kinematics_cranks.restype = ctypes.c_bool
+        return self._library.kinematics_cranks(self._hexapod, *arguments)
+
+    def kinematics_is_within_limits(self, *arguments):
+        self._library.kinematics_is_within_limits.restype = ctypes.c_bool
+        return self._library.kinematics_is_within_limits(self._hexapod, *arguments)
+
+    def kinematics_counts(self, *arguments):
+        self._library.kinematics_counts(self._hexapod, *arguments)
+
+    def kinematics_rotation(self, *arguments):
+        self._library.kinematics_rotation(*arguments)
+
+
 @pytest.fixture(scope='module')
-def board(tools):
-    library = ctypes.CDLL(str(firmware_build.host_library(header_of('robocake'))))
-    library.kinematics_cranks.restype = ctypes.c_bool
-    library.kinematics_is_within_limits.restype = ctypes.c_bool
-    return library
+def board():
+    return Solver()
 
 
 @pytest.fixture(scope='module')

@@ -3,24 +3,18 @@
 import dataclasses
 import random
 
-from bridge.calibration import Calibration
 from bridge.protocol import Arm, CycleAxis, Mode, Play, Program, Setpoint
-from bridge.servo_config import BoardConfig
 from firmware.simulator.fuzz import mutants
 from firmware.simulator.host import SETTINGS, Host
-from hexarm import machines
 from hexarm.board import build as firmware_build
-from hexarm.board.header import header_of
-from hexarm.board.solver import board_solver
+from hexarm.board.header import header_of, settings_of
 
 RAM_START, RAM_END = 0x200, 0x21FF
 PAINT = 0xC5
 
 
 def test_the_stack_leaves_a_quarter_of_its_room_free(tools):
-    config = BoardConfig.from_machine(machines.read('robocake'))
-    solve = board_solver(machines.load('robocake'), Calibration.from_config(config.servos))
-    host = Host(dataclasses.replace(SETTINGS, solve=solve))
+    host = Host(dataclasses.replace(SETTINGS, hexapod=settings_of('robocake').hexapod))
     variables = firmware_build.sizes(firmware_build.firmware(header_of('robocake'))).ram
     bottom = RAM_START + variables + 16
     for address in range(bottom, RAM_END + 1):
@@ -29,10 +23,10 @@ def test_the_stack_leaves_a_quarter_of_its_room_free(tools):
     host.ask(Arm((3000,) * 6))
     host.run(0.3)
     rng = random.Random(2)
-    host.say(Setpoint(100, (4000,) * 6))
+    host.send(Setpoint(100, (4000,) * 6))
     host.board.feed(b''.join(mutants(rng, 200)) + b'\0')
     host.run(1.0)
-    host.say(Setpoint(100, (3000,) * 6))
+    host.send(Setpoint(100, (3000,) * 6))
     host.run(1.0)
     host.ask(CycleAxis(5, 0.05, 1000, 0.0))
     host.ask(Play(Program.CYCLE, True))

@@ -1,12 +1,11 @@
-"""resolved_rate.c on the host against the Python formulas of the same paper."""
+"""resolved_rate.c on this computer against the Python formulas of the same paper."""
 
 import ctypes
 
 import numpy as np
 import pytest
 
-from hexarm.board import build as firmware_build
-from hexarm.board.header import header_of
+from bridge.fake.program import program
 from hexarm.papers.paper_arm import PaperArm, projection_rates, projections
 
 ARM = PaperArm(0.3, 0.4, 0.35)
@@ -18,8 +17,8 @@ class Lengths(ctypes.Structure):
 
 
 @pytest.fixture(scope='module')
-def step(tools):
-    library = ctypes.CDLL(str(firmware_build.host_library(header_of('robocake'))))
+def step():
+    library = program()
     library.resolved_rate_step.restype = ctypes.c_bool
 
     def call(joints, velocity, dt):

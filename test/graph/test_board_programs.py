@@ -8,8 +8,7 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from hexarm.board import build as firmware_build
-from hexarm.graph import Executable, Graph
+from hexarm.graph import Executable, Graph, board_process
 from manipulator.errors import Refused
 from manipulator.nodes.qos import COMMAND, LATCHED
 from patient_user import PatientUser
@@ -60,8 +59,7 @@ def rig(request, tmp_path_factory):
     board = Executable('fake_hardware', {'machine': 'robocake', 'link': str(link)})
     if request.param == 'chip':
         request.getfixturevalue('chip_tools')
-        command = firmware_build.chip_process('robocake', link)
-        board = Executable('chip', command=command)
+        (board,) = board_process('robocake', 'simavr', link)
     parameters = {'machine': 'robocake', 'port': str(link), 'board_cycle.amplitude': AMPLITUDE}
     parameters['board_cycle.frequency'] = '[1.0,1.0,1.0,1.0,1.0,1.0]'
     bridge = Executable('serial_bridge', parameters, needs=link)
@@ -91,7 +89,7 @@ def test_a_table_and_a_cycle_are_played_and_end_enabled(enabled):
     enabled.wait_for_state('enabled')
 
 
-def test_refusals_say_why(enabled):
+def test_refusals_report_why(enabled):
     enabled.upload(swing(rows=600), 'the table has more rows than the board can hold')
     enabled.upload(JointTrajectory(joint_names=['elbow']), "joints are ['elbow'], needs")
     with pytest.raises(Refused, match='no such program'):

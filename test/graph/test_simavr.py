@@ -1,22 +1,32 @@
-"""`hexarm up hexapod --port simavr`: the whole graph against the firmware on a simulated chip."""
+"""`hexarm up` with a simulated board: the program here or on a simulated chip, servos or loads."""
 
 import signal
 
 import pytest
 
 pytestmark = [pytest.mark.graph, pytest.mark.usefixtures('chip_tools')]
+NODES = {'fake': 'hexarm.nodes fake_hardware', 'simavr': 'firmware.simulator.node'}
 
 
-def test_the_graph_enables_parks_and_leaves_no_chip_behind(hexarm, processes_left):
-    process = hexarm('up', 'hexapod', '--port', 'simavr')
-    said = ''
-    while 'is up on simavr and enabled' not in said:
+@pytest.mark.parametrize(
+    ('port', 'plant'), [('simavr', 'servo'), ('simavr', 'mujoco'), ('fake', 'mujoco')]
+)
+def test_the_graph_enables_parks_and_leaves_no_board_behind(hexarm, processes_left, port, plant):
+    process = hexarm('up', 'hexapod', '--port', port, '--plant', plant)
+    text = ''
+    while f'is up on {port} and enabled' not in text:
         line = process.stdout.readline()
-        assert line, said
-        said += line
-    (chip,) = [pid for pid, words in processes_left().items() if 'pty_chip' in words]
+        assert line, text
+        text += line
+    (board,) = [pid for pid, words in processes_left().items() if NODES[port] in words]
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()
     assert process.wait(60) == 0
     assert 'park' in rest
-    assert chip not in processes_left()
+    assert board not in processes_left()
+
+
+def test_a_device_has_no_plant_to_choose(hexarm):
+    process = hexarm('up', 'hexapod', '--port', '/dev/null', '--plant', 'mujoco')
+    assert process.wait(60) == 1
+    assert '--plant mujoco: for port fake or simavr; /dev/null moves' in process.stdout.read()

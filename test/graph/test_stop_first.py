@@ -13,11 +13,11 @@ from bridge.fake.board_thread import BoardThread, FakeMachine
 from bridge.protocol import CycleAxis, Play, Stop, TableRow
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.board.solver import board_solver
+from hexarm.board.kinematics import crank_hexapod
 from hexarm.graph import Executable, Graph
-from hexarm.tapped_line import Tap, TappedLine
 from manipulator.nodes.qos import EVERY_WORD, LATCHED
 from patient_user import PatientUser
+from tapped_line import Tap, TappedLine
 
 pytestmark = pytest.mark.graph
 
@@ -51,8 +51,8 @@ class User(PatientUser):
 
     def _is_heard(self):
         publishers = (self.stops, self.tables)
-        is_heard = all(publisher.get_subscription_count() == 1 for publisher in publishers)
-        return is_heard and self.plays.service_is_ready()
+        has_subscribers = all(publisher.get_subscription_count() == 1 for publisher in publishers)
+        return has_subscribers and self.plays.service_is_ready()
 
     def _hear(self, message):
         self.said.append(message.data)
@@ -73,8 +73,8 @@ def tap():
 def user(tap, tmp_path_factory):
     path = tmp_path_factory.mktemp('line') / 'board'
     config = BoardConfig.from_machine(machines.read('robocake'))
-    solve = board_solver(machines.load('robocake'), Calibration.from_config(config.servos))
-    machine = FakeMachine.from_config(config, boot_s=0.1, hysteresis=0.0, solve=solve)
+    hexapod = crank_hexapod(machines.load('robocake'), Calibration.from_config(config.servos))
+    machine = FakeMachine.from_config(config, boot_s=0.1, hysteresis=0.0, hexapod=hexapod)
     board = BoardThread(machine, BadLine(path, tap), lambda positions: None)
     board.start()
     parameters = {'machine': 'robocake', 'port': str(path)}
@@ -101,12 +101,12 @@ def test_a_stop_does_not_wait_for_a_program_on_a_dead_line(calm, tap):
     BadLine.is_bad = True
     began = time.monotonic()
     answer = calm.play_cycle()
-    calm.wait('the cycle', lambda: tap.heard(CycleAxis, began))
+    calm.wait('the cycle', lambda: tap.frames(CycleAxis, began))
     calm.stops.publish(Bool(data=True))
-    calm.wait('STOP', lambda: tap.heard(Stop, began))
+    calm.wait('STOP', lambda: tap.frames(Stop, began))
     BadLine.is_bad = False
-    stopped = tap.heard(Stop, began)[0][0]
-    assert not [m for t, m in tap.heard((CycleAxis, Play), stopped)]
+    stopped = tap.frames(Stop, began)[0][0]
+    assert not [m for t, m in tap.frames((CycleAxis, Play), stopped)]
     calm.wait('an answer', answer.done)
     assert not answer.result().success
     calm.wait_for_state('stopped')
@@ -122,7 +122,7 @@ def test_what_a_stop_interrupted_is_not_taken_up_again(calm, tap):
     stopped = time.monotonic()
     calm.trigger('serial_bridge/clear_fault')
     calm.spin(0.5)
-    assert not tap.heard((CycleAxis, Play), stopped)
+    assert not tap.frames((CycleAxis, Play), stopped)
 
 
 def test_a_false_right_behind_does_not_take_its_place(calm):
@@ -139,10 +139,10 @@ def test_a_program_does_not_spoil_an_upload(calm, tap):
         row.time_from_start.sec = k // 10
     began = time.monotonic()
     calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
-    calm.wait('rows', lambda: tap.heard(TableRow, began))
+    calm.wait('rows', lambda: tap.frames(TableRow, began))
     answer = calm.play_cycle()
     calm.wait('an answer', answer.done)
-    assert answer.result().message == 'another upload is under way'
+    assert answer.result().message == 'another upload is in progress'
     calm.wait(
         'the upload', lambda: 'table of 100 rows, 100 ms apart, is on board' in calm.said, 20.0
     )

@@ -11,8 +11,8 @@ import pytest
 from std_msgs.msg import Bool
 
 from bridge.protocol import Setpoint, Stop
-from hexarm.rig import Rig
-from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.qos import EVERY_WORD
+from rig import Rig
 
 pytestmark = pytest.mark.graph
 
@@ -36,7 +36,7 @@ def module_rig(tmp_path_factory, tolerant_robocake):
 def circling(module_rig):
     """The platform on its circle, its servos moving."""
     module_rig.circle(0.7)
-    assert module_rig.recorder.largest_step(module_rig.tap.heard(Setpoint)[-60][0]) > 5
+    assert module_rig.recorder.largest_step(module_rig.tap.frames(Setpoint)[-60][0]) > 5
     return module_rig
 
 
@@ -48,7 +48,7 @@ def make_ready(rig):
 
 def check_that_it_drives_again(rig):
     """Home and onto the circle again, never faster than the servos."""
-    since = rig.tap.heard()[-1][0]
+    since = rig.tap.frames()[-1][0]
     rig.circle(0.3)
     assert 0 < rig.recorder.largest_step(since) <= rig.recorder.slew
 
@@ -75,7 +75,7 @@ def test_a_killed_process_stops_the_machine_and_nothing_jumps_when_it_is_started
     rig.user.spin(1.5)
     if name == 'serial_bridge':
         rig.user.wait('word', lambda: rig.user.machine_state.message == 'unclaimed', PATIENCE)
-        assert not rig.tap.heard(Setpoint, before)
+        assert not rig.tap.frames(Setpoint, before)
     make_ready(rig)
     assert rig.recorder.way(before) <= QUIET
     check_that_it_drives_again(rig)
@@ -83,12 +83,12 @@ def test_a_killed_process_stops_the_machine_and_nothing_jumps_when_it_is_started
 
 def test_after_stop_and_clear_nothing_moves_until_a_new_command(circling):
     rig = circling
-    stops = rig.user.node.create_publisher(Bool, 'emergency_stop', COMMAND)
+    stops = rig.user.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
     rig.user.wait('a listener', lambda: stops.get_subscription_count() > 0, PATIENCE)
     begin = time.monotonic()
     stops.publish(Bool(data=True))
     rig.user.wait('stopped', lambda: rig.user.machine_state.message == 'stopped', PATIENCE)
-    still = rig.recorder.standstill(rig.tap.heard(Stop, begin)[-1][0], 0.5)
+    still = rig.recorder.standstill(rig.tap.frames(Stop, begin)[-1][0], 0.5)
     assert setpoints_after_stop(rig, begin) == []
     rig.user.trigger('serial_bridge/clear_fault')
     make_ready(rig)
@@ -100,6 +100,6 @@ def test_after_stop_and_clear_nothing_moves_until_a_new_command(circling):
 
 def setpoints_after_stop(rig, begin):
     """Counts of each setpoint behind the last STOP; one read may bring both, at one time."""
-    said = [message for _, message in rig.tap.heard((Setpoint, Stop), begin)]
-    last_stop = max(k for k, message in enumerate(said) if isinstance(message, Stop))
-    return [message.counts for message in said[last_stop + 1 :]]
+    text = [message for _, message in rig.tap.frames((Setpoint, Stop), begin)]
+    last_stop = max(k for k, message in enumerate(text) if isinstance(message, Stop))
+    return [message.counts for message in text[last_stop + 1 :]]

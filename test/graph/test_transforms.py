@@ -74,28 +74,28 @@ def pose_node():
         process.wait()
 
 
-def heard(client, topic, kind=String):
+def received(client, topic, kind=String):
     """Publishes joint states until something comes on the topic."""
     messages = []
     client.node.create_subscription(kind, topic, messages.append, 10)
     states = client.node.create_publisher(JointState, 'joint_states', 5)
     names = [f'crank_{i}' for i in range(1, 7)]
 
-    def is_heard():
+    def has_subscribers():
         message = JointState(name=names, position=HOME)
         message.header.stamp = client.node.get_clock().now().to_msg()
         states.publish(message)
         client.spin(0.05)
         return bool(messages)
 
-    client.wait(topic, is_heard, 60.0)
+    client.wait(topic, has_subscribers, 60.0)
     return messages[-1]
 
 
 def test_frames_go_out_where_tf2_msgs_is_installed(stand_in, pose_node):
     pose_node('framed', stand_in, frame_prefix='framed/')
     with Client('framed') as client:
-        frames = json.loads(heard(client, '/tf').data)
+        frames = json.loads(received(client, '/tf').data)
     assert [frame[:2] for frame in frames] == [
         ['framed/base', 'framed/platform'],
         ['framed/base', 'framed/work'],
@@ -104,13 +104,13 @@ def test_frames_go_out_where_tf2_msgs_is_installed(stand_in, pose_node):
     assert frames[0][2] == pytest.approx(0.04119, abs=1e-4)
 
 
-def test_without_tf2_msgs_it_works_and_says_nothing(pose_node, tmp_path):
+def test_without_tf2_msgs_it_works_and_reports_nothing(pose_node, tmp_path):
     gone = 'raise ModuleNotFoundError("No module named tf2_msgs", name="tf2_msgs")\n'
     (tmp_path / 'tf2_msgs.py').write_text(gone)
     node = pose_node('unframed', tmp_path, frame_prefix='left_')
     with Client('unframed') as client:
-        assert heard(client, 'pose', PoseStamped).header.frame_id == 'base'
-        (frame,) = {m.header.frame_id for m in heard(client, 'markers', MarkerArray).markers}
+        assert received(client, 'pose', PoseStamped).header.frame_id == 'base'
+        (frame,) = {m.header.frame_id for m in received(client, 'markers', MarkerArray).markers}
         assert client.node.count_publishers('/tf') == 0
     assert frame == 'left_base'
     node.terminate()
@@ -122,4 +122,4 @@ def test_prefix_that_tf2_would_refuse_is_refused(pose_node):
     node = pose_node('refused', frame_prefix='/hexapod/')
     said = node.communicate(timeout=60)[1]
     assert node.returncode == 1
-    assert "parameter frame_prefix: '/hexapod/' is no beginning of a frame name" in said
+    assert "parameter frame_prefix: '/hexapod/' is not a valid prefix of a frame name" in said

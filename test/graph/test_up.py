@@ -50,10 +50,10 @@ def page_of(address):
 
 def test_up_enables_serves_its_panel_and_parks_on_ctrl_c(hexarm, processes_left):
     process = hexarm('up', 'hexapod', '--panel')
-    said = read_until(process, 'The panel is on')
-    assert 'is up on fake and enabled' in said
+    text = read_until(process, 'The panel is on')
+    assert 'is up on fake and enabled' in text
     assert len(processes_left()) == 3  # up with its four nodes, the board, the panel
-    address = said.split('The panel is on')[1].split()[0]
+    address = text.split('The panel is on')[1].split()[0]
     assert '<title>' in page_of(address)
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()
@@ -61,14 +61,16 @@ def test_up_enables_serves_its_panel_and_parks_on_ctrl_c(hexarm, processes_left)
     assert 'park' in rest
     assert 'Traceback' not in rest
     machine = f'machine robocake: {ROBOCAKE} (rotary hexapod; RoboCake, crank'
-    assert (said + rest).count(machine) == 3
+    assert (text + rest).count(machine) == 3
     wait_until_none_is_left(processes_left)
 
 
 @pytest.mark.parametrize(
     ('node', 'words'), [('fake_hardware', ()), ('trajectory', ('--separate',))]
 )
-def test_up_says_which_process_died_stops_the_rest_and_fails(hexarm, processes_left, node, words):
+def test_up_reports_which_process_died_stops_the_rest_and_fails(
+    hexarm, processes_left, node, words
+):
     process = hexarm('up', 'robocake', *words)
     read_until(process, 'is up on fake and enabled')
     os.kill(node_of(node, processes_left), signal.SIGKILL)

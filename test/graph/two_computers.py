@@ -91,7 +91,7 @@ def set_moving(user, pulses):
 
 def cut_and_mend(user, line, pulses, namespace, interface):
     """What the board did while the link was cut, and with the first frames after it."""
-    told = {}
+    reported = {}
 
     def link(state):
         ip('-n', namespace, 'link', 'set', interface, state)
@@ -99,14 +99,14 @@ def cut_and_mend(user, line, pulses, namespace, interface):
     set_moving(user, pulses)
     link('down')
     user.wait('rest', lambda: pulses.still_for > 10 * STILL)
-    told['mode_while_cut'] = user.motion('mode')
+    reported['mode_while_cut'] = user.motion('mode')
     before, count = np.array(pulses.now), len(line.setpoints)
     link('up')
     ip('-n', namespace, 'route', 'add', '224.0.0.0/4', 'dev', interface)  # went with the link
     user.wait('setpoints', lambda: len(line.setpoints) > count + 20)
     again = np.array(line.setpoints[count:])
-    told['jump_in_counts'] = float(np.abs(again[:20] - before).max())
-    return told
+    reported['jump_in_counts'] = float(np.abs(again[:20] - before).max())
+    return reported
 
 
 def main(namespace, interface, *prefix):
@@ -122,23 +122,23 @@ def main(namespace, interface, *prefix):
         far = dataclasses.replace(bridge, prefix=prefix)
         graph = Graph([*nodes, far], SPACE)
         with graph, PatientUser(SPACE, lambda: check_alive(graph)) as user:
-            told = drive(user, line, pulses, namespace, interface, config)
+            reported = drive(user, line, pulses, namespace, interface, config)
         board.close()
-    print(json.dumps(told))
+    print(json.dumps(reported))
 
 
 def drive(user, line, pulses, namespace, interface, config):
     """All that the test wants to know."""
     user.make_ready()
     user.reach(GOAL)
-    told = cut_and_mend(user, line, pulses, namespace, interface)
+    reported = cut_and_mend(user, line, pulses, namespace, interface)
     user.make_ready()
     user.reach(GOAL)
     user.spin(0.3)
     joints = machines.load(MACHINE).kinematics.inverse(GOAL)
     wanted = Calibration.from_config(config.servos).counts(joints)
-    told['away_from_goal_in_counts'] = float(np.abs(np.array(pulses.now) - wanted).max())
-    return told
+    reported['away_from_goal_in_counts'] = float(np.abs(np.array(pulses.now) - wanted).max())
+    return reported
 
 
 if __name__ == '__main__':

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hexapod_control.workspace import axis_range, sample
-from manipulator.analysis.way import admits
+from manipulator.analysis.free_paths import admits
 from manipulator.limits.constraints import Constraints
 from manipulator.pose import Pose
 

@@ -99,5 +99,5 @@ def test_what_is_no_file_is_no_machine(tmp_path, kind):
     path = {'folder': tmp_path, 'device': Path('/dev/zero'), 'pipe': tmp_path / 'pipe'}[kind]
     if kind == 'pipe':
         os.mkfifo(path)
-    with pytest.raises(ConfigError, match='is no file'):
+    with pytest.raises(ConfigError, match='is not a file'):
         machines.load(str(path))

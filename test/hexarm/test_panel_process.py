@@ -28,12 +28,12 @@ def test_a_port_that_is_taken_is_passed_over(monkeypatch):
     assert panel_address(panel) == f'http://127.0.0.1:{panel.parameters["port"]}'
 
 
-def test_without_viser_the_demo_goes_on_and_says_what_is_missing(without_viser):
-    said = []
-    assert offered_panel('robocake', said.append) == []
-    assert 'pip install viser' in said[0]
+def test_without_viser_the_demo_goes_on_and_reports_what_is_missing(without_viser):
+    text = []
+    assert offered_panel('robocake', text.append) == []
+    assert 'pip install viser' in text[0]
 
 
-def test_without_viser_up_says_what_to_install_before_anything_starts(without_viser, capsys):
+def test_without_viser_up_reports_what_to_install_before_anything_starts(without_viser, capsys):
     assert main(['up', 'hexapod', '--panel']) == 1
     assert 'hexarm: needs the Python module viser: ' in capsys.readouterr().err

@@ -129,7 +129,7 @@ def test_node_of_the_source_tree_names_the_machines_that_it_ships(source):
     assert len(said.splitlines()) == 1
 
 
-def test_missing_ruckig_is_said_in_one_sentence(source, tmp_path):
+def test_missing_ruckig_is_reported_in_one_sentence(source, tmp_path):
     (tmp_path / 'ruckig.py').write_text('raise ModuleNotFoundError("gone", name="ruckig")\n')
     paths = os.pathsep.join([str(tmp_path), os.environ.get('PYTHONPATH', '')])
     assert refusal(source, 'hexarm.nodes', 'trajectory', PYTHONPATH=paths) == (

@@ -64,7 +64,7 @@ def test_misspelt_key_names_itself_and_the_nearest():
     )
 
 
-def test_everything_wrong_is_said_at_once():
+def test_everything_wrong_is_reported_at_once():
     text = GOOD.replace('58', '.nan').replace('[30, 210]', '[30]').replace('sign: 1', 'sign: 2')
     found = problems(text + 'label: 7\n')
     assert len(found) == 4
@@ -91,7 +91,7 @@ def test_value_inside_a_list_is_named_by_its_place():
     ('text', 'word'),
     [
         ('a: &x 1\nb: *x', 'aliases'),
-        ('a: 1\na: 2', 'twice'),
+        ('a: 1\na: 2', 'duplicated'),
         ('a: !!python/object/apply:os.system ["true"]', 'python/object'),
         ('- 1\n- 2', 'a list'),
         ('', 'nothing'),
@@ -110,7 +110,7 @@ def test_booleans_are_no_numbers():
     assert 'needs a number' in found
 
 
-def test_faults_of_two_sections_are_said_together():
+def test_faults_of_two_sections_are_reported_together():
     good, bad = parse_yaml(GOOD), parse_yaml(GOOD.replace('58', 'long'))
     assert build_both((Machine, good, 'a'), (Machine, good, 'b'))[1] == build(Machine, good)
     with pytest.raises(ConfigError) as error:

@@ -27,7 +27,7 @@ def test_a_good_message_is_accepted_once_and_its_time_noted(messages):
     assert (messages.refused, messages.last_refusal) == (0, '')
 
 
-def test_a_stale_message_is_not_accepted_and_says_why(messages):
+def test_a_stale_message_is_not_accepted_and_reports_why(messages):
     taken = []
     messages.take(EPOCH + 1.0, lambda: taken.append('first'), 1.0)
     error = messages.take(EPOCH + 1.1, lambda: taken.append('late'), 1.8)

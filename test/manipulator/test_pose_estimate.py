@@ -48,7 +48,7 @@ def test_joints_that_are_not_all_known_end_the_estimate():
     assert estimate.solution is None
 
 
-def test_where_the_last_pose_leads_nowhere_it_begins_at_home_and_says_so():
+def test_where_the_last_pose_leads_nowhere_it_begins_at_home_and_reports_that():
     kinematics, notes = Failing(), []
     estimate = PoseEstimate(replace(MACHINE, kinematics=kinematics), notes.append)
     estimate.update(JOINTS)
@@ -73,13 +73,13 @@ def is_allowed(pose):
 
 
 def test_what_the_drives_stay_behind_by_is_taken_out():
-    sag = 0.01 * np.ones(6)
-    machine = replace(MACHINE, sag=lambda pose, joints: sag)
-    solution = PoseEstimate(machine).update(JOINTS + sag)
+    deflection = 0.01 * np.ones(6)
+    machine = replace(MACHINE, deflection=lambda pose, joints: deflection)
+    solution = PoseEstimate(machine).update(JOINTS + deflection)
     assert_same(solution.pose, HOME)
 
 
-def test_an_arm_beyond_its_range_is_where_its_joints_say():
+def test_an_arm_beyond_its_range_is_where_its_joints_put_it():
     arm = load('arm_6r')
     joints = arm.joint_ranges[1] + 0.1
     solution = PoseEstimate(arm).update(joints)

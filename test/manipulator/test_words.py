@@ -16,7 +16,7 @@ from manipulator.formatting import counted, length, reason
         (float('inf'), 'inf m'),
     ],
 )
-def test_lengths_are_told_in_the_unit_that_fits(metres, said):
+def test_lengths_are_reported_in_the_unit_that_fits(metres, said):
     assert length(metres, 5 if metres > 1e4 else 4) == said
 
 
@@ -32,7 +32,7 @@ def test_one_is_singular_and_all_else_plural():
     assert counted(2, 'axis', 'axes') == '2 axes'
 
 
-def test_files_that_cannot_be_read_are_told_without_error_numbers(tmp_path):
+def test_files_that_cannot_be_read_are_reported_without_error_numbers(tmp_path):
     with pytest.raises(OSError, match='No such') as missing:
         (tmp_path / 'none').read_text()
     assert reason(missing.value) == 'No such file or directory'

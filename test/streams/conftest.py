@@ -1,4 +1,4 @@
-"""One machine's whole chain without processes: pilot, command check, driver, board."""
+"""One machine's whole chain without processes: supervisor, command check, driver, board."""
 
 from dataclasses import dataclass
 
@@ -10,11 +10,11 @@ from bridge.fake.board_thread import FakeMachine
 from bridge.protocol import Arm
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from manipulator.command_check import CommandCheck
 from manipulator.errors import ManipulatorError
 from manipulator.frames import Frames
 from manipulator.pose import Pose
-from manipulator.trajectory.pilot import Pilot
+from manipulator.setpoint_validator import SetpointValidator
+from manipulator.trajectory.supervisor import MotionSupervisor
 from manipulator.trajectory.teleop import Teleop
 
 DT = 0.01
@@ -38,7 +38,7 @@ class Sent:
 
 
 class Loop:
-    """Ticks of 10 ms from the user's wishes to the board's pulses and back, in one time.
+    """Ticks of 10 ms from the user's commands to the board's pulses and back, in one time.
 
     times_of_a_tick: the steps in which the board's thread lets a tick pass; true_joints are heard
     after each. While `is_stalled` no setpoint gets through, as when ik is kept from running.
@@ -51,9 +51,9 @@ class Loop:
         self.board = self.fake.board
         self.driver = BoardDriver(config, self)
         self.monitor, self._link = self.driver.monitor, self.driver.link
-        self.check = CommandCheck(self.machine)
-        self.pilot = Pilot(self.machine, DT)
-        self.teleop = Teleop(self.pilot, delay=0.06)
+        self.check = SetpointValidator(self.machine)
+        self.supervisor = MotionSupervisor(self.machine, DT)
+        self.teleop = Teleop(self.supervisor, delay=0.06)
         calibration = self.driver.calibration
         self.park = calibration.counts(calibration.park)
         self._names = list(self.machine.kinematics.joint_names)
@@ -77,7 +77,7 @@ class Loop:
 
     def until(self, word, ticks=400):
         for _ in range(ticks):
-            if self.monitor.status.word == word:
+            if self.monitor.status.state == word:
                 return
             self._step()
         raise AssertionError(f'{self.monitor.status} is not {word}')
@@ -89,7 +89,7 @@ class Loop:
         self.run(5)
 
     def arm(self):
-        if self.monitor.status.word != 'enabled':
+        if self.monitor.status.state != 'enabled':
             self.ask(Arm(self.park))
 
     def ask(self, command):
@@ -105,9 +105,9 @@ class Loop:
             self.fake.step(dt)
             self.true_joints.append(self.fake.servos.positions[self._order])
         self._turn(self.board.take_output())
-        self.pilot.note_machine_state(*self._state)
+        self.supervisor.note_machine_state(*self._state)
         self.teleop.drive(self.now)
-        pose = self.pilot.step()
+        pose = self.supervisor.step()
         if pose is not None and not self.is_stalled:
             self._send(pose)
 
@@ -128,7 +128,7 @@ class Loop:
                 self.refusals.append(f'tick {self.tick}: {error}')
             return
         pulses = self._turn()
-        frames, mode = self.pilot.machine.frames, self.pilot.status.mode
+        frames, mode = self.supervisor.machine.frames, self.supervisor.status.mode
         counts = np.array(self._written.setpoint.counts, dtype=float)
         is_first = mode == 'disabled'
         self.sent.append(
@@ -138,7 +138,7 @@ class Loop:
     # What the driver announces
 
     def on_machine_state(self, state):
-        self._state = (state.status.word, state.is_followed, state.is_measured)
+        self._state = (state.status.state, state.is_followed, state.is_measured)
 
     def on_written(self, ticket, now):
         self._written = ticket
@@ -156,8 +156,8 @@ class Loop:
         near = self._measured
         self._measured = self.machine.kinematics.forward(positions, near).pose
         self.check.note_joints(positions)
-        self.pilot.note_joints(positions)
-        self.pilot.note_pose(self._measured)
+        self.supervisor.note_joints(positions)
+        self.supervisor.note_pose(self._measured)
 
 
 @pytest.fixture

@@ -29,8 +29,8 @@ def arm(loop_of):
     rng = np.random.default_rng(3)
     loop.times_of_a_tick = lambda: 0.01 * rng.dirichlet([1.0, 1.0, 1.0])
     pose = loop.machine.kinematics.forward(TILTED).pose
-    loop.pilot.player.pursue(Goal(pose, loop.now))
-    while loop.pilot.status.result != 'reached':
+    loop.supervisor.executor.pursue(Goal(pose, loop.now))
+    while loop.supervisor.status.result != 'reached':
         loop.run(10)
         assert loop.tick < 1000
     return loop
@@ -48,7 +48,7 @@ def driven(arm, mode, commands, stall=0, point=None):
     arm.run(30)
     arm.true_joints.clear()
     for tick, twist in enumerate([part for part, ticks in commands for _ in range(ticks)]):
-        arm.teleop.hear('cmd_vel/joy', np.resize([*twist, 0, 0, 0], 6), '', arm.now)
+        arm.teleop.receive('cmd_vel/joy', np.resize([*twist, 0, 0, 0], 6), '', arm.now)
         arm.is_stalled = tick % STALL_EVERY >= STALL_EVERY - stall
         arm.run(1)
     arm.is_stalled = False
@@ -102,11 +102,11 @@ def test_joint_at_the_end_of_its_range_is_followed_there(loop_of):
 def test_jog_through_a_stretched_elbow_is_followed_on_its_branch(loop_of):
     loop = loop_of('puma560')
     driven(loop, 'free', (([0.2, 0, 0], 260),))
-    assert np.abs(loop.sent[-1].joints - loop.pilot.player.joints).max() < 1e-6
+    assert np.abs(loop.sent[-1].joints - loop.supervisor.executor.joints).max() < 1e-6
 
 
 @pytest.mark.parametrize(('name', 'axis', 'sign'), enough(EDGES, WAYS))
 def test_jog_to_the_edge_of_reach_and_back_is_followed(loop_of, name, axis, sign):
     loop, out = loop_of(name), 0.25 * sign * np.eye(6)[axis]
     driven(loop, 'free', ((out, 200), (-out, 100), (out, 60), (-out, 60)))
-    assert np.abs(loop.sent[-1].joints - loop.pilot.player.joints).max() < 1e-6
+    assert np.abs(loop.sent[-1].joints - loop.supervisor.executor.joints).max() < 1e-6

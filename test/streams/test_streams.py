@@ -53,25 +53,25 @@ STREAMS = st.lists(st.tuples(WISHES, st.sampled_from([1, 2, 5, 17, 60])), max_si
 
 
 class User:
-    """Does to a loop what a stream of wishes says; refusals are answers like any other."""
+    """Does to a loop what a stream of commands says; refusals are answers like any other."""
 
     def __init__(self, loop):
         self.loop = loop
         self.machine = loop.machine
 
-    def ask(self, wish, ticks):
+    def ask(self, command, ticks):
         with contextlib.suppress(ManipulatorError):
-            getattr(self, wish[0])(*wish[1:])
+            getattr(self, command[0])(*command[1:])
         self.loop.run(ticks)
 
     def near_home(self, six, part=1.0):
         """Up to far beyond the reach where `part` is 1."""
         home, length = self.machine.kinematics.home, self.machine.kinematics.characteristic_length
         turned = home.moved(part * np.array(six) * ([0.5 * length] * 3 + [0.8] * 3))
-        return self.loop.pilot.machine.frames.pivot(turned)
+        return self.loop.supervisor.machine.frames.pivot(turned)
 
     def goal(self, six, part=1.0):
-        self.loop.pilot.player.pursue(Goal(self.near_home(six, part), self.loop.now))
+        self.loop.supervisor.executor.pursue(Goal(self.near_home(six, part), self.loop.now))
 
     def goals(self, sixes):
         for six in sixes:
@@ -79,17 +79,17 @@ class User:
             self.loop.run(3)
 
     def path(self, sixes, part):
-        player, machine = self.loop.pilot.player, self.loop.pilot.machine
+        executor, machine = self.loop.supervisor.executor, self.loop.supervisor.machine
         found = [self.near_home(six, part) for six in sixes]
         poses = Pose(np.array([p.position for p in found]), np.array([p.rotation for p in found]))
-        timed = plan_path(machine, PathRequest(poses, 10.0, Tolerance()), player.joints, DT)
-        player.pursue(Goal(found[0], self.loop.now, timed))
+        timed = plan_path(machine, PathRequest(poses, 10.0, Tolerance()), executor.joints, DT)
+        executor.pursue(Goal(found[0], self.loop.now, timed))
 
     def twist(self, source, six, ticks):
         motion = self.machine.motion
         twist = 2 * np.array(six) * ([motion.linear.speed] * 3 + [motion.angular.speed] * 3)
         for _ in range(ticks):
-            self.loop.teleop.hear(source, twist, '', self.loop.now)
+            self.loop.teleop.receive(source, twist, '', self.loop.now)
             self.loop.run(1)
 
     def mode(self, name):
@@ -100,21 +100,21 @@ class User:
     def cycle(self, six, frequency):
         length = self.machine.kinematics.characteristic_length
         amplitude = 0.2 * np.array(six) * ([length] * 3 + [1.0] * 3)
-        player = self.loop.pilot.player
-        pose = player.state.pose
-        player.start_cycle(Cycle(pose, amplitude, np.full(6, frequency), np.arange(6.0)))
+        executor = self.loop.supervisor.executor
+        pose = executor.state.pose
+        executor.start_cycle(Cycle(pose, amplitude, np.full(6, frequency), np.arange(6.0)))
 
     def pause(self, is_paused):
-        self.loop.pilot.player.pause(is_paused)
+        self.loop.supervisor.executor.pause(is_paused)
 
     def override(self, rate):
-        self.loop.pilot.override(rate)
+        self.loop.supervisor.override(rate)
 
     def pivot(self, point):
-        self.loop.pilot.set_pivot(0.05 * np.array(point))
+        self.loop.supervisor.set_pivot(0.05 * np.array(point))
 
     def stop(self):
-        self.loop.pilot.player.stop()
+        self.loop.supervisor.executor.stop()
         self.loop.teleop.stop()
 
     def emergency_stop(self):

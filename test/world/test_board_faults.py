@@ -37,12 +37,12 @@ def words(world):
 
 
 @pytest.mark.parametrize(
-    ('kind', 'said'),
+    ('kind', 'text'),
     [(FaultKind.UNPLUG, 'disconnected'), (FaultKind.RESET, 'disarmed')],
 )
-def test_a_board_that_was_away_comes_back_disarmed(world, line, kind, said):
+def test_a_board_that_was_away_comes_back_disarmed(world, line, kind, text):
     line.inject(kind)
-    world.wait(said, lambda: world.state == said)
+    world.wait(text, lambda: world.state == text)
     world.wait('board', lambda: world.state == 'disarmed')
     assert_still(world)
     world.enable()
@@ -51,7 +51,7 @@ def test_a_board_that_was_away_comes_back_disarmed(world, line, kind, said):
 
 def test_a_board_with_another_program_is_not_driven_and_the_right_one_is(world, line):
     line.inject(FaultKind.VERSION)
-    world.wait('word', lambda: 'speaks protocol 2, this host 1' in world.bridge.monitor.trouble)
+    world.wait('word', lambda: 'has protocol 2, this host 1' in world.bridge.monitor.trouble)
     since = world.now
     world.run(1.0)
     assert world.frames(Setpoint, since) == []
@@ -118,10 +118,10 @@ def test_a_disconnected_board_cannot_be_enabled(world, line):
     assert 'no board' in world.ask(lambda driver: driver.enable(True))
 
 
-def test_joints_that_are_not_known_are_not_told(world, line):
+def test_joints_that_are_not_known_are_not_reported(world, line):
     world.disable()
     world.wait('release', lambda: world.status.mode == 'disabled')
-    told = []
-    world.links['joints'].lead_to(world.user, lambda stamp, joints: told.append(joints))
+    reported = []
+    world.links['joints'].lead_to(world.user, lambda stamp, joints: reported.append(joints))
     world.run(1.0)
-    assert told == []
+    assert reported == []

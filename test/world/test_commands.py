@@ -18,7 +18,7 @@ def circle(count=120, radius=RADIUS):
 
 
 def results(world, stamp):
-    return [s.result for _, s in world.supervisor.statuses if s.goal_stamp == stamp]
+    return [s.result for _, s in world.controller.statuses if s.goal_stamp == stamp]
 
 
 def test_a_path_is_driven_within_half_a_millimetre(world):
@@ -37,11 +37,11 @@ def test_a_path_is_driven_within_half_a_millimetre(world):
     assert np.ptp(turned) > 0.95 * 2 * np.pi
 
 
-def test_a_path_stops_on_its_way(world):
+def test_a_path_stops_on_its_path(world):
     stamp = world.send_path(circle())
     world.wait('path', lambda: world.status.mode == 'path')
     world.run(0.2)
-    world.supervisor.core.stop()
+    world.controller.core.stop()
     assert world.end_of(stamp).result == 'stopped'
     world.run(0.3)
     x, y, z = world.pose.position
@@ -50,12 +50,12 @@ def test_a_path_stops_on_its_way(world):
 
 
 def test_a_goal_takes_the_place_of_a_path_that_is_worked_out(world):
-    world.supervisor.thread.seconds = 1.0
+    world.controller.thread.seconds = 1.0
     stamp = world.send_path(circle())
     world.wait('planning', lambda: world.status.result == 'planning')
     assert world.go_to(HIGHER).result == 'reached'
     assert results(world, stamp) == ['planning', 'stopped']
-    assert OVERTAKEN in [s.reason for _, s in world.supervisor.statuses]
+    assert OVERTAKEN in [s.reason for _, s in world.controller.statuses]
     world.run(2.0)
     assert world.status.mode == 'hold'
 
@@ -76,7 +76,7 @@ def test_what_is_asked_right_after_the_clear_is_driven(world, delay):
     assert world.clear() == ''
     world.run(delay)
     assert world.go_to(HIGHER).result == 'reached'
-    assert not world.supervisor.on_goal.refusals
+    assert not world.controller.on_goal.refusals
 
 
 def test_a_goal_from_before_the_clear_moves_nothing(world):
@@ -107,7 +107,7 @@ def test_a_goal_that_waits_for_the_machine_is_refused_by_the_next_stop(world):
 @pytest.mark.parametrize('name', ['robocake', 'arm_6r'])
 def test_park_and_home_arrive_and_the_machine_is_there(make_world, name):
     world = make_world(name)
-    core, kinematics = world.supervisor.core, world.machine.kinematics
+    core, kinematics = world.controller.core, world.machine.kinematics
     core.park(1.0, world.now)
     assert world.end_of(1.0).result == 'reached'
     core.home(2.0, world.now)
@@ -117,7 +117,7 @@ def test_park_and_home_arrive_and_the_machine_is_there(make_world, name):
 
 
 def test_a_cycle_runs_until_it_is_stopped(world):
-    core = world.supervisor.core
+    core = world.controller.core
     size, frequency, phase = np.full(6, 1e-3), np.full(6, 0.5), np.zeros(6)
     core.start_cycle(lambda centre: Cycle(centre, size, frequency, phase), 3.0)
     world.wait('answer', lambda: core.cycle_answer(3.0) is not None)

@@ -96,16 +96,16 @@ def test_another_pivot_moves_nothing(world, ask, depth):
 def test_goals_turn_about_the_pivot(world, ask):
     ask.pivot([0.0, 0.0, 0.03])
     world.run(0.1)
-    pilot = world.supervisor.pilot
-    above = pilot.machine.frames.pivot(Pose.from_xyz_rpy((0.0, 0.0, 0.0412)))
+    supervisor = world.controller.supervisor
+    above = supervisor.machine.frames.pivot(Pose.from_xyz_rpy((0.0, 0.0, 0.0412)))
     leaning = Pose.from_xyz_rpy(above.position, (0.1, 0.0, 0.0))
-    assert world.go_to(pilot.machine.frames.platform(leaning)).result == 'reached'
+    assert world.go_to(supervisor.machine.frames.platform(leaning)).result == 'reached'
     world.run(0.3)
     assert world.pose.rpy[0] == pytest.approx(0.1, abs=5e-3)
     assert world.pose.position[1] == pytest.approx(0.03 * np.sin(0.1), abs=4e-4)
 
 
-def test_home_is_where_the_machine_file_says(world, ask):
+def test_home_is_where_the_machine_file_puts_it(world, ask):
     assert world.go_to(Pose.from_xyz_rpy((0.004, 0.0, 0.045))).result == 'reached'
     assert ask.home().result == 'reached'
     world.run(0.3)

@@ -103,10 +103,10 @@ def test_goals_at_2_khz_are_pursued_newest_first_and_the_loop_goes_on(world):
 
 
 def test_speed_override_zero_stands_still_and_one_goes_on(world):
-    world.supervisor.pilot.override(0.0)
+    world.controller.supervisor.override(0.0)
     stamp = world.send_goal(Pose.from_xyz_rpy((0.008, 0.0, 0.0412)))
     world.run(0.5)
     assert abs(world.pose.position[0]) < 1e-4
-    world.supervisor.pilot.override(1.0)
+    world.controller.supervisor.override(1.0)
     world.wait('goal', lambda: world.status.result == 'reached')
     assert world.status.goal_stamp == stamp

@@ -82,16 +82,16 @@ def test_a_stick_that_falls_silent_stops_the_machine(world):
     assert world.pose.position[0] == pytest.approx(there, abs=2e-4)
 
 
-def test_a_person_takes_the_machine_from_the_computer_which_must_let_go_first(world):
+def test_a_person_takes_the_machine_from_the_computer_which_must_release_first(world):
     world.jog(FORWARD, 0.2, 'cmd_vel')
     for _ in range(10):  # both hold: a person's twist leads backwards
         world.links['twists'].send(world.user.stamp, 'cmd_vel/joy', -FORWARD)
         world.run(0.02)
         world.links['twists'].send(world.user.stamp, 'cmd_vel', FORWARD)
         world.run(0.02)
-    assert world.supervisor.teleop.owner(world.now) == 'cmd_vel/joy'
-    reasons = [reason for _, reason in world.supervisor.on_twist.refusals]
-    assert any('cmd_vel/joy took the machine over' in reason for reason in reasons)
+    assert world.controller.teleop.owner(world.now) == 'cmd_vel/joy'
+    reasons = [reason for _, reason in world.controller.on_twist.refusals]
+    assert any('cmd_vel/joy took over the machine' in reason for reason in reasons)
 
 
 def test_a_stick_overrides_a_goal_in_motion_smoothly_and_the_goal_does_not_resume(arm):
@@ -101,14 +101,14 @@ def test_a_stick_overrides_a_goal_in_motion_smoothly_and_the_goal_does_not_resum
     arm.wait('5 cm', lambda: arm.pose.position[0] > home.position[0] + 0.05)
     assert arm.status.mode == 'move'
     hold(arm, UP, 1.0)
-    told = [(s.goal_stamp, s.result, s.mode) for _, s in arm.supervisor.statuses]
-    assert (stamp, 'moving', 'move') in told
-    assert told[-1][1:] == ('moving', 'jog')
+    reported = [(s.goal_stamp, s.result, s.mode) for _, s in arm.controller.statuses]
+    assert (stamp, 'moving', 'move') in reported
+    assert reported[-1][1:] == ('moving', 'jog')
     refused = arm.send_goal(home)
     hold(arm, UP, 0.1)
     assert any(
-        s.goal_stamp == refused and f'{JOY} has the machine' in s.reason
-        for _, s in arm.supervisor.statuses
+        s.goal_stamp == refused and f'{JOY} controls the machine' in s.reason
+        for _, s in arm.controller.statuses
     )
     hold(arm, np.zeros(6), 0.02)
     arm.run(1.0)
@@ -121,7 +121,7 @@ def test_a_stick_overrides_a_goal_in_motion_smoothly_and_the_goal_does_not_resum
     assert_smooth(arm, since)
 
 
-def test_a_stop_ends_a_jog_until_the_stick_is_let_go(arm):
+def test_a_stop_ends_a_jog_until_the_stick_is_released(arm):
     hold(arm, 0.5 * UP, 0.3)
     Requests(arm).stop()
     hold(arm, 0.5 * UP, 0.6)
@@ -131,7 +131,7 @@ def test_a_stop_ends_a_jog_until_the_stick_is_let_go(arm):
     assert arm.status.mode == 'jog'
 
 
-def test_a_twist_above_the_limits_is_scaled_and_said(arm):
+def test_a_twist_above_the_limits_is_scaled_and_reported(arm):
     hold(arm, 20 * UP, 0.3)
     assert 'scaled to' in arm.status.reason
     assert 'speed limits' in arm.status.reason

@@ -19,21 +19,21 @@ def circle(count, turns=1.0):
 def end_of(world, stamp, seconds=60.0):
     """Positions (n, 3) and statuses until something came of it."""
     seen, ends = [], ('reached', 'refused', 'stopped')
-    since = len(world.supervisor.statuses)
+    since = len(world.controller.statuses)
 
     def is_over():
         seen.append(world.pose.position)
         return world.status.goal_stamp == stamp and world.status.result in ends
 
     world.wait('end of the path', is_over, seconds)
-    return np.array(seen), [status for _, status in world.supervisor.statuses[since:]]
+    return np.array(seen), [status for _, status in world.controller.statuses[since:]]
 
 
 def off_circle(points):
     return np.abs(np.hypot(points[:, 0], points[:, 1]) - RADIUS).max()
 
 
-def test_a_circle_is_driven_within_half_a_millimetre_all_the_way_round(world, ask):
+def test_a_circle_is_driven_within_half_a_millimetre_around_the_whole_path(world, ask):
     assert world.go_to(circle(120)[0]).result == 'reached'
     world.run(0.3)
     points, statuses = end_of(world, ask.path(circle(120)))
@@ -44,7 +44,7 @@ def test_a_circle_is_driven_within_half_a_millimetre_all_the_way_round(world, as
     assert np.ptp(turned) > 0.98 * 2 * np.pi
 
 
-def test_a_path_from_elsewhere_is_approached_first_and_its_progress_told(world, ask):
+def test_a_path_from_elsewhere_is_approached_first_and_its_progress_reported(world, ask):
     _, statuses = end_of(world, ask.path(circle(200, turns=3.0)))
     results = [status.result for status in statuses]
     assert results[0] == 'planning'
@@ -95,7 +95,7 @@ def test_a_newer_goal_takes_the_place_of_a_path_that_is_driven(world, ask):
     assert world.go_to(Pose.from_xyz_rpy((0.0, 0.0, 0.046))).result == 'reached'
 
 
-def test_a_path_stops_on_its_way_and_obeys_the_speed_override(world, ask):
+def test_a_path_stops_on_its_path_and_obeys_the_speed_override(world, ask):
     assert world.go_to(circle(2)[0]).result == 'reached'
     ask.override(0.2)
     stamp = ask.path(circle(120))

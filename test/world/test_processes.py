@@ -3,25 +3,25 @@
 import numpy as np
 import pytest
 
+from manipulator.deadlines import POSE_DEADLINE
 from manipulator.pose import Pose
-from manipulator.trajectory.pilot import POSE_DEADLINE
 from sampling import enough
 
 FAR = Pose.from_xyz_rpy((0.010, 0.0, 0.0412))
 HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))
-PROCESSES = ['supervisor', 'inverse', 'forward', 'bridge']
+PROCESSES = ['controller', 'inverse', 'forward', 'bridge']
 
 
-def test_a_tick_that_was_frozen_for_too_long_says_no_setpoint(world):
+def test_a_tick_that_was_frozen_for_too_long_reports_no_setpoint(world):
     world.send_goal(HIGHER)
     world.wait('motion', lambda: world.pose.position[2] > 0.0422)
     before = world.now
-    world.supervisor.pause_in_next_tick = POSE_DEADLINE + 0.1
+    world.controller.pause_in_next_tick = POSE_DEADLINE + 0.1
     world.run(POSE_DEADLINE + 0.05)
     frozen = world.setpoints(before)
     world.run(2.0)
     late = world.setpoints(before)[len(frozen) :]
-    assert max(world.supervisor.ages) < POSE_DEADLINE
+    assert max(world.controller.ages) < POSE_DEADLINE
     assert world.status.result != 'reached'
     assert np.abs(late - late[0]).max() <= 2.0
 

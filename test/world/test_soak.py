@@ -20,7 +20,7 @@ SECONDS = float(os.environ.get('SOAK_SECONDS', '30'))
 PER_MINUTE = 2400.0
 """Faults of the line and the board, while there is a storm of them."""
 
-PROCESSES = ('supervisor', 'inverse', 'forward', 'bridge', 'board')
+PROCESSES = ('controller', 'inverse', 'forward', 'bridge', 'board')
 WAYS = [(0.8, 0.0, 0.0, 0.0), (-0.6, 0.4, 0.3, 0.1), (0.0, -0.6, -0.2, -0.1), (0.0, 0.0, 0.0, 0.0)]
 """Goals: x, y, z as shares of the reach, and a turn about z, from home."""
 

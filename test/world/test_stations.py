@@ -1,4 +1,4 @@
-"""What each station lets through: ik commands, the gate setpoints, the session frames."""
+"""What each station lets through: ik commands, the validator setpoints, the session frames."""
 
 import numpy as np
 import pytest
@@ -43,7 +43,7 @@ def test_ik_publishes_no_command_for_a_setpoint_that_would_have_a_joint_jump(wor
     world.run(0.2)
     near, far = joints_at(world, world.machine.kinematics.home), joints_at(world, FAR)
     began = world.now
-    world.links['setpoint'].send(world.supervisor.stamp, FAR)
+    world.links['setpoint'].send(world.controller.stamp, FAR)
     world.run(0.2)
     published = np.array([joints for t, joints in world.inverse.published if t >= began])
     assert np.abs(published - near).max() < 0.5 * np.abs(far - near).max()
@@ -51,7 +51,7 @@ def test_ik_publishes_no_command_for_a_setpoint_that_would_have_a_joint_jump(wor
     assert world.go_to(FAR).result == 'reached'
 
 
-def test_the_gate_admits_no_command_that_would_have_a_servo_jump(world):
+def test_the_validator_admits_no_command_that_would_have_a_servo_jump(world):
     world.run(0.2)
     still, began = world.inverse.published[-1][1], world.now
     world.links['commands'].send(world.inverse.stamp, still + 0.6 * np.eye(6)[2])
@@ -63,7 +63,7 @@ def test_the_gate_admits_no_command_that_would_have_a_servo_jump(world):
     assert f'{world.machine.kinematics.joint_names[2]}: ' in world.bridge.monitor.last_refusal
 
 
-def test_a_machine_whose_board_holds_is_let_go_and_its_goal_does_not_resume(world):
+def test_a_machine_whose_board_holds_is_released_and_its_goal_does_not_resume(world):
     world.send_goal(FAR)
     world.run(0.3)
     world.links['commands'].loses = lambda: True
@@ -71,7 +71,7 @@ def test_a_machine_whose_board_holds_is_let_go_and_its_goal_does_not_resume(worl
     world.links['commands'].loses = lambda: False
     world.run(0.1)
     assert ('stopped', 'the machine is holding') in [
-        (status.result, status.reason) for _, status in world.supervisor.statuses
+        (status.result, status.reason) for _, status in world.controller.statuses
     ]
     still = world.now
     world.run(3.0)
@@ -81,7 +81,7 @@ def test_a_machine_whose_board_holds_is_let_go_and_its_goal_does_not_resume(worl
 
 
 def test_frozen_bridge_publishes_of_what_piled_up_the_last_of_each_mode(world):
-    """Else the supervisor would be led back to where its joints were long ago."""
+    """Else the controller would be led back to where its joints were long ago."""
     world.send_goal(FAR)
     world.run(0.3)
     arrived = []

@@ -27,8 +27,8 @@ def test_after_stop_and_clear_nothing_moves_until_a_new_command(world):
     world.wait('stop', lambda: world.state == 'stopped')
     assert answer.said == ''
     assert world.status.result == 'stopped'
-    said = [type(message) for _, message in world.frames(since=stopped)]
-    assert Setpoint not in said[said.index(Stop) :]
+    text = [type(message) for _, message in world.frames(since=stopped)]
+    assert Setpoint not in text[text.index(Stop) :]
     world.run(0.5)
     still = world.now
     assert world.clear() == ''
@@ -51,7 +51,7 @@ def test_a_stop_stands_within_a_tenth_of_a_second(world):
 
 
 @pytest.mark.parametrize('lost', range(1, 5))
-def test_a_stop_whose_frames_are_lost_is_said_again(world, lost):
+def test_a_stop_whose_frames_are_lost_is_repeated(world, lost):
     down, _ = world.cable.links
     left = iter([True] * lost)
     world.send_goal(FAR)
@@ -66,8 +66,9 @@ def test_a_stop_while_the_cable_is_out_is_obeyed_by_the_board_that_comes_back(wo
     world.run(0.5)
     assert 'no board' in world.ask(BoardDriver.stop)
     world.cable.plug()
+    plugged_at = world.now
     world.wait('stop', lambda: world.state == 'stopped')
-    assert not world.frames(Setpoint, since=world.now - 1.0)
+    assert not world.frames(Setpoint, since=plugged_at)
 
 
 def test_a_hammered_stop_holds_and_only_a_clear_ends_it(world, ask):
@@ -117,7 +118,7 @@ def test_a_goal_from_before_the_clear_is_refused_and_moves_nothing_afterwards(wo
     assert np.nanmax(np.abs(pulses - pulses[0])) <= QUIET
 
 
-def test_a_stop_along_the_way_brakes_and_the_next_goal_is_driven(world, ask):
+def test_a_stop_along_the_path_brakes_and_the_next_goal_is_driven(world, ask):
     stamp = world.send_goal(FAR)
     world.run(0.12)
     ask.stop()

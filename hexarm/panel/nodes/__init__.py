@@ -1,1 +1,1 @@
-"""The panel's node: what it hears, what it asks for, and the web server of its page."""
+"""The panel's node: its subscriptions, its requests, and the web server of its page."""

@@ -1,8 +1,10 @@
-"""One web page for one machine: hears the graph, draws the page, sends what hands ask for."""
+"""One web page for one machine: shows the graph, sends the user's requests."""
 
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Generic, TypeVar
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -10,16 +12,15 @@ from rclpy.node import Node
 from std_msgs.msg import Float64
 
 from hexarm.panel.gripper import gripper_of
-from hexarm.panel.nodes.asking import Asking
-from hexarm.panel.nodes.hearing import Hearing
-from hexarm.panel.nodes.newest_worker import NewestWorker
+from hexarm.panel.nodes.machine_subscriptions import MachineSubscriptions
+from hexarm.panel.nodes.request_client import RequestClient
 from hexarm.panel.nodes.web_server import JoystickSocket, address, start_server, stop_server
 from hexarm.panel.page import Page
 from hexarm.panel.pieces import sphere
 from hexarm.panel.reachable import reachable_ranges
 from hexarm.panel.view import View
-from manipulator.analysis.explain import explained
 from manipulator.analysis.inside import surface
+from manipulator.analysis.reach import explained
 from manipulator.arrays import Array
 from manipulator.formatting import counted
 from manipulator.machine import Machine
@@ -29,6 +30,36 @@ from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.pose import Pose
+from manipulator.states import MachineState, MotionMode
+
+Question = TypeVar('Question')
+
+
+class NewestWorker(Generic[Question]):
+    """Calls `work` with the newest question; those that were overtaken are never looked at."""
+
+    def __init__(self, work: Callable[[Question], None]) -> None:
+        self._work = work
+        self._question: Question | None = None
+        self._is_asked = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def request(self, question: Question) -> None:
+        """Returns at once."""
+        self._question = question
+        self._is_asked.set()
+
+    def _run(self) -> None:
+        while True:
+            self._is_asked.wait()
+            self._is_asked.clear()
+            question, self._question = self._question, None
+            if question is not None:
+                begin = time.monotonic()
+                self._work(question)
+                time.sleep(time.monotonic() - begin)  # leaves half of the time to the rest
+
 
 TICK = 0.02
 DRAW_EVERY, SAMPLE_EVERY, GOAL_EVERY, REDRAW_EVERY = 3, 5, 5, 20
@@ -37,8 +68,8 @@ DRAW_EVERY, SAMPLE_EVERY, GOAL_EVERY, REDRAW_EVERY = 3, 5, 5, 20
 HAND_RESTS = 2.0
 """Seconds after the last move of a slider in which the sliders stay where the hand left them."""
 
-FOLLOWED = ('hold', 'jog', 'cycle', 'path')
-"""Modes in which the machine goes where the sliders did not ask it to."""
+FOLLOWED = (MotionMode.HOLD, MotionMode.JOG, MotionMode.CYCLE, MotionMode.PATH)
+"""Modes in which the machine moves without the sliders."""
 
 ELSEWHERE = 1e-4
 REACH_GRID = (13, 24)
@@ -57,9 +88,9 @@ class PanelNode(Node):
         self._machine = load(name)
         gripper = gripper_of(name)
         self._joystick = JoystickSocket(self._why_still)
-        self._hearing = Hearing(self, self._machine, gripper)
+        self._received = MachineSubscriptions(self, self._machine, gripper)
         self._topics = JogTopics(self, 'panel')
-        self._asking = Asking(self, self._joystick.stop, self._topics.choose, self._grip)
+        self._requests = RequestClient(self, self._joystick.stop, self._topics.choose, self._grip)
         limits = self._machine.motion
         self._full = np.repeat([limits.linear.speed, limits.angular.speed], 3)
         label = f'{Path(name).stem} · {self.get_namespace()}'
@@ -67,7 +98,7 @@ class PanelNode(Node):
         joystick = Path(__file__).parents[1].joinpath('joystick.html').read_text(encoding='utf-8')
         self._page = Page(
             self._server, self._machine, gripper is not None, label, joystick,
-            self._asking.wishes, self._wish_goal,
+            self._requests.requests, self._request_goal,
         )  # fmt: skip
         self._reach = NewestWorker[tuple[Pose, Array | None]](self._show_reach)
         self._moved_at = self._gripped_at = float('-inf')
@@ -82,27 +113,27 @@ class PanelNode(Node):
         self.get_logger().info(f'the page is on {self.address}')
 
     def close(self) -> None:
-        """Lets go of the machine, then of the pages."""
+        """Releases the machine, then closes the pages."""
         self._topics.close()
         stop_server(self._server)
 
     def _tick(self) -> None:
-        self._asking.put()
+        self._requests.put()
         stick = self._joystick.stick()
         twist = NO_TWIST if stick is None else stick * self._full * self._page.joystick_share
         self._topics.drive(twist, '', stick is not None)
         self._ticks += 1
         if self._is_time_for(GOAL_EVERY):
-            self._asking.send_goal()
+            self._requests.send_goal()
         is_watched = bool(self._server.get_clients())
-        self._hearing.listen(is_watched)
+        self._received.watch(is_watched)
         if is_watched:
             self._draw()
 
     def _draw(self) -> None:
         if self._is_time_for(DRAW_EVERY):
-            self._view = self._hearing.view()
-            self._page.show(self._view, self._asking.said)
+            self._view = self._received.view()
+            self._page.show(self._view, self._requests.notice)
         if self._is_time_for(SAMPLE_EVERY):
             self._page.note(self._view, time.monotonic())
         if self._is_time_for(REDRAW_EVERY):
@@ -123,15 +154,18 @@ class PanelNode(Node):
         if view.mode in FOLLOWED and self._is_elsewhere(pose):
             self._page.sliders.follow(pose)
             self._page.scene.show_goal(pose)
-        if view.mode == 'hold' and np.abs(self._reach_at.twist_to(pose)).max() > ELSEWHERE:
+        if (
+            view.mode == MotionMode.HOLD
+            and np.abs(self._reach_at.twist_to(pose)).max() > ELSEWHERE
+        ):
             self._ask_reach(pose)
 
     def _is_elsewhere(self, pose: Pose) -> bool:
         return bool(np.abs(self._page.sliders.pose.twist_to(pose)).max() > ELSEWHERE)
 
-    def _wish_goal(self, pose: Pose) -> None:
+    def _request_goal(self, pose: Pose) -> None:
         self._moved_at = time.monotonic()
-        self._asking.wish_goal(pose)
+        self._requests.request_goal(pose)
         self._ask_reach(pose)
 
     def _grip(self, opening: float) -> None:
@@ -142,7 +176,7 @@ class PanelNode(Node):
         self._page.scene.show_goal(pose)
         self._reach_at = pose
         commanded = self._view.commanded
-        self._reach.ask((pose, None if commanded is None else commanded.joints))
+        self._reach.request((pose, None if commanded is None else commanded.joints))
 
     def _show_reach(self, question: tuple[Pose, Array | None]) -> None:
         """In the worker's thread: the range of each slider, and once the hull."""
@@ -156,8 +190,8 @@ class PanelNode(Node):
 
     def _why_still(self) -> str:
         """What a hand on the joystick should know."""
-        state = self._hearing.machine_state.message
-        return '' if state == 'enabled' else f'the machine is {state}'
+        state = self._received.machine_state.message
+        return '' if state == MachineState.ENABLED else f'the machine is {state}'
 
     def _on_speed(self, message: Float64) -> None:
         if 0.0 <= message.data <= 1.0:

@@ -1,18 +1,18 @@
 """viser's server with two things added: who may connect, and the joystick's own connection.
 
-viser admits any site that a browser shows, and its buttons tell presses but not whose hand is
+viser admits any site that a browser shows, and its buttons report presses but not whose hand is
 still there. Both are added where it opens its one port, so that a single address serves all.
 
-Who may open the page's connection: the page itself, not whatever else a browser shows.
+Who may open the page's connection: the page itself, no other page that a browser shows.
 
-Browsers let any site open a WebSocket to this computer, and tell where the script came from. So
+Browsers let any site open a WebSocket to this computer, and report where the script came from. So
 a connection must come from a page of the same address (Origin and Host agree), and the address
 must be one that no foreign name server can answer for: a number, localhost, or this computer's
 name. Programs that are no browser send no Origin; they could move the machine over ROS as well.
 
 The joystick's connections: one for each open page, beats in, answers out.
 
-Runs in the web server's thread; the node asks from its own.
+Runs in the web server's thread; the node calls from its own.
 """
 
 import contextlib
@@ -34,7 +34,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from hexarm.panel.joystick import Joystick, answer, heard
+from hexarm.panel.joystick import Joystick, answer, parsed
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
 from manipulator.formatting import shown
@@ -73,7 +73,7 @@ class JoystickSocket:
         self._may_move = may_move
 
     async def serve(self, connection: ServerConnection) -> None:
-        """One page, from its first word until it is gone."""
+        """One page, from its first message until it is gone."""
         page = next(self._pages)
         try:
             async for text in connection:
@@ -92,18 +92,18 @@ class JoystickSocket:
             return self._joystick.stick(time.monotonic())
 
     def stop(self) -> None:
-        """Whoever holds must let go first."""
+        """The owner must release first."""
         with self._lock:
             self._joystick.stop()
 
     def _answer(self, page: int, text: str | bytes) -> str:
-        words = heard(text)
+        message = parsed(text)
         now = time.monotonic()
         with self._lock:
-            if isinstance(words, int):
-                self._joystick.release(page, words)
+            if isinstance(message, int):
+                self._joystick.release(page, message)
             else:
-                self._joystick.hear(page, words, now)
+                self._joystick.receive(page, message, now)
             holder, reason = self._joystick.holder(now), self._joystick.reason(page)
         has_it = holder == page
         return answer(now, has_it, holder is not None and not has_it,
@@ -116,15 +116,15 @@ Handler = Callable[[ServerConnection], Awaitable[None]]
 
 
 def start_server(host: str, port: int, label: str, serve_joystick: Handler) -> Any:
-    """A running viser server on the first free port from `port`; Refused says what is wrong."""
+    """A running viser server on the first free port from `port`; Refused with the reason."""
     _check_host(host)
-    quiet = contextlib.redirect_stdout(io.StringIO())  # the node says its address itself
+    quiet = contextlib.redirect_stdout(io.StringIO())  # the node logs its address itself
     with _extended_serve(serve_joystick) as opened, quiet:
         server = viser.ViserServer(host, port, label, verbose=False)
     if not opened:
         server.stop()
         raise Refused(
-            f'viser {viser.__version__} opens its port in a way that this panel does not know: '
+            f'viser {viser.__version__} opens its port differently than this panel expects: '
             f'{INSTALL["viser"]}'
         )
     server.request_share_url = _refuse_to_share
@@ -132,15 +132,15 @@ def start_server(host: str, port: int, label: str, serve_joystick: Handler) -> A
 
 
 def stop_server(server: Any) -> None:
-    """Closes every page's connection, without viser's own word about it."""
+    """Closes every page's connection, without viser's own message about it."""
     with contextlib.redirect_stdout(io.StringIO()):
         server.stop()
 
 
 def address(host: str, port: int) -> str:
     """What to type into a browser on this computer, or on another where the page is for all."""
-    everybody = host in ('0.0.0.0', '::', '')
-    name = socket.gethostname() if everybody else host
+    is_public = host in ('0.0.0.0', '::', '')
+    name = socket.gethostname() if is_public else host
     return f'http://[{name}]:{port}' if ':' in name else f'http://{name}:{port}'
 
 
@@ -151,7 +151,7 @@ def _check_host(host: str) -> None:
             probe.bind((host, 0))
     except OSError as error:
         raise Refused(
-            f'host {shown(host)} is no address of this computer: {error.strerror}'
+            f'host {shown(host)} is not an address of this computer: {error.strerror}'
         ) from error
 
 

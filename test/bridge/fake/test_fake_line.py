@@ -45,7 +45,7 @@ def test_two_boards_cannot_have_one_path(tmp_path):
     first.close()
 
 
-def test_a_folder_that_does_not_exist_is_said(tmp_path):
+def test_a_folder_that_does_not_exist_is_reported(tmp_path):
     with pytest.raises(LinkError, match='cannot be made: No such file or directory'):
         FakeLine(tmp_path / 'no' / 'board')
 

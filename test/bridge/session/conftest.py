@@ -31,8 +31,8 @@ class Line:
         for _ in range(round(seconds / 0.005)):
             self.now += 0.005
             self.board.step(0.005)
-            heard = b'' if self.is_mute else self.board.take_output()
-            events += self.session.receive(heard, self.now) + self.session.tick(self.now)
+            received = b'' if self.is_mute else self.board.take_output()
+            events += self.session.receive(received, self.now) + self.session.tick(self.now)
             output = self.session.take_output()
             self.sent += [frame.message for frame in FrameReader().feed(output)]
             if not self.loses:

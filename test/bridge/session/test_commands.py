@@ -57,7 +57,7 @@ def test_what_is_acknowledged_can_be_seen_in_the_state(line, before, command, mo
     assert line.sent.count(command) == 1
 
 
-def test_what_was_obeyed_is_not_said_to_have_failed_where_another_command_comes_before_the_state(
+def test_an_obeyed_command_does_not_fail_where_another_command_comes_before_the_state(
     line,
 ):
     line.run(0.4)
@@ -69,13 +69,15 @@ def test_what_was_obeyed_is_not_said_to_have_failed_where_another_command_comes_
 
 
 @pytest.mark.parametrize(('command', 'mode'), [(Stop(), Mode.STOPPED), (Disarm(), Mode.DISARMED)])
-def test_the_mode_is_known_from_the_acknowledgement_before_a_state_tells_it(armed, command, mode):
+def test_the_mode_is_known_from_the_acknowledgement_before_a_state_reports_it(
+    armed, command, mode
+):
     before = armed.session.state
     armed.session.send_command(command, armed.now)
     (frame,) = FrameReader().feed(armed.session.take_output())
     armed.session.receive(encode(Ack(frame.sequence, Result.OK), 1), armed.now)
     assert armed.session.state == replace(before, mode=mode)
-    with pytest.raises(Refused, match=f'takes no setpoints now: {mode.name.lower()}'):
+    with pytest.raises(Refused, match=f'accepts no setpoints now: {mode.name.lower()}'):
         armed.setpoint()
 
 
@@ -93,7 +95,7 @@ def test_refusal_of_a_command_comes_with_its_reason(armed):
     assert failed == CommandFailed(Arm(PARK), 'the board is stopped: clear the stop first')
 
 
-def test_a_lost_command_is_repeated_until_it_is_heard(armed):
+def test_a_lost_command_is_repeated_until_it_is_received(armed):
     armed.loses = True
     armed.session.send_command(Stop(), armed.now)
     armed.run(0.25)
@@ -102,7 +104,7 @@ def test_a_lost_command_is_repeated_until_it_is_heard(armed):
     assert armed.sent.count(Stop()) == 4
 
 
-def test_a_command_that_is_never_heard_fails(armed):
+def test_a_command_that_is_never_received_fails(armed):
     armed.loses = True
     armed.session.send_command(Disarm(), armed.now)
     (failed,) = armed.run(1.0)
@@ -110,7 +112,7 @@ def test_a_command_that_is_never_heard_fails(armed):
     assert armed.sent.count(Disarm()) == 4
 
 
-def test_a_stop_takes_the_place_of_what_is_under_way(line):
+def test_a_stop_takes_the_place_of_what_is_in_progress(line):
     line.run(0.4)
     line.loses = True
     line.session.send_command(Arm(PARK), line.now)
@@ -118,12 +120,12 @@ def test_a_stop_takes_the_place_of_what_is_under_way(line):
     line.loses = False
     events = line.command(Stop())
     assert events == [CommandFailed(Arm(PARK), 'STOP came after it'), Acknowledged(Stop())]
-    with pytest.raises(Refused, match='STOP is under way'):
+    with pytest.raises(Refused, match='STOP is in progress'):
         line.session.send_command(Stop(), line.now)
         line.session.send_command(Arm(PARK), line.now)
 
 
-def test_a_lost_port_fails_what_was_under_way(armed):
+def test_a_lost_port_fails_what_was_in_progress(armed):
     armed.session.send_command(Stop(), armed.now)
     events = armed.session.closed('gone', armed.now)
     assert events == [CommandFailed(Stop(), 'gone'), Disconnected('gone')]

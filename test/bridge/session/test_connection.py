@@ -12,7 +12,7 @@ PARK = (3000,) * 6
 
 def test_host_is_silent_until_the_hello(line):
     line.run(0.28)
-    with pytest.raises(Refused, match='no board to talk to'):
+    with pytest.raises(Refused, match='no board is connected'):
         line.command(Arm(PARK))
     assert line.session.phase is Phase.WAITING
     assert line.sent == []
@@ -31,7 +31,7 @@ def test_junk_before_hello_does_no_harm(line):
 
 def test_another_protocol_version_is_not_talked_to(line_of):
     line = line_of(version=2)
-    assert line.run(1.5) == [Incompatible('the board speaks protocol 2, this host 1')]
+    assert line.run(1.5) == [Incompatible('the board has protocol 2, this host 1')]
     with pytest.raises(Refused):
         line.command(Arm(PARK))
     assert line.sent == []
@@ -43,13 +43,13 @@ def test_another_joint_count_is_not_talked_to(line_of):
     assert line.sent == []
 
 
-def test_a_board_that_never_speaks_is_said(line):
+def test_a_board_that_never_speaks_is_reported(line):
     line.is_mute = True
     (event,) = line.run(5.5)
-    assert 'no board said HELLO' in event.reason
+    assert 'no HELLO came' in event.reason
 
 
-def test_a_board_of_another_version_fails_what_was_under_way(armed):
+def test_a_board_of_another_version_fails_what_was_in_progress(armed):
     armed.is_mute = True
     armed.session.send_command(Disarm(), armed.now)
     other = Hello(2, ResetCause.EXTERNAL, 6, 10)
@@ -59,7 +59,7 @@ def test_a_board_of_another_version_fails_what_was_under_way(armed):
 
 def test_a_board_that_falls_silent_is_lost_and_found_again(armed):
     armed.is_mute = True
-    assert armed.run(0.6) == [Disconnected('the board has been silent for 0.5 s')]
+    assert armed.run(0.6) == [Disconnected('no frame from the board for 0.5 s')]
     assert not armed.session.accepts_setpoints
     armed.board.take_output()
     armed.is_mute = False
@@ -69,12 +69,12 @@ def test_a_board_that_falls_silent_is_lost_and_found_again(armed):
     assert armed.sent == []
 
 
-def test_a_board_that_fell_silent_and_stays_away_is_said_again(armed):
+def test_a_board_that_fell_silent_and_stays_away_is_reported_again(armed):
     armed.is_mute = True
     lost, missed, again = armed.run(0.6 + 5.0 + 5.0)
-    assert lost == Disconnected('the board has been silent for 0.5 s')
-    assert missed == again == Disconnected('the port is open, but no board said HELLO for 5 s')
-    with pytest.raises(Refused, match='no board to talk to: waiting'):
+    assert lost == Disconnected('no frame from the board for 0.5 s')
+    assert missed == again == Disconnected('the port is open, but no HELLO came for 5 s')
+    with pytest.raises(Refused, match='no board is connected: waiting'):
         armed.command(Disarm())
 
 

@@ -13,7 +13,7 @@ PARK = (3000,) * 6
 
 def test_setpoints_before_arming_are_refused_here(line):
     line.run(0.4)
-    with pytest.raises(Refused, match='takes no setpoints now: disarmed'):
+    with pytest.raises(Refused, match='accepts no setpoints now: disarmed'):
         line.setpoint()
     assert line.sent == []
 

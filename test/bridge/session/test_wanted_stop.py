@@ -13,7 +13,7 @@ from manipulator.errors import Refused
 PARK = (3000,) * 6
 
 
-def test_a_stop_is_repeated_until_the_board_hears_it(armed):
+def test_a_stop_is_repeated_until_the_board_receives_it(armed):
     armed.loses = True
     armed.command(Stop())
     failed, *again = armed.run(3.0)
@@ -59,7 +59,7 @@ def test_a_stop_outlives_a_restart_of_the_board(armed):
     assert armed.sent.count(Stop()) == 2
 
 
-def test_hammering_stop_and_clear_ends_as_the_last_one_says(armed):
+def test_hammering_stop_and_clear_ends_as_the_last_one_commands(armed):
     for _ in range(20):
         armed.session.send_command(Stop(), armed.now)
         armed.run(0.01)

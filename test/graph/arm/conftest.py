@@ -46,11 +46,11 @@ class Joystick:
         v.x, v.y, v.z, w.x, w.y, w.z = map(float, twist)
         self.publisher.publish(message)
 
-    def has_pushed(self, twist, heard, metres):
+    def has_pushed(self, twist, received, metres):
         """Holds the stick for a moment; whether the commands have gone so far by now."""
         self.send(twist)
         self.user.spin(PERIOD)
-        return bool(heard.messages) and heard.way > metres
+        return bool(received.messages) and received.way > metres
 
 
 class Heard:
@@ -151,5 +151,5 @@ def listen(arm):
         return begun[-1]
 
     yield begin
-    for heard in begun:
-        heard.done()
+    for received in begun:
+        received.done()

@@ -10,11 +10,14 @@ import textwrap
 
 import numpy as np
 import pytest
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
 from std_msgs.msg import Bool, Float64
 
 from hexarm.machines import load
 from manipulator.nodes.messages import joints_of
-from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.qos import COMMAND, EVERY_WORD
+from manipulator.pose import Pose
 from manipulator.trajectory.path import arc
 
 pytestmark = pytest.mark.graph
@@ -22,14 +25,42 @@ pytestmark = pytest.mark.graph
 HOME = load('arm_6r_stepper').kinematics.home
 
 
-def test_goal_is_reached_and_the_encoders_say_so(arm, listen):
+def test_goal_is_reached_and_the_encoders_report_so(arm, listen):
     goal = HOME.moved([0.1, -0.05, 0.05, 0.0, 0.2, 0.1])
     arm.reach(goal)
-    heard = listen()
+    received = listen()
 
     def is_there():
-        error = heard.poses[-1].twist_to(goal) if heard.messages else np.ones(6)
+        error = received.poses[-1].twist_to(goal) if received.messages else np.ones(6)
         return np.abs(error[:3]).max() < 5e-4 and np.abs(error[3:]).max() < np.radians(0.05)
+
+    arm.wait('the joints', is_there)
+
+
+def test_a_goal_that_is_a_point_holds_the_orientation_where_the_parameter_says_so(arm, listen):
+    client = arm.node.create_client(SetParameters, 'trajectory/set_parameters')
+    arm.wait('the service', client.service_is_ready)
+
+    def choose(name):
+        value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=name)
+        parameter = Parameter(name='goal_orientation', value=value)
+        answer = arm.answer_of(client, SetParameters.Request(parameters=[parameter]), 'the change')
+        return answer.results[0]
+
+    refused = choose('straight')
+    assert not refused.successful
+    assert 'is not one of given, hold_orientation, parallel, look_at' in refused.reason
+    arm.reach_home()
+    assert choose('hold_orientation').successful
+    try:
+        arm.reach(Pose(HOME.position + np.array([0.05, 0.0, 0.05]), np.eye(3)))
+    finally:
+        assert choose('given').successful
+    received = listen()
+
+    def is_there():
+        error = received.poses[-1].twist_to(HOME) if received.messages else np.ones(6)
+        return abs(error[0] + 0.05) < 5e-4 and np.abs(error[3:]).max() < np.radians(0.05)
 
     arm.wait('the joints', is_there)
 
@@ -38,21 +69,21 @@ def test_path_is_driven_within_a_millimetre(arm, listen):
     """Again where this computer stood still: what catches up cuts across."""
     x, y, z = HOME.position
     ring = arc(HOME, (x, y - 0.05, z), (1.0, 0.0, 0.0), 2 * np.pi)
-    heard = listen()
+    received = listen()
 
     def drive():
         arm.go_to(ring[0])
-        arm.wait('rest', heard.is_at_rest)
-        heard.messages.clear()
+        arm.wait('rest', received.is_at_rest)
+        received.messages.clear()
         arm.follow(ring)
-        y_of, z_of = np.array([pose.position[1:] for pose in heard.poses]).T
+        y_of, z_of = np.array([pose.position[1:] for pose in received.poses]).T
         assert np.ptp(z_of) > 0.09
         return np.abs(np.hypot(y_of - y + 0.05, z_of - z) - 0.05).max()
 
     assert any(arm.persist(drive) < 1e-3 for _ in range(5))
 
 
-def test_jog_is_smooth_and_ends_in_a_hold_when_the_stick_is_let_go(arm, joystick, listen):
+def test_jog_is_smooth_and_ends_in_a_hold_when_the_stick_is_released(arm, joystick, listen):
     commands = listen('joint_command')
 
     def push():
@@ -100,17 +131,17 @@ def test_killed_source_stops_the_arm(arm):
 
 
 def test_bad_twists_modes_and_frames_are_refused_and_the_arm_stays(arm, joystick, listen):
-    heard = listen('joint_command')
+    received = listen('joint_command')
     joystick.mode('upside_down')
 
-    def told():
+    def reported():
         status = arm.diagnostics.get('arm/trajectory')
         return {v.key: v.value for v in status.values} if status else {}
 
     def is_refused(twist, frame, words):
         joystick.send(twist, frame)
         arm.spin(0.02)
-        return words in told().get('last_twist_refusal', '')
+        return words in reported().get('last_twist_refusal', '')
 
     def send_bad_ones():
         for twist, frame, words in (
@@ -121,27 +152,27 @@ def test_bad_twists_modes_and_frames_are_refused_and_the_arm_stays(arm, joystick
         assert arm.motion('mode') == 'hold'
 
     arm.persist(send_bad_ones)
-    assert np.ptp(heard.joints, axis=0).max() < 1e-3
-    assert told()['jog_mode'] == 'free'
+    assert np.ptp(received.joints, axis=0).max() < 1e-3
+    assert reported()['jog_mode'] == 'free'
 
 
 def test_gripper_opens_while_the_arm_stands(arm, listen):
     gripper = arm.node.create_publisher(Float64, 'gripper', COMMAND)
     arm.wait('a listener', lambda: gripper.get_subscription_count() > 0)
-    heard = listen()
+    received = listen()
 
     def is_open():
         gripper.publish(Float64(data=1.0))
         arm.spin(0.1)
-        last = heard.messages[-1:]
+        last = received.messages[-1:]
         return any(joints_of(m, ('gripper',))[0] > np.radians(49.0) for m in last)
 
     arm.wait_driven('the gripper', is_open)
-    assert np.ptp(heard.joints, axis=0).max() < 1e-3
+    assert np.ptp(received.joints, axis=0).max() < 1e-3
 
 
 def test_emergency_stop_ends_a_motion_and_nothing_resumes_after_the_clear(arm, listen):
-    stops = arm.node.create_publisher(Bool, 'emergency_stop', COMMAND)
+    stops = arm.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
     arm.wait('a listener', lambda: stops.get_subscription_count() > 0)
     goals = itertools.cycle([HOME.moved([0.25, 0, 0, 0, 0, 0]), HOME])
 
@@ -156,7 +187,7 @@ def test_emergency_stop_ends_a_motion_and_nothing_resumes_after_the_clear(arm, l
     arm.wait('the stop', lambda: arm.machine_state.message == 'stopped')
     arm.trigger('serial_bridge/clear_fault')
     arm.wait('goals', lambda: arm.motion('mode') == 'hold')
-    heard = listen('joint_command')
-    arm.wait_driven('commands', lambda: len(heard.messages) > 50)
-    assert np.ptp(heard.joints, axis=0).max() < 1e-3
+    received = listen('joint_command')
+    arm.wait_driven('commands', lambda: len(received.messages) > 50)
+    assert np.ptp(received.joints, axis=0).max() < 1e-3
     arm.node.destroy_publisher(stops)

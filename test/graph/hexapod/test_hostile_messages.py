@@ -95,9 +95,9 @@ def is_discovered(user, node, interfaces):
     """Whether the graph names the node and, by now, every topic that it is said to listen to."""
     if (node, OURS.rstrip('/')) not in user.node.get_node_names_and_namespaces():
         return False
-    heard = user.node.get_subscriber_names_and_types_by_node(node, OURS.rstrip('/'))
+    received = user.node.get_subscriber_names_and_types_by_node(node, OURS.rstrip('/'))
     said = {OURS + name for kind, name in interfaces.documented(node) if kind == 'in'}
-    return said <= {topic for topic, _ in heard}
+    return said <= {topic for topic, _ in received}
 
 
 @pytest.fixture(scope='module')

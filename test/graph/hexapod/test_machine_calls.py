@@ -20,30 +20,30 @@ def test_a_machine_is_enabled_stopped_cleared_and_disabled_without_ros2(user, sa
     user.disable()
     user.wait('the end', lambda: user.machine_state.message == 'disarmed')
     assert says('enable') == (0, '/hexapod: machine enabled, motion idle\n')
-    status, said = says('stop', 'hexapod')
+    status, text = says('stop', 'hexapod')
     assert status == 0
-    assert said.startswith('/hexapod: machine stopped')
-    assert said.endswith('hexarm clear hexapod\n')
+    assert text.startswith('/hexapod: machine stopped')
+    assert text.endswith('hexarm clear hexapod\n')
     user.wait('the stop', lambda: user.machine_state.message == 'stopped')
-    status, said = says('enable', '/hexapod')
-    assert (status, said.count('\n')) == (2, 1)
-    assert 'the board is stopped: clear the stop first' in said
-    assert 'hexarm clear hexapod' in said
-    status, said = says('clear')
-    assert (status, said[:25]) == (0, '/hexapod: machine enabled')
-    status, said = says('clear')
+    status, text = says('enable', '/hexapod')
+    assert (status, text.count('\n')) == (2, 1)
+    assert 'the board is stopped: clear the stop first' in text
+    assert 'hexarm clear hexapod' in text
+    status, text = says('clear')
+    assert (status, text[:25]) == (0, '/hexapod: machine enabled')
+    status, text = says('clear')
     assert status == 0
-    assert said.endswith(' (nothing to clear: the machine is enabled)\n')
-    status, said = says('disable')
-    assert (status, said[:26]) == (0, '/hexapod: machine disarmed')
+    assert text.endswith(' (nothing to clear: the machine is enabled)\n')
+    status, text = says('disable')
+    assert (status, text[:26]) == (0, '/hexapod: machine disarmed')
     user.wait('the end', lambda: user.machine_state.message == 'disarmed')
 
 
 def test_where_nobody_answers_namespace_and_domain_are_named_and_where_somebody_is(user, says):
-    status, said = says('enable', 'hexapd')
-    assert (status, said.count('\n')) == (1, 1)
-    assert 'hexarm: nobody answers in /hexapd on ROS domain ' in said
-    assert said.endswith('there are machines in /hexapod\n')
+    status, text = says('enable', 'hexapd')
+    assert (status, text.count('\n')) == (1, 1)
+    assert 'hexarm: no machine found in /hexapd on ROS domain ' in text
+    assert text.endswith('there are machines in /hexapod\n')
 
 
 def test_a_stop_from_the_same_computer_needs_no_ros(enabled):
@@ -52,15 +52,15 @@ def test_a_stop_from_the_same_computer_needs_no_ros(enabled):
     enabled.trigger('serial_bridge/clear_fault')
 
 
-def test_a_stop_goes_out_over_ros_before_the_machine_has_said_anything(user, hexarm):
-    heard = []
+def test_a_stop_goes_out_over_ros_before_the_machine_has_reported_anything(user, hexarm):
+    received = []
     listener = user.node.create_subscription(
-        Bool, '/silent/emergency_stop', heard.append, EVERY_WORD
+        Bool, '/silent/emergency_stop', received.append, EVERY_WORD
     )
     process = hexarm('stop', 'silent')
-    user.wait('the stop', lambda: heard)
-    assert heard[0].data
+    user.wait('the stop', lambda: received)
+    assert received[0].data
     user.wait('the end', lambda: process.poll() is not None)
     user.node.destroy_subscription(listener)
     assert process.returncode == 1
-    assert 'nobody answers in /silent' in process.stdout.read()
+    assert 'no machine found in /silent' in process.stdout.read()

@@ -72,7 +72,7 @@ def circle(count):
     return Pose(np.stack(ring, axis=1), np.eye(3))
 
 
-def test_goal_is_reached_and_the_measured_pose_says_so(enabled, heard):
+def test_goal_is_reached_and_the_measured_pose_reports_that(enabled, heard):
     goal = Pose.from_xyz_rpy((0.004, -0.003, 0.045), (0.02, 0.03, 0.05))
     enabled.reach(goal)
     poses = heard(PoseStamped, 'pose')
@@ -112,7 +112,7 @@ def test_foreign_process_moves_the_platform(enabled, heard):
     enabled.wait('x = 7 mm', lambda: abs(pose_of(poses[-1]).position[0] - 0.007) < NEAR)
 
 
-def test_path_is_driven_within_half_a_millimetre_all_the_way_round(enabled, heard):
+def test_path_is_driven_within_half_a_millimetre_around_the_whole_path(enabled, heard):
     """Again where this computer stood still: what catches up cuts across."""
     measured = heard(PoseStamped, 'pose')
 
@@ -210,7 +210,7 @@ def test_services_home_pause_cycle_and_stop_are_obeyed(enabled, heard):
     enabled.persist(swing)
 
 
-def test_plan_answers_the_way_or_nothing(enabled):
+def test_plan_answers_the_path_or_nothing(enabled):
     client = enabled.node.create_client(GetPlan, 'trajectory/plan')
     enabled.wait('the service', client.service_is_ready)
 
@@ -226,7 +226,9 @@ def test_plan_answers_the_way_or_nothing(enabled):
     enabled.persist(lengths)
 
 
-def test_whoever_is_told_that_the_machine_was_cleared_may_ask_for_motion_at_once(enabled):
+def test_a_client_that_is_informed_that_the_machine_was_cleared_may_ask_for_motion_at_once(
+    enabled,
+):
     """At which tick the goal comes, test/streams/test_early_goals.py tries."""
     path = Pose(np.array([p.position for p in POSES]), np.array([p.rotation for p in POSES]))
     goals = [lambda pose=pose: enabled.go_to(pose) for pose in POSES * 3]
@@ -261,18 +263,18 @@ UNHEARD = [
 ]
 
 
-def test_publishers_that_are_not_received_are_told_by_the_node_concerned(user):
-    def said(node):
+def test_publishers_that_are_not_received_are_reported_by_the_node_concerned(user):
+    def text(node):
         status = user.diagnostics.get(f'hexapod/{node}')
         return status.message if status else ''
 
     made = [user.node.create_publisher(kind, topic, qos) for _, kind, topic, qos, _ in UNHEARD]
     try:
-        for node, _, topic, _, told in UNHEARD:
-            words = f'{topic}: /hexapod/hexarm {told}'
-            user.wait(words, lambda n=node, w=words: w in said(n))
+        for node, _, topic, _, reported in UNHEARD:
+            words = f'{topic}: /hexapod/hexarm {reported}'
+            user.wait(words, lambda n=node, w=words: w in text(n))
     finally:
         for publisher in made:
             user.node.destroy_publisher(publisher)
     for node, _, topic, *_ in UNHEARD:
-        user.wait('the end of it', lambda n=node, w=f'{topic}: ': w not in said(n))
+        user.wait('the end of it', lambda n=node, w=f'{topic}: ': w not in text(n))

@@ -66,7 +66,7 @@ def recording(hexapod_graph, user, hexarm, tmp_path_factory):
 
 
 @pytest.fixture(params=[None, Stores.ROS2_JAZZY], ids=['own definitions', 'jazzy'])
-def heard(recording, request):
+def received(recording, request):
     """Every message by topic, decoded by rosbags with the file's definitions, or its own."""
     store = get_typestore(request.param) if request.param else None
     found = {}
@@ -77,37 +77,37 @@ def heard(recording, request):
     return found
 
 
-def test_streams_and_latched_states_are_in_it(heard):
-    assert {f'/hexapod/{name}' for name in (*STREAMS, *LATCHED)} < set(heard)
-    assert heard['/hexapod/machine_state'][0].message == 'enabled'
-    assert heard['/hexapod/pose'][-1].pose.position.z == pytest.approx(0.044, abs=2e-3)
+def test_streams_and_latched_states_are_in_it(received):
+    assert {f'/hexapod/{name}' for name in (*STREAMS, *LATCHED)} < set(received)
+    assert received['/hexapod/machine_state'][0].message == 'enabled'
+    assert received['/hexapod/pose'][-1].pose.position.z == pytest.approx(0.044, abs=2e-3)
 
 
-def test_setpoints_that_another_listener_heard_are_in_it(heard, recording):
-    recorded = {seconds(m.header.stamp) for m in heard['/hexapod/setpoint']}
+def test_setpoints_that_another_listener_received_are_in_it(received, recording):
+    recorded = {seconds(m.header.stamp) for m in received['/hexapod/setpoint']}
     there = {t for t in recording[2] if min(recorded) <= t <= max(recorded)}
     assert len(recorded) > 200
     # Publishers keep one message: on a busy computer either listener may miss a few.
     assert len(there - recorded) < 0.1 * len(there)
 
 
-def test_goal_of_a_publisher_that_stays_is_in_it(heard):
-    assert heard['/hexapod/goal_pose'][-1].pose.position.z == 0.044
+def test_goal_of_a_publisher_that_stays_is_in_it(received):
+    assert received['/hexapod/goal_pose'][-1].pose.position.z == 0.044
 
 
-def test_the_count_that_it_tells_is_that_of_the_file(heard, recording):
-    count = sum(map(len, heard.values()))
-    assert f'{count:,} messages of {len(heard)} topics' in recording[1]
+def test_the_count_that_it_reports_is_that_of_the_file(received, recording):
+    count = sum(map(len, received.values()))
+    assert f'{count:,} messages of {len(received)} topics' in recording[1]
 
 
 def test_messages_are_stored_as_they_were_on_the_wire(recording):
     kinds = {'/hexapod/joint_states': JointState, '/hexapod/machine_state': DiagnosticStatus}
     with AnyReader([recording[0]]) as reader:
         stored = [(c.topic, raw) for c, _, raw in reader.messages() if c.topic in kinds]
-    heard = [deserialize_message(raw, kinds[topic]) for topic, raw in stored]
-    joints = [m.name for m in heard if isinstance(m, JointState)]
+    received = [deserialize_message(raw, kinds[topic]) for topic, raw in stored]
+    joints = [m.name for m in received if isinstance(m, JointState)]
     assert joints[-1] == [f'crank_{i}' for i in range(1, 7)]
-    assert 'enabled' in [m.message for m in heard if isinstance(m, DiagnosticStatus)]
+    assert 'enabled' in [m.message for m in received if isinstance(m, DiagnosticStatus)]
 
 
 def test_qualities_are_those_of_the_publishers(recording):
@@ -158,11 +158,11 @@ def test_only_the_topics_asked_for_and_what_never_was(enabled, hexarm, tmp_path)
         assert {c.topic for c in reader.connections} == {'/hexapod/pose'}
 
 
-def test_it_says_that_it_records_only_once_it_has_met_publishers(user, hexarm, tmp_path):
+def test_it_reports_that_it_records_only_once_it_has_met_publishers(user, hexarm, tmp_path):
     recorder = hexarm('record', 'later', '-o', str(tmp_path / 'later.mcap'))
     assert recorder.stdout.readline() == 'waiting for publishers of /later\n'
     said = recorder.stdout.readline()
-    assert said.startswith('nobody answers in /later on ROS domain')
+    assert said.startswith('no machine found in /later on ROS domain')
     assert said.endswith('; still waiting, Ctrl-C ends it\n')
     publisher = user.node.create_publisher(Float64, '/later/voltage', 10)
     assert recorder.stdout.readline().startswith('recording /later into ')
@@ -173,14 +173,14 @@ def test_it_says_that_it_records_only_once_it_has_met_publishers(user, hexarm, t
     ends_with(recorder, 0)
     user.node.destroy_publisher(publisher)
     with AnyReader([tmp_path / 'later.mcap']) as reader:
-        heard = [connection.topic for connection, _, _ in reader.messages()]
-    assert heard.count('/later/voltage') == 3
+        received = [connection.topic for connection, _, _ in reader.messages()]
+    assert received.count('/later/voltage') == 3
 
 
-def test_namespace_without_a_machine_says_so_and_leaves_no_file(hexarm, tmp_path):
+def test_namespace_without_a_machine_reports_that_and_leaves_no_file(hexarm, tmp_path):
     path = tmp_path / 'nothing.mcap'
     said = ends_with(hexarm('record', 'nobody', '-o', str(path), '--for', '1.5'), 1)
-    assert 'nobody answers in /nobody on ROS domain' in said
+    assert 'no machine found in /nobody on ROS domain' in said
     assert not path.exists()
 
 
@@ -189,7 +189,7 @@ def test_misspelt_topic_alone_is_not_blamed_on_the_graph(user, hexarm, tmp_path)
     words = ('-o', str(path), '--for', '6', '--topics', 'poes')
     said = ends_with(hexarm('record', 'hexapod', *words), 1)
     assert 'there is no topic /hexapod/poes, did you mean /hexapod/pose?' in said
-    assert 'is a graph running' not in said
+    assert 'is it running' not in said
     assert not path.exists()
 
 
@@ -203,9 +203,10 @@ def test_listener_that_no_goal_can_reach_keeps_nobody_waiting(user):
     user.wait('its end', lambda: user.spin(0.1) or user.node.count_subscribers('goal_pose') == 1)
 
 
-def run_example(user, name, *words):
-    example = [sys.executable, f'examples/{name}.py', *words]
-    assert user.end_of(subprocess.Popen(example, cwd=ROOT))[0] == 0
+def run_program(user, line):
+    program = f'from hexarm import Robot\nwith Robot("/hexapod") as robot: {line}'
+    process = subprocess.Popen([sys.executable, '-c', program], cwd=ROOT)
+    assert user.end_of(process)[0] == 0
 
 
 def test_recorder_of_commands_is_not_taken_for_the_machine(user, hexarm, tmp_path):
@@ -213,9 +214,9 @@ def test_recorder_of_commands_is_not_taken_for_the_machine(user, hexarm, tmp_pat
     user.make_ready()
     recorder = hexarm('record', 'hexapod', '--commands', '-o', str(path))
     user.wait('the recorder', lambda: user.node.count_subscribers('goal_pose') > 1)
-    for z in ('0.043', '0.045', '0.047'):
-        user.persist(lambda z=z: run_example(user, 'publish_pose', '0', '0', z))
-    run_example(user, 'stop', '--emergency')
+    for z in (0.043, 0.045, 0.047):
+        user.persist(lambda z=z: run_program(user, f'robot.move_to((0, 0, {z}))'))
+    run_program(user, 'robot.emergency_stop()')
     recorder.send_signal(signal.SIGINT)
     ends_with(recorder, 0)
     user.trigger('serial_bridge/clear_fault')

@@ -8,13 +8,13 @@ pytestmark = pytest.mark.graph
 def test_missing_library_is_one_line_and_status_1(refusal, tmp_path, monkeypatch):
     (tmp_path / 'evdev.py').write_text('raise ModuleNotFoundError("gone", name="evdev")\n')
     monkeypatch.setenv('PYTHONPATH', str(tmp_path))
-    status, said = refusal('gamepad')
+    status, text = refusal('gamepad')
     assert status == 1
-    assert said.startswith('gamepad: needs the Python module evdev: python3 -m pip install evdev')
-    assert len(said.splitlines()) == 1
+    assert text.startswith('gamepad: needs the Python module evdev: python3 -m pip install evdev')
+    assert len(text.splitlines()) == 1
 
 
-def test_machine_without_the_pad_says_so_and_goes_on_looking(
+def test_machine_without_the_pad_reports_that_and_goes_on_looking(
     running, listening, tmp_path, monkeypatch
 ):
     opener = 'def InputDevice(path, readonly):\n    raise FileNotFoundError(2, path)\n'

@@ -186,7 +186,7 @@ def test_a_stop_that_is_refused_becomes_an_emergency_stop(pad):
     assert pad.listener.stops[0]
 
 
-def test_a_second_pad_stops_all_twists_until_it_has_gone_and_the_first_was_let_go(pad):
+def test_a_second_pad_stops_all_twists_until_it_has_gone_and_the_first_was_released(pad):
     listener = pad.listener
     second = Pad(listener, listener.joy_publisher(Joy, 'joy'))
     second.buttons[LB], second.axes[1] = 1, 1.0
@@ -196,13 +196,13 @@ def test_a_second_pad_stops_all_twists_until_it_has_gone_and_the_first_was_let_g
         second.send()
         return is_so()
 
-    def said():
+    def text():
         status = listener.diagnostics.get(f'{NAMESPACE}/joy_teleop')
         return status.message if status else ''
 
     for words in ('more than one publisher', '2 publishers on joy'):
-        listener.wait(words, lambda w=words: both(lambda: w in said()))
-    assert f'/{NAMESPACE}/hexarm' in said()
+        listener.wait(words, lambda w=words: both(lambda: w in text()))
+    assert f'/{NAMESPACE}/hexarm' in text()
     pad.buttons[LB], pad.axes[1] = 1, 1.0
     pad.send_for(LONG_ENOUGH)
     assert listener.twists == []
@@ -211,10 +211,10 @@ def test_a_second_pad_stops_all_twists_until_it_has_gone_and_the_first_was_let_g
 
 
 def test_unknown_gamepad_is_one_line_and_status_1(refusal):
-    status, said = refusal('joy_teleop', gamepad='xbix')
+    status, text = refusal('joy_teleop', gamepad='xbix')
     assert status == 1
-    assert "did you mean 'xbox'" in said
-    assert len(said.splitlines()) == 1
+    assert "did you mean 'xbox'" in text
+    assert len(text.splitlines()) == 1
 
 
 def test_zero_is_the_last_word_of_a_node_that_is_ended(pad, connected):

@@ -101,8 +101,8 @@ def shared(words, listening, request):
 def typist(shared):
     """One who types on after the last test, in a process that goes on."""
     shared.listener.spin(0.5)
-    for heard in (shared.listener.twists, shared.listener.modes, shared.listener.asked):
-        heard.clear()
+    for received in (shared.listener.twists, shared.listener.modes, shared.listener.asked):
+        received.clear()
     return shared
 
 
@@ -137,9 +137,9 @@ def test_mode_frame_gripper_and_home_reach_their_topics(typist):
     assert b'mode hold_orientation, frame tool' in typist.seen
 
 
-def test_the_terminal_says_who_listens(typist):
-    typist.listener.wait('a line', lambda: b'a machine listens in /keyboards' in typist.seen)
-    assert b'nobody listens' not in typist.seen.split(b'a machine listens')[-1]
+def test_the_terminal_reports_who_listens(typist):
+    typist.listener.wait('a line', lambda: b'a machine subscribes in /keyboards' in typist.seen)
+    assert b'no machine subscribes' not in typist.seen.split(b'a machine subscribes')[-1]
 
 
 def test_paste_moves_nothing(typist):
@@ -160,7 +160,7 @@ def test_ctrl_c_ends_it_with_a_zero_and_the_terminal_is_as_before(typist):
     typist.await_last(ZERO)
 
 
-def test_a_keyboard_that_nobody_hears_says_so_and_ends_with_its_window(words, request):
+def test_a_keyboard_that_nobody_receives_reports_that_and_ends_with_its_window(words, request):
     keys, screen = pty.openpty()
     command = words('keyboard_teleop', 'lonely')
     process = subprocess.Popen(
@@ -169,7 +169,7 @@ def test_a_keyboard_that_nobody_hears_says_so_and_ends_with_its_window(words, re
     os.close(screen)
     seen = b''
     try:
-        while b'nobody listens in /lonely on ROS domain' not in seen:
+        while b'no machine subscribes in /lonely on ROS domain' not in seen:
             assert select.select([keys], [], [], PATIENCE)[0], seen
             seen += os.read(keys, 4096)
         os.close(keys)

@@ -102,7 +102,7 @@ def test_a_node_that_does_not_answer_is_named(page, machine, hexapod_graph):
         machine.client.spin(1.0)  # it takes the machine over anew
 
 
-def test_other_sites_are_turned_away(panel, page):
+def test_other_sites_are_rejected(panel, page):
     assert [opened(panel, path, 'http://elsewhere.example') for path in ('/', '/joystick')] == [
         403,
         403,

@@ -12,7 +12,7 @@ from std_srvs.srv import SetBool
 
 from hexarm.graph import Executable, Graph
 from hexarm.machines import find
-from manipulator.nodes.qos import COMMAND, MEASUREMENT
+from manipulator.nodes.qos import COMMAND, EVERY_WORD, MEASUREMENT
 from patient_user import SERVOS_ON, WITHOUT_BOARD, PatientUser
 
 NAMES = [f'crank_{i}' for i in range(1, 7)]
@@ -30,7 +30,7 @@ class Rig(PatientUser):
         subscribe(JointState, 'joint_states', self.joints.append, MEASUREMENT)
         subscribe(JointState, 'true_joint_states', self.true_joints.append, MEASUREMENT)
         self._commands = self.node.create_publisher(JointState, 'joint_command', COMMAND)
-        self._stops = self.node.create_publisher(Bool, 'emergency_stop', COMMAND)
+        self._stops = self.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         self.wait('the bridge', self._is_heard, 10.0)
         self.wait('the board', lambda: len(self.true_joints) > 0, 10.0)
 
@@ -103,14 +103,14 @@ class Rig(PatientUser):
         status = self.diagnostics[name]
         return {value.key: value.value for value in status.values} | {'message': status.message}
 
-    def refuses(self, said, **command):
+    def refuses(self, text, **command):
         """Asks for what the bridge must not follow until it says why not."""
 
         def is_refused():
             self.command(**command)
-            return said in self.report()['last_refusal']
+            return text in self.report()['last_refusal']
 
-        self.wait(said, is_refused)
+        self.wait(text, is_refused)
 
     def set_battery(self, volts):
         value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=volts)

@@ -1,6 +1,6 @@
 """Which joint commands move the servos, and what is said of the others.
 
-When a command is refused, test/bridge/test_command_gate.py tries.
+When a command is refused, test/bridge/test_command_validator.py tries.
 """
 
 import math
@@ -31,7 +31,7 @@ def test_commands_move_the_servos_and_silence_holds_them(rig):
 BAD_COMMANDS = [
     ({'positions': [PARK] * 6, 'names': [*NAMES[:5], 'crank_9']}, "unknown joint 'crank_9'"),
     ({'positions': [PARK] * 5, 'names': NAMES[:5]}, 'no position for crank_6'),
-    ({'positions': [PARK] * 6, 'names': ['crank_1'] * 6}, 'crank_1 stands twice'),
+    ({'positions': [PARK] * 6, 'names': ['crank_1'] * 6}, 'crank_1 is named twice'),
     ({'positions': [PARK] * 5 + [math.nan]}, 'crank_6: nan is not finite'),
     ({'positions': [PARK, PARK, 4.0, PARK, PARK, PARK]}, 'crank_3: 4 rad outside'),
     ({'positions': [PARK + 0.5] * 6}, 'crank_1: 2.594 rad would jump by 0.'),
@@ -41,8 +41,8 @@ BAD_COMMANDS = [
 
 
 def test_a_bad_command_is_named_and_the_next_good_one_works(enabled):
-    for command, said in BAD_COMMANDS:
-        enabled.persist(lambda c=command, s=said: enabled.refuses(s, **c))
+    for command, text in BAD_COMMANDS:
+        enabled.persist(lambda c=command, s=text: enabled.refuses(s, **c))
     enabled.stream(PARK + 0.1)
 
 

@@ -85,7 +85,7 @@ def test_every_trouble_that_can_be_asked_of_the_fake_board_shows_in_the_state(en
     enabled.trigger('fake_hardware/reset')
     enabled.wait_for_state('disarmed')
     assert enabled.inject('version').successful
-    enabled.wait('the version', lambda: 'the board speaks protocol 2' in enabled.summary)
+    enabled.wait('the version', lambda: 'the board has protocol 2' in enabled.summary)
     enabled.wait_for_state('disarmed')
     refused = enabled.inject('fire')
     assert not refused.successful
@@ -100,11 +100,11 @@ def is_done(user, service):
     return True
 
 
-def test_the_state_is_said_again_and_again_for_those_who_must_know_that_the_bridge_lives(rig):
-    heard = []
+def test_the_state_is_reported_again_and_again_for_those_who_must_know_that_the_bridge_lives(rig):
+    received = []
     subscription = rig.node.create_subscription(
-        DiagnosticStatus, 'machine_state', lambda m: heard.append(m.message), 10
+        DiagnosticStatus, 'machine_state', lambda m: received.append(m.message), 10
     )
-    rig.wait('the same state four times', lambda: len(heard) >= 4)
+    rig.wait('the same state four times', lambda: len(received) >= 4)
     rig.node.destroy_subscription(subscription)
-    assert set(heard) == {rig.machine_state.message}
+    assert set(received) == {rig.machine_state.message}

@@ -81,7 +81,7 @@ def test_it_shows_the_link_and_leaves_the_terminal_as_it_was(rig, monitor, key):
     assert monitor.ends(key) == (0, True)
 
 
-def test_without_rich_it_says_how_to_get_it(request):
+def test_without_rich_it_reports_how_to_get_it(request):
     without = (
         'import sys; sys.modules["rich"] = None\n'
         'from hexarm.cli.main import main; sys.exit(main(["monitor"]))'

@@ -12,15 +12,15 @@ from manipulator.nodes.qos import LATCHED
 pytestmark = pytest.mark.graph
 
 
-def test_a_second_bridge_on_the_port_says_that_it_is_in_use(rig, port):
+def test_a_second_bridge_on_the_port_reports_that_it_is_in_use(rig, port):
     second = Executable('serial_bridge', {'port': str(port)})
-    heard = []
+    received = []
     subscription = rig.node.create_subscription(
-        DiagnosticStatus, '/second/machine_state', heard.append, LATCHED
+        DiagnosticStatus, '/second/machine_state', received.append, LATCHED
     )
     with Graph([second], 'second') as graph:
-        rig.wait('its state', lambda: any('in use by another program' in str(m) for m in heard))
-        assert heard[-1].message == 'disconnected'
+        rig.wait('its state', lambda: any('in use by another program' in str(m) for m in received))
+        assert received[-1].message == 'disconnected'
         assert graph.dead() is None
     rig.node.destroy_subscription(subscription)
 

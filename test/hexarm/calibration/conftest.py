@@ -16,7 +16,7 @@ import pytest
 from bridge.fake.board_thread import BoardThread, FakeMachine
 from bridge.fake.fake_line import FakeLine
 from bridge.servo_config import BoardConfig
-from bridge.servo_walk import STEPS_US
+from bridge.servo_wizard import STEPS_US
 from hexarm import machines
 
 ROOT = Path(__file__).resolve().parents[3]

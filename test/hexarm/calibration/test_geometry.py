@@ -56,17 +56,17 @@ def test_the_written_file_commands_the_true_machine_well(tmp_path, name, capsys)
     kinematics = load(str(mine)).kinematics
     device, marker = (_pose(found[key]) for key in ('T_device_base', 'T_platform_marker'))
     truth = frames.seen(model.predict(true, joints, near))
-    told = [kinematics.forward(q + shift, p).pose for q, p in zip(joints, near, strict=True)]
+    reported = [kinematics.forward(q + shift, p).pose for q, p in zip(joints, near, strict=True)]
     errors = [
         (device @ pose @ marker).position - true_pose
-        for pose, true_pose in zip(told, truth.position, strict=True)
+        for pose, true_pose in zip(reported, truth.position, strict=True)
     ]
     assert np.sqrt(np.mean(np.square(errors))) < 7e-5
 
 
-def _pose(told):
+def _pose(reported):
 
-    return Pose.from_xyz_quaternion(told['xyz'], told['quaternion_xyzw'])
+    return Pose.from_xyz_quaternion(reported['xyz'], reported['quaternion_xyzw'])
 
 
 def test_people_read_errors_parameters_and_what_is_not_seen(tmp_path, capsys):

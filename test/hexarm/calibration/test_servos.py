@@ -7,6 +7,7 @@ import signal
 import numpy as np
 import pytest
 
+from bridge.frames import encode
 from bridge.protocol import Arm, Mode
 from bridge.servo_config import BoardConfig
 from hexarm import machines
@@ -20,7 +21,7 @@ WRONG = {
 }
 
 
-def test_after_a_sitting_the_file_holds_the_true_values_and_nothing_else_has_changed(sit_down):
+def test_after_a_session_the_file_holds_the_true_values_and_nothing_else_has_changed(sit_down):
     person, file = sit_down(WRONG, '--only', 'crank_1', 'crank_2')
     before = file.read_text()
     person.begin()
@@ -74,7 +75,7 @@ def test_space_stops_and_nothing_moves_until_it_is_cleared(sit_down):
 
 
 @pytest.mark.parametrize('end', ['ctrl-c', 'terminate', 'terminal', 'after a stop'])
-def test_servos_go_off_however_the_sitting_ends(sit_down, end):
+def test_servos_go_off_however_the_session_ends(sit_down, end):
     person, file = sit_down({})
     before = file.read_text()
     person.begin()
@@ -93,12 +94,12 @@ def test_servos_go_off_however_the_sitting_ends(sit_down, end):
     assert file.read_text() == before
 
 
-def test_a_board_that_vanishes_ends_the_sitting_in_words(sit_down):
+def test_a_board_that_vanishes_ends_the_session_in_words(sit_down):
     person, _ = sit_down({})
     person.begin()
     person.board.do(lambda: person.board.plug(None))
     assert person.await_end() == 1
-    assert 'has vanished' in person.said
+    assert 'was disconnected' in person.said
     assert 'pull their plug' in person.said
     assert 'Traceback' not in person.said
 
@@ -130,7 +131,13 @@ def test_without_consent_no_servo_gets_a_pulse(sit_down):
 
 def test_a_platform_that_the_board_holds_up_is_not_dropped_without_consent(sit_down):
     person, _ = sit_down({})
-    person.board.do(lambda: person.machine.board._modes.obey(Arm((3000,) * 6), 0))
+
+    def arm():
+        board = person.machine.board
+        board.step(0.1)  # its boot, in which it hears nothing
+        board.feed(encode(Arm((3000,) * 6), 1))
+
+    person.board.do(arm)
     person.await_words('ENTER energises')
     person.type('q')
     assert person.await_end() == 0
@@ -149,7 +156,7 @@ def test_a_fake_board_can_be_tried_with_every_machine(name):
     assert not os.path.exists(fake.port)
 
 
-def test_a_port_that_another_program_holds_is_said_kindly(sit_down):
+def test_a_port_that_another_program_holds_is_reported_kindly(sit_down):
     person, _ = sit_down({})
     person.await_words('ENTER energises')
     other = person.another()
@@ -159,17 +166,17 @@ def test_a_port_that_another_program_holds_is_said_kindly(sit_down):
 
 
 @pytest.mark.parametrize(
-    ('words', 'said'),
+    ('words', 'text'),
     [
         (['robocake'], '--output my_robocake.yaml'),
-        (['robocake', '--output', '/nowhere/x.yaml'], 'is no folder'),
+        (['robocake', '--output', '/nowhere/x.yaml'], 'is not a folder'),
         (['robocake', '--output', __file__], 'not overwritten'),
         (['robocake', '--output', 'new.yaml', '--only', 'crnk_1'], "did you mean 'crank_1'"),
         (['robocake', '--output', 'new.yaml'], 'needs a terminal'),
     ],
 )
-def test_what_cannot_be_is_said_before_anything_moves(words, said, capsys, monkeypatch):
+def test_what_cannot_be_is_reported_before_anything_moves(words, text, capsys, monkeypatch):
     with open(os.devnull) as nothing:
         monkeypatch.setattr('sys.stdin', nothing)
         assert main(['calibrate', 'servos', *words]) == 1
-    assert said in capsys.readouterr().err
+    assert text in capsys.readouterr().err

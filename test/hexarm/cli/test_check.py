@@ -64,11 +64,11 @@ def test_missing_key_is_named(place):
 
 
 @pytest.mark.parametrize('section', ['geometry', 'limits', 'motion', 'servos', 'link'])
-def test_missing_section_is_said_once(section):
+def test_missing_section_is_reported_once(section):
     assert problems_of(section_without(ROBOCAKE, section)) == [f'{section}: missing']
 
 
-def test_rod_shorter_than_its_gap_says_by_how_much():
+def test_rod_shorter_than_its_gap_reports_by_how_much():
     (found,) = problems_of(changed(ROBOCAKE, ('rod_length_mm: 58.0', 'rod_length_mm: 20.0')))
     assert 'home' in found
     assert 'rod too short by' in found
@@ -277,7 +277,7 @@ def test_home_on_the_wrong_bend_is_a_warning_with_both_values():
     assert report.problems == ()
     (warning,) = report.warnings
     assert 'crank_1, crank_2, crank_3, crank_4, crank_5, crank_6 at 109.9°' in warning
-    assert 'bent the other way: 0.0°, 0.0°' in warning
+    assert 'on the other branch: 0.0°, 0.0°' in warning
 
 
 def test_tilted_home_in_the_middle_of_its_range_is_no_warning():
@@ -320,6 +320,9 @@ def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
     head, warning, home = capsys.readouterr().out.splitlines()
     assert head == f'{path}: no problems, 1 warning'
     assert warning.startswith('warning: servos.joints: crank_1, crank_2')
-    assert home == 'joints at home: 120.0  120.0  120.0  120.0  120.0  120.0°'
+    assert home == f'joints at home: {"  ".join(["2.094473"] * 6)} rad'
+    assert main(['check', str(path), '--units', 'mm']) == 0
+    home = capsys.readouterr().out.splitlines()[-1]
+    assert home == f'joints at home: {"  ".join(["120.0045"] * 6)} °'
     assert main(['check', 'stewart_6_6']) == 0
-    assert '190.0  190.0 mm' in capsys.readouterr().out
+    assert '0.190000  0.190000 m' in capsys.readouterr().out

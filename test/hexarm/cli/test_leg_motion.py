@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from hexarm.cli.main import main
+from hexarm.cli.statuses import OUT_OF_REACH
 
 PAPER = ['--legs', '0.15', '--to', '0.02', '0.02', '0.2']
 
@@ -21,21 +22,21 @@ PAPER = ['--legs', '0.15', '--to', '0.02', '0.02', '0.2']
 )
 def test_figures_of_the_experiment(capsys, machine, height, axis, vector, degrees):
     assert main(['leg-motion', machine, *PAPER, '--json']) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert len(told['xyz']) == len(told['share']) == 101
-    assert told['xyz'][0] == pytest.approx([0.0, 0.0, height], abs=1e-6)
-    assert told['xyz'][-1] == pytest.approx([0.02, 0.02, 0.2], abs=1e-9)
-    assert told['deviation']['axis'] == pytest.approx(axis, abs=1e-6)
-    assert told['deviation']['position'] == pytest.approx(vector, abs=1e-5)
-    assert np.degrees(told['deviation']['angle']) == pytest.approx(degrees, abs=1e-4)
-    assert np.ptp(np.diff(told['lengths'], axis=0), axis=0).max() < 1e-12
-    assert told['beyond_a_limit'] is None
+    reported = json.loads(capsys.readouterr().out)
+    assert len(reported['xyz']) == len(reported['share']) == 101
+    assert reported['xyz'][0] == pytest.approx([0.0, 0.0, height], abs=1e-6)
+    assert reported['xyz'][-1] == pytest.approx([0.02, 0.02, 0.2], abs=1e-9)
+    assert reported['deviation']['axis'] == pytest.approx(axis, abs=1e-6)
+    assert reported['deviation']['position'] == pytest.approx(vector, abs=1e-5)
+    assert np.degrees(reported['deviation']['angle']) == pytest.approx(degrees, abs=1e-4)
+    assert np.ptp(np.diff(reported['lengths'], axis=0), axis=0).max() < 1e-12
+    assert reported['beyond_a_limit'] is None
 
 
 def test_table_has_eleven_steps_and_the_deviation(capsys):
     assert main(['leg-motion', 'stewart_6_6', *PAPER]) == 0
     header, *rows, last = capsys.readouterr().out.splitlines()
-    assert header.split()[:2] == ['way', '(%)']
+    assert header.split()[:2] == ['path', '(%)']
     assert [float(row.split()[0]) for row in rows] == [10.0 * k for k in range(11)]
     assert last == 'deviation from linear: at most 2.106 mm (1.326 mm on one axis) and 0.0261°'
 
@@ -60,7 +61,7 @@ def test_without_legs_the_motion_starts_at_home(capsys):
     ],
 )
 def test_what_cannot_be_simulated_is_refused_with_a_reason(capsys, words, reason):
-    assert main(['leg-motion', *words]) == 2
+    assert main(['leg-motion', *words]) == (OUT_OF_REACH if reason.startswith('leg 1') else 2)
     assert reason in capsys.readouterr().err
 
 

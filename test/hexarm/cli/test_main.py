@@ -43,7 +43,7 @@ def test_version_is_that_of_the_package(capsys):
     assert number[0].isdigit()
 
 
-def test_command_without_ros_says_what_it_needs(tmp_path):
+def test_command_without_ros_reports_what_it_needs(tmp_path):
     (tmp_path / 'rclpy.py').write_text('raise ModuleNotFoundError("gone", name="rclpy")\n')
     script = f'import sys; sys.path.insert(0, {str(tmp_path)!r}); import hexarm.cli.main as m; '
     script += "sys.exit(m.main(['up', 'hexapod']))"
@@ -53,6 +53,14 @@ def test_command_without_ros_says_what_it_needs(tmp_path):
     assert done.returncode == 1
     assert done.stderr.startswith('hexarm: needs the Python module rclpy: install ROS 2 Jazzy')
     assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize('words', [('hexapod', '--port', '/dev/nothing'), ('ur5', '--port', '/x')])
+def test_a_port_that_does_not_exist_is_named_once_and_before_anything_starts(words, capsys):
+    assert main(['up', *words]) == 1
+    said = capsys.readouterr().err
+    assert f'port {words[-1]} does not exist' in said
+    assert said.count('\n') == 1
 
 
 @pytest.mark.parametrize('command', ['accuracy', 'workspace'])

@@ -7,8 +7,7 @@ import pytest
 pytest.importorskip('rclpy')
 
 from hexarm.cli.up import Interrupted, park
-from hexarm.client import Stopped
-from manipulator.errors import Refused
+from manipulator.errors import Refused, Stopped
 
 
 class User:
@@ -59,19 +58,17 @@ def test_a_machine_that_can_park_parks_and_is_switched_off(stop, capsys):
 
 
 @pytest.mark.parametrize('error', [Refused('joint 6 in the way'), Stopped('braked')])
-def test_in_a_terminal_a_second_ctrl_c_lets_go_of_what_cannot_park(
-    monkeypatch, stop, capsys, error
-):
+def test_in_a_terminal_a_second_ctrl_c_releases_what_cannot_park(monkeypatch, stop, capsys, error):
     terminal(monkeypatch, True)
     user = User(parking=error, interruptions=3)
     park(user, stop)
     assert user.asked == ['park', 'disable']
-    said = capsys.readouterr().out
-    assert f'not parked: {error}' in said
-    assert 'Ctrl-C switches them off here' in said
+    text = capsys.readouterr().out
+    assert f'not parked: {error}' in text
+    assert 'Ctrl-C switches them off here' in text
 
 
-def test_in_a_terminal_nothing_is_let_go_of_without_an_answer(monkeypatch, stop):
+def test_in_a_terminal_nothing_is_released_without_an_answer(monkeypatch, stop):
     terminal(monkeypatch, True)
     user = User(parking=Refused('no'), interruptions=0)
     park(user, stop)
@@ -86,10 +83,10 @@ def test_without_a_terminal_a_machine_that_cannot_park_is_left_holding(
     user = User(state)
     park(user, stop)
     assert user.asked == []
-    said = capsys.readouterr().out
-    assert f'not parked: the machine is {state}' in said
-    assert 'the board does what on_link_loss says' in said
-    assert 'hexarm disable' not in said  # once the graph has ended nobody would hear it
+    text = capsys.readouterr().out
+    assert f'not parked: the machine is {state}' in text
+    assert 'the board acts as set by on_link_loss' in text
+    assert 'hexarm disable' not in text  # once the graph has ended nobody would hear it
 
 
 def test_ctrl_c_while_it_parks_switches_the_servos_off_where_they_are(stop, capsys):

@@ -102,10 +102,10 @@ def table(path):
 
 
 def test_error_is_that_by_which_it_is_off(recording, tmp_path, capsys):
-    told = plotted(capsys, recording, '--csv', tmp_path)
-    assert told['error_rms_mm'] == pytest.approx(1e3 * OFF, abs=1e-6)
-    assert told['error_rms_deg'] == pytest.approx(1.0, abs=1e-6)
-    assert (told['setpoints'], told['poses']) == (500, 500)
+    reported = plotted(capsys, recording, '--csv', tmp_path)
+    assert reported['error_rms_mm'] == pytest.approx(1e3 * OFF, abs=1e-6)
+    assert reported['error_rms_deg'] == pytest.approx(1.0, abs=1e-6)
+    assert (reported['setpoints'], reported['poses']) == (500, 500)
 
 
 def test_refusals_of_goals_and_of_nodes_are_counted_once(recording, tmp_path, capsys):
@@ -121,7 +121,7 @@ def test_refusals_of_goals_and_of_nodes_are_counted_once(recording, tmp_path, ca
     ]
 
 
-def test_tables_hold_what_was_said_in_radians_and_metres(recording, tmp_path, capsys):
+def test_tables_hold_what_was_reported_in_radians_and_metres(recording, tmp_path, capsys):
     plotted(capsys, recording, '--csv', tmp_path / 'new' / 'folder', '--from', 0.5, '--to', 2.5)
     folder = tmp_path / 'new' / 'folder'
     setpoints, joints = table(folder / 'setpoint.csv'), table(folder / 'joint_states.csv')
@@ -139,7 +139,7 @@ def test_tables_hold_what_was_said_in_radians_and_metres(recording, tmp_path, ca
     )
 
 
-def test_goal_is_told_on_the_turn_of_the_setpoint(recording, tmp_path, capsys):
+def test_goal_is_reported_on_the_turn_of_the_setpoint(recording, tmp_path, capsys):
     plotted(capsys, recording, '--csv', tmp_path)
     (goal,) = table(tmp_path / 'goals.csv')
     assert float(goal['yaw_rad']) == pytest.approx(2 * math.pi - 1.2, abs=1e-6)
@@ -164,7 +164,9 @@ def test_recording_that_was_torn_off_is_read_to_the_tear(tmp_path, capsys):
     assert plotted(capsys, torn, '--csv', tmp_path)['setpoints'] == 500
 
 
-def test_recording_with_changed_bytes_is_told_from_a_good_one(recording, tmp_path, capsys):
+def test_recording_with_changed_bytes_is_distinguished_from_a_good_one(
+    recording, tmp_path, capsys
+):
     good, path = recording.read_bytes(), tmp_path / 'changed.mcap'
     rng = np.random.default_rng(3)
     refused = 0
@@ -184,8 +186,12 @@ def test_of_several_machines_one_is_chosen(tmp_path, capsys):
     path = write(tmp_path / 'two.mcap', ('hexapod', 'lab/arm'))
     assert main(['plot', str(path)]) == 2
     assert 'choose with --namespace: /hexapod, /lab/arm' in capsys.readouterr().err
-    told = plotted(capsys, path, '--namespace', '/lab/arm', '--csv', tmp_path)
-    assert (told['namespace'], told['setpoints'], told['refused']) == ('lab/arm', 500, 1)
+    reported = plotted(capsys, path, '--namespace', '/lab/arm', '--csv', tmp_path)
+    assert (reported['namespace'], reported['setpoints'], reported['refused']) == (
+        'lab/arm',
+        500,
+        1,
+    )
     assert main(['plot', str(path), '--namespace', 'leg']) == 2
     assert '/leg is not in this recording, only /hexapod, /lab/arm' in capsys.readouterr().err
 
@@ -198,7 +204,7 @@ def test_files_that_are_no_recordings(tmp_path, capsys):
         pass
     for name, reason in (
         ('none.mcap', 'none.mcap: No such file or directory'),
-        ('text.mcap', 'text.mcap is no MCAP file'),
+        ('text.mcap', 'text.mcap is not an MCAP file'),
         ('empty.mcap', 'there is no machine in this recording'),
         ('bag', 'is an SQLite bag: turn it into MCAP with `ros2 bag convert`'),
     ):

@@ -39,7 +39,7 @@ def test_out_of_reach_is_answered_with_the_leg_and_a_pose_that_is_reachable(caps
     assert machine.constraints.admits(pose, machine.kinematics.inverse(pose))
 
 
-def test_travel_along_a_twist_is_told(capsys):
+def test_travel_along_a_twist_is_reported(capsys):
     found = answer(capsys, 'robocake', *HOME, '--along', '0', '0', '-0.01', '0', '0', '0')
     assert found['travel']['seconds'] == pytest.approx(1.78)
     assert found['travel']['end']['xyz'] == pytest.approx([0, 0, 0.02339])
@@ -51,15 +51,16 @@ def test_people_read_the_limits_and_the_nearest_pose(capsys, machine):
     assert main(['reach', machine, '--xyz', '0', '0', '3']) == OUT_OF_REACH
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith('out of reach: ')
-    assert lines[-1].startswith('nearest reachable   x ')
+    assert lines[-3] == 'nearest reachable'
+    assert lines[-2].startswith('x, y, z ')
 
 
 def test_millimetres_are_asked_about_and_written_without_powers_of_ten(capsys):
     assert main(['reach', 'robocake', '--xyz', '5', '0', '45']) == OUT_OF_REACH
-    said = capsys.readouterr().out
-    assert 'rod too short by 45.2 m' in said
-    assert 'are these millimetres?' in said
-    assert 'e+' not in said
+    text = capsys.readouterr().out
+    assert 'rod too short by 45.2 m' in text
+    assert 'are these millimetres?' in text
+    assert 'e+' not in text
 
 
 @pytest.mark.parametrize(

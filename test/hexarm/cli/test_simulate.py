@@ -12,26 +12,26 @@ QUICK = ['--periods', '0.5']
 
 def test_figures_of_the_experiment(capsys):
     assert main(['simulate', 'robocake', *QUICK, '--json']) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told['part_in_reach'] == 1.0
-    assert 20 <= told['corners_out_of_reach'] <= 44
-    assert told['platform_speed'] == pytest.approx(0.050, rel=0.02)
-    assert max(told['joint_effort']) < 0.25 * 0.1765
-    assert told['closure_error'] < 1e-5
-    assert told['position_error'] < 1e-3
+    reported = json.loads(capsys.readouterr().out)
+    assert reported['part_in_reach'] == 1.0
+    assert 20 <= reported['corners_out_of_reach'] <= 44
+    assert reported['platform_speed'] == pytest.approx(0.050, rel=0.02)
+    assert max(reported['joint_effort']) < 0.25 * 0.1765
+    assert reported['closure_error'] < 1e-5
+    assert reported['position_error'] < 1e-3
 
 
-def test_amplitudes_beyond_reach_are_made_smaller_and_it_says_so(capsys):
+def test_amplitudes_beyond_reach_are_made_smaller_and_it_reports_that(capsys):
     wide = ['--amplitude', '0.012', '0.012', '0.006', '0.2', '0.2', '0.16']
     assert main(['simulate', 'robocake', *QUICK, *wide, '--frequency', '0.5']) == 0
     assert '% of the amplitudes' in capsys.readouterr().out
 
 
-def test_a_payload_beyond_the_servos_says_where_it_stalls(capsys):
+def test_a_payload_beyond_the_servos_reports_where_it_stalls(capsys):
     assert main(['simulate', 'robocake', '--payload', '4000']) == 2
-    told = capsys.readouterr().err
-    assert 'crank_' in told
-    assert 'stalls at x ' in told
+    reported = capsys.readouterr().err
+    assert 'crank_' in reported
+    assert 'stalls at x ' in reported
 
 
 def test_pictures_are_saved(tmp_path, capsys):

@@ -39,13 +39,13 @@ def pressed(button):
 NONE, ENABLED, STOPPED = None, ('enabled', ''), ('stopped', 'until ~/clear_fault is called')
 
 
-def test_a_stop_goes_out_with_the_first_subscriber_and_before_anything_was_heard():
+def test_a_stop_goes_out_with_the_first_subscriber_and_before_anything_was_received():
     button = Button((0, NONE), (1, NONE), (1, ENABLED), (1, STOPPED))
     assert pressed(button)
     assert button.log == [(1, NONE)]
 
 
-def test_it_is_said_to_every_subscriber_that_comes_since_the_first_may_be_a_recorder():
+def test_it_is_sent_to_every_subscriber_that_comes_since_the_first_may_be_a_recorder():
     button = Button((0, NONE), (1, NONE), (1, NONE), (2, NONE), (2, STOPPED))
     assert pressed(button)
     assert button.log == [(1, NONE), (2, NONE)]
@@ -57,14 +57,14 @@ def test_a_machine_that_is_stopped_already_is_stopped_once_more():
     assert button.log == [(1, STOPPED)]
 
 
-def test_it_is_said_again_until_the_machine_stands():
+def test_it_is_repeated_until_the_machine_stands():
     button = Button(*[(1, ENABLED)] * 40, (1, STOPPED))
     assert pressed(button)
     assert 3 <= len(button.log) <= 5
 
 
 @pytest.mark.parametrize('state', [ENABLED, ('disconnected', 'no port'), NONE])
-def test_it_is_not_said_to_stand_where_it_never_says_so(state):
+def test_it_is_not_reported_to_stand_where_it_never_reports_that(state):
     button = Button((1, state))
     assert not pressed(button)
     assert len(button.log) > 20
@@ -76,7 +76,7 @@ def test_where_nobody_listens_it_gives_up_in_the_end():
     assert button.log == []
 
 
-def test_a_bridge_of_this_computer_is_told_before_the_graph_is_joined(monkeypatch):
+def test_a_bridge_of_this_computer_is_reported_before_the_graph_is_joined(monkeypatch):
     monkeypatch.setenv('ROS_DOMAIN_ID', '7')
     received = []
     stops = StopSocket(stop_address('/test_stop/serial_bridge', 7), lambda: received.append(1))

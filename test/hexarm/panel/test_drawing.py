@@ -63,7 +63,7 @@ def test_colours_go_from_red_over_amber_to_green():
     assert colour(1.0) == GOOD
 
 
-def test_what_a_node_says_cannot_become_markup():
+def test_what_a_node_reports_cannot_become_markup():
     report = NodeReport('ik', 1, 'a|b <img src=x>', {'last_refusal': '**leg** 3 |'}, 0.2)
     text = diagnostics_text((report,))
     assert '⚠' in text

@@ -10,7 +10,7 @@ from manipulator.pose import Pose
 
 
 @pytest.mark.parametrize(('closed', 'opened'), [(-0.9, 0.9), (0.9, -0.9)])
-def test_the_opening_is_the_share_of_the_way_and_stays_within(closed, opened):
+def test_the_opening_is_the_share_of_the_range_and_stays_within(closed, opened):
     joint = GripperJoint('gripper', closed, opened)
     assert [joint.opening(p) for p in (closed, 0.0, opened)] == [0.0, 0.5, 1.0]
     assert joint.opening(2 * closed) == 0.0

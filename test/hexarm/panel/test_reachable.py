@@ -11,7 +11,7 @@ from hexarm.panel.reachable import (
     pose_at,
     reachable_ranges,
 )
-from manipulator.analysis.way import admits
+from manipulator.analysis.free_paths import admits
 from manipulator.pose import Pose
 
 PLATFORMS = ['robocake', 'stewart_6_3']
@@ -59,7 +59,7 @@ def test_home_lies_within_the_bounds(name):
     assert (home <= high).all()
 
 
-def test_angles_are_told_within_half_a_turn_of_others():
+def test_angles_are_reported_within_half_a_turn_of_others():
     pose = Pose.from_xyz_rpy((0.0, 0.0, 0.1), (-3.1, 0.0, 0.2))
     near = np.array([0.0, 0.0, 0.0, 3.1, 0.0, 6.3])
     expected = [0.0, 0.0, 0.1, 2 * np.pi - 3.1, 0.0, 0.2 + 2 * np.pi]

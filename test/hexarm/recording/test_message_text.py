@@ -3,7 +3,7 @@
 import pytest
 from rosbags.typesys import get_types_from_msg
 
-from hexarm.recording.telling import SEPARATOR, UnknownType, mentioned, schema_text
+from hexarm.recording.log_parser import SEPARATOR, UnknownType, mentioned, schema_text
 
 
 def test_a_type_brings_what_it_is_made_of_once():

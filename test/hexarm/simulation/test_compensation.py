@@ -11,7 +11,7 @@ from hexarm.simulation.compensation import Compensation
 from hexarm.simulation.model import dynamics_of
 from hexarm.simulation.static_load import static_load
 from manipulator.errors import ConfigError
-from manipulator.sag import commanded, settled
+from manipulator.static_deflection import commanded, deflected
 
 
 def compensation_of(this, payload_g=None):
@@ -41,9 +41,9 @@ def test_in_slow_motion_most_of_the_error_was_sag(capsys):
     errors = []
     for flag in ('--no-compensate', '--compensate'):
         assert main([*words, flag]) == 0
-        told = json.loads(capsys.readouterr().out)
-        assert told['is_compensated'] == (flag == '--compensate')
-        errors.append(told['position_error'])
+        reported = json.loads(capsys.readouterr().out)
+        assert reported['is_compensated'] == (flag == '--compensate')
+        errors.append(reported['position_error'])
     assert errors[1] < 0.4 * errors[0]
 
 
@@ -71,15 +71,15 @@ def test_nodes_bring_the_platform_where_it_was_wanted(example, tmp_path):
     """The command of the ik node into MuJoCo, and the pose node's word on where that leads."""
     machine, this = loaded(tmp_path, on=ON), example('robocake')
     pose = machine.kinematics.home.moved(np.array([3e-3, 2e-3, -2e-3, 0.03, 0.02, 0.02]))
-    command = commanded(machine.sag, pose, machine.kinematics.inverse(pose))
+    command = commanded(machine.deflection, pose, machine.kinematics.inverse(pose))
     simulation = this.simulation(pose)
     simulation.aim(command)
     simulation.step(1500)
     real = simulation.pose
     raw = machine.kinematics.forward(command, pose)
-    told = settled(machine.sag, machine.kinematics, command, raw).pose
+    reported = deflected(machine.deflection, machine.kinematics, command, raw).pose
     assert np.abs(real.twist_to(pose)[:3]).max() < 1e-5
-    assert np.abs(real.twist_to(told)[:3]).max() < 1e-5
+    assert np.abs(real.twist_to(reported)[:3]).max() < 1e-5
     assert np.abs(real.twist_to(raw.pose)[:3]).max() > 1e-4
 
 
@@ -89,8 +89,8 @@ def test_taking_over_again_and_again_moves_nothing(tmp_path):
     first = command = kinematics.inverse(kinematics.home)
     for _ in range(50):
         raw = kinematics.forward(command, kinematics.home)
-        pose = settled(machine.sag, kinematics, command, raw).pose
-        command = commanded(machine.sag, pose, kinematics.inverse(pose))
+        pose = deflected(machine.deflection, kinematics, command, raw).pose
+        command = commanded(machine.deflection, pose, kinematics.inverse(pose))
     assert np.abs(command - first).max() < np.radians(0.1)
 
 
@@ -98,9 +98,9 @@ def test_without_the_key_nothing_is_added(tmp_path):
     machine = loaded(tmp_path)
     joints = machine.kinematics.inverse(machine.kinematics.home)
     solution = machine.kinematics.forward(joints)
-    assert machine.sag is None
+    assert machine.deflection is None
     assert commanded(None, machine.kinematics.home, joints) is joints
-    assert settled(None, machine.kinematics, joints, solution) is solution
+    assert deflected(None, machine.kinematics, joints, solution) is solution
 
 
 def test_machines_with_encoders_are_refused(tmp_path):

@@ -16,7 +16,7 @@ def changed(old, new):
 
 
 @pytest.mark.parametrize(
-    ('old', 'new', 'told'),
+    ('old', 'new', 'reported'),
     [
         ('{mass_g: 100.0, th', '{mass_g: -100.0, th', 'dynamics.platform.mass_g: -100 outside'),
         ('{mass_g: 4.0', '{mass_g: 0.0', 'dynamics.rod.mass_g: 0 outside'),
@@ -36,8 +36,8 @@ def changed(old, new):
         ),
     ],
 )
-def test_check_names_what_is_impossible(old, new, told):
-    assert [p for p in changed(old, new) if told in p]
+def test_check_names_what_is_impossible(old, new, reported):
+    assert [p for p in changed(old, new) if reported in p]
 
 
 def test_moments_at_the_edge_of_the_triangle_inequality_are_good():
@@ -46,7 +46,7 @@ def test_moments_at_the_edge_of_the_triangle_inequality_are_good():
         PlateConfig('estimate', 100.0, 4.0, inertia_g_mm2=(1e5, 1e5, 2.0001e5))
 
 
-def test_a_machine_without_masses_says_so():
+def test_a_machine_without_masses_reports_that():
     with pytest.raises(ConfigError, match='dynamics: missing'):
         dynamics_of(machines.read('puma560'))
 

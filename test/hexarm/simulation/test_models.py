@@ -39,7 +39,7 @@ def test_assembly_closes_over_the_whole_workspace(example, name):
 
 
 @pytest.mark.parametrize('name', ARMS)
-def test_arm_stands_where_forward_kinematics_says(example, name):
+def test_arm_is_where_forward_kinematics_puts_it(example, name):
     simulation = example(name).simulation()
     poses, joints = poses_of(example(name).machine, 50)
     for k in range(50):
@@ -148,8 +148,8 @@ def test_moments_of_shapes():
     inside = (points[:, :2] @ [np.cos(turns), np.sin(turns)] <= 0.07).all(axis=1)
     squares = (points[inside] ** 2).mean(axis=0)
     body = plate(PlateConfig('estimate', 100.0, 10.0), 0.07)
-    wanted = 0.1 * (squares.sum() - squares)
-    assert np.diag(body.inertia) == pytest.approx(wanted, rel=0.01)
+    commanded = 0.1 * (squares.sum() - squares)
+    assert np.diag(body.inertia) == pytest.approx(commanded, rel=0.01)
     along = np.linspace([0.01, 0.02, 0], [0.06, 0.02, 0.1], 20001)
     offset = along - along.mean(axis=0)
     slender = 0.05 * ((offset**2).sum() * np.eye(3) - offset.T @ offset) / len(along)

@@ -121,7 +121,7 @@ def test_largest_finds_an_edge():
     assert largest(lambda x: True, 1.0) == np.inf
 
 
-def test_a_payload_that_stalls_says_where(robocake):
+def test_a_payload_that_stalls_reports_where(robocake):
     k, drives = robocake.kinematics, robocake.mechanism.drives
     cycle = in_phase(k.home, PAPER_AMPLITUDE, 1.0)
     poses = cycle.at(np.linspace(0, 1, 50)).pose
@@ -137,7 +137,7 @@ def test_a_payload_that_stalls_says_where(robocake):
 
 
 @pytest.mark.parametrize(('part', 'is_held'), [(0.9, True), (1.3, False)])
-def test_simulation_stalls_where_the_static_load_says(robocake, part, is_held):
+def test_simulation_stalls_where_the_static_load_predicts(robocake, part, is_held):
     """At home: the payload that takes the whole torque, a little less and a good deal more."""
     k, drives = robocake.kinematics, robocake.mechanism.drives
     angles = k.inverse(k.home)

@@ -78,14 +78,14 @@ def test_time_that_was_missed_is_not_made_up_for(example):
     assert moved.simulation.state.time == pytest.approx(0.053, abs=0.0006)
 
 
-def test_the_fake_board_gets_it_by_name_and_tells_its_speed(example):
+def test_the_fake_board_gets_it_by_name_and_reports_its_speed(example):
     config = BoardConfig.from_machine(example('robocake').file)
-    heard = []
-    fake = fake_machine('robocake', config, 0.0, 0.0, 'servo', heard.append)
+    received = []
+    fake = fake_machine('robocake', config, 0.0, 0.0, 'servo', received.append)
     assert isinstance(fake.servos, Servos)
-    moved = fake_machine('robocake', config, 0.0, 0.0, 'mujoco', heard.append)
+    moved = fake_machine('robocake', config, 0.0, 0.0, 'mujoco', received.append)
     for _ in range(210):
         moved.step(0.05)
-    assert re.fullmatch(r'mujoco: \d+ times as fast as real time', heard[0])
+    assert re.fullmatch(r'mujoco: \d+ times as fast as real time', received[0])
     with pytest.raises(InvalidInput, match="plant: 'gazebo' is not one of"):
-        fake_machine('robocake', config, 0.0, 0.0, 'gazebo', heard.append)
+        fake_machine('robocake', config, 0.0, 0.0, 'gazebo', received.append)

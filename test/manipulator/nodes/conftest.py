@@ -44,12 +44,11 @@ class Graph:
 
 
 @pytest.fixture
-def graph_of(monkeypatch):
+def graph_of():
     """Makes a Graph whose nodes executors of the given class spin."""
 
     @contextmanager
     def make(executor_class=EventsExecutor):
-        monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
         graph = Graph(executor_class)
         try:
             yield graph

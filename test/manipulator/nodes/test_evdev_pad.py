@@ -136,19 +136,19 @@ def test_heart_beats_only_when_the_sensors_report(machine):
 
 
 @pytest.mark.parametrize('gone', ['event1', 'event2'])
-def test_pad_that_has_gone_is_said_by_name(machine, gone):
+def test_pad_that_has_gone_is_reported_by_name(machine, gone):
     pad = found(machine)
     machine[gone].is_gone = True
-    with pytest.raises(LinkError, match='Wireless Controller has gone'):
+    with pytest.raises(LinkError, match='Wireless Controller was disconnected'):
         pad.update()
 
 
-def test_no_input_devices_are_said():
+def test_no_input_devices_are_reported():
     with pytest.raises(LinkError, match='no input devices'):
         find_pad([], FakeDevice)
 
 
-def test_no_gamepad_among_devices_is_said_and_all_are_given_back(machine):
+def test_no_gamepad_among_devices_is_reported_and_all_are_given_back(machine):
     del machine['event1']
     with pytest.raises(LinkError, match='no gamepad found among 2 input devices'):
         found(machine)

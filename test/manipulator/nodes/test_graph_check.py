@@ -6,7 +6,7 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
-from manipulator.nodes.graph_check import Received, crowds, received_by, unheard
+from manipulator.nodes.graph_check import Received, crowds, received_by, unreceived
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 
 CASES = {
@@ -31,18 +31,18 @@ CASES = {
 
 
 @pytest.mark.parametrize('case', CASES)
-def test_publisher_that_is_not_received_is_told_with_its_remedy(graph, case):
-    topic, wanted, offered, told = CASES[case]
+def test_publisher_that_is_not_received_is_reported_with_its_remedy(graph, case):
+    topic, wanted, offered, reported = CASES[case]
     machine, user = graph.node('machine'), graph.node('user')
     machine.create_subscription(wanted[0], topic, print, wanted[1])
     user.create_publisher(offered[0], topic, offered[1])
     graph.wait('the publisher', lambda: machine.count_publishers(f'/here/{topic}') == 1)
-    graph.wait('its name', lambda: 'unknown' not in str(unheard(machine, received_by(machine))))
-    assert unheard(machine, received_by(machine)) == [told]
-    assert unheard(user, [Received(topic, *wanted)]) == [told]
+    graph.wait('its name', lambda: 'unknown' not in str(unreceived(machine, received_by(machine))))
+    assert unreceived(machine, received_by(machine)) == [reported]
+    assert unreceived(user, [Received(topic, *wanted)]) == [reported]
 
 
-def test_publishers_that_are_received_are_not_told(graph):
+def test_publishers_that_are_received_are_not_reported(graph):
     machine, user = graph.node('machine'), graph.node('user')
     machine.create_subscription(PoseStamped, 'goal_pose', print, COMMAND)
     machine.create_subscription(JointState, 'joint_states', print, qos_profile_sensor_data)
@@ -50,10 +50,10 @@ def test_publishers_that_are_received_are_not_told(graph):
         user.create_publisher(PoseStamped, 'goal_pose', offered)
         user.create_publisher(JointState, 'joint_states', offered)
     graph.wait('the publishers', lambda: machine.count_publishers('/here/joint_states') == 3)
-    assert unheard(machine, received_by(machine)) == []
+    assert unreceived(machine, received_by(machine)) == []
 
 
-def test_two_publishers_are_told_with_their_nodes(graph):
+def test_two_publishers_are_reported_with_their_nodes(graph):
     machine, user, other = graph.node('machine'), graph.node('user'), graph.node('other', 'far')
     user.create_publisher(TwistStamped, 'cmd_vel/joy', COMMAND)
     assert crowds(machine, ('cmd_vel/joy',)) == []
@@ -61,6 +61,6 @@ def test_two_publishers_are_told_with_their_nodes(graph):
     topics = 'cmd_vel/joy', 'cmd_vel/panel'
     graph.wait('both', lambda: machine.count_publishers('/here/cmd_vel/joy') == 2)
     graph.wait('their names', lambda: 'unknown' not in crowds(machine, topics)[0])
-    (told,) = crowds(machine, topics)
-    assert told.startswith('2 publishers on cmd_vel/joy, which must have one: ')
-    assert set(told.partition(': ')[2].split(', ')) == {'/here/user', '/far/other'}
+    (reported,) = crowds(machine, topics)
+    assert reported.startswith('2 publishers on cmd_vel/joy, which must have one: ')
+    assert set(reported.partition(': ')[2].split(', ')) == {'/here/user', '/far/other'}

@@ -18,9 +18,8 @@ PATIENCE = 20.0
 
 
 @pytest.fixture(params=[EventsExecutor, SingleThreadedExecutor])
-def spun(request, monkeypatch):
+def spun(request):
     """A server and a client on one executor, and what spins them until something is so."""
-    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     context = rclpy.Context()
     rclpy.init(context=context, domain_id=77)
     server, client = (Node(name, context=context) for name in ('server', 'client'))

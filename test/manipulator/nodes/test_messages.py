@@ -13,8 +13,8 @@ from geometry_msgs.msg import PointStamped, TwistStamped
 from sensor_msgs.msg import JointState
 
 from hexarm.machines import load
-from manipulator.errors import InvalidInput
-from manipulator.message_filter import StaleMessage, StampGate
+from manipulator.errors import InvalidInput, Refused
+from manipulator.message_filter import StaleMessage, StampFilter
 from manipulator.nodes.messages import (
     goal_of,
     joint_message,
@@ -24,6 +24,7 @@ from manipulator.nodes.messages import (
     pose_of,
     twist_of,
 )
+from manipulator.nodes.parameters import choice
 from manipulator.pose import Pose
 
 BAD = (math.nan, math.inf, -math.inf)
@@ -46,9 +47,9 @@ def test_a_pose_comes_back_as_it_was_sent():
 @pytest.mark.parametrize('part', ['position', 'orientation'])
 def test_a_number_of_a_pose_that_is_not_finite_is_named(part, bad):
     for name in 'xyz' if part == 'position' else 'xyzw':
-        told = name if part == 'position' else f'q{name}'
+        reported = name if part == 'position' else f'q{name}'
         message = message_with(lambda m, n=name: setattr(getattr(m.pose, part), n, bad))
-        with pytest.raises(InvalidInput, match=f'^{told} is {bad}, needs a finite number'):
+        with pytest.raises(InvalidInput, match=f'^{reported} is {bad}, needs a finite number'):
             pose_of(message)
 
 
@@ -60,7 +61,7 @@ def test_a_number_of_a_pose_that_is_not_finite_is_named(part, bad):
         ((0.0, 0.0, 0.0, -1e308), 'quaternion has length'),
     ],
 )
-def test_a_quaternion_that_is_no_rotation_is_told_with_its_length(quaternion, words):
+def test_a_quaternion_that_is_no_rotation_is_reported_with_its_length(quaternion, words):
     def change(message):
         q = message.pose.orientation
         q.x, q.y, q.z, q.w = quaternion
@@ -153,14 +154,34 @@ def test_joints_come_back_in_the_order_that_was_asked_for():
 
 @pytest.mark.parametrize('sec', [2**31 - 1, -(2**31), 1])
 def test_a_stamp_from_anywhere_is_refused_or_believed_and_the_next_good_one_works(sec):
-    gate = StampGate()
-    gate.admit(1_700_000_000.0, 1_700_000_000.0)
+    stamps = StampFilter()
+    stamps.admit(1_700_000_000.0, 1_700_000_000.0)
     with contextlib.suppress(StaleMessage):
-        gate.admit(float(sec), 1_700_000_000.1)
+        stamps.admit(float(sec), 1_700_000_000.1)
     refused = 0
     for k in range(20):
         try:
-            gate.admit(1_700_000_001.0 + 0.1 * k, 1_700_000_001.0 + 0.1 * k)
+            stamps.admit(1_700_000_001.0 + 0.1 * k, 1_700_000_001.0 + 0.1 * k)
         except StaleMessage:
             refused += 1
     assert refused <= 3
+
+
+def test_a_goal_of_zeros_for_its_quaternion_is_a_point_where_no_orientation_is_asked_for():
+    message = pose_message(Pose.from_xyz_rpy((0.1, 0.2, 0.3), (0.1, 0.2, 0.3)), Time())
+    q = message.pose.orientation
+    q.x = q.y = q.z = q.w = 0.0
+    with pytest.raises(InvalidInput, match='quaternion has length 0'):
+        pose_of(message)
+    assert pose_of(message, is_oriented=False).position.tolist() == [0.1, 0.2, 0.3]
+    q.w = math.nan
+    with pytest.raises(InvalidInput, match='qw is nan'):
+        pose_of(message, is_oriented=False)
+
+
+@pytest.mark.parametrize('name', ['goal_motion', 'goal_orientation'])
+@pytest.mark.parametrize('value', ['', 'straight', 3, HUGE])
+def test_an_unknown_choice_is_refused_with_the_known_ones(name, value):
+    with pytest.raises(Refused, match=f'parameter {name}: .* is not one of ') as raised:
+        choice(name, value)
+    assert len(str(raised.value)) < 300

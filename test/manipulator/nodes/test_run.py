@@ -65,7 +65,7 @@ RAISING = textwrap.dedent(
 )
 
 
-def test_nodes_in_a_thread_say_when_an_error_has_ended_them(monkeypatch):
+def test_nodes_in_a_thread_report_when_an_error_has_ended_them(monkeypatch):
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'OFF')
     command = [sys.executable, '-c', RAISING]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)

@@ -75,23 +75,23 @@ def test_second_publisher_is_trouble_until_a_second_after_its_end(graph_of, cloc
         assert seen[-1] == ''
 
 
-class IdlePilot:
+class IdleSupervisor:
     """A machine that nothing drives."""
 
     is_measured = False
-    player = SimpleNamespace(is_busy=False, jog=lambda wish: None)
+    executor = SimpleNamespace(is_busy=False, jog=lambda request: None)
 
 
 @pytest.mark.parametrize('source', SOURCES)
 def test_twists_of_two_publishers_move_nothing_until_there_was_silence(graph, clock, source):
-    teleop, heard = Teleop(IdlePilot(), 0.06), []
+    teleop, heard = Teleop(IdleSupervisor(), 0.06), []
     topics = TeleopTopics(graph.node('machine'), teleop)
 
     def received():
         return topics.report()['twists_refused'] + len(heard)
 
-    original = teleop.hear
-    teleop.hear = lambda *args: (original(*args), heard.append(args))
+    original = teleop.receive
+    teleop.receive = lambda *args: (original(*args), heard.append(args))
     user = Sender(graph, clock, TwistStamped, source, received)
     first, second = user.publisher(), user.publisher()
     user.send(first, first)
@@ -104,7 +104,7 @@ def test_twists_of_two_publishers_move_nothing_until_there_was_silence(graph, cl
     for _ in range(200):
         user.send(first)
         assert topics.report()['jogged_by'] == ''
-    assert 'let go first' in topics.report()['last_twist_refusal']
+    assert 'release first' in topics.report()['last_twist_refusal']
     clock.now += 0.3
     user.send(first)
     assert topics.report()['jogged_by'] == source

@@ -9,9 +9,10 @@ import pytest
 from rclpy.task import Future
 from std_srvs.srv import Trigger
 
+from manipulator.deadlines import RELEASE
 from manipulator.nodes import jog_topics
 from manipulator.nodes import jog_topics as stop_button
-from manipulator.nodes.jog_topics import NO_TWIST, PATIENCE, JogTopics
+from manipulator.nodes.jog_topics import NO_TWIST, JogTopics
 
 TICK = 0.02
 
@@ -67,9 +68,9 @@ def person(monkeypatch):
     return Person(monkeypatch)
 
 
-def test_it_brakes_where_the_trajectory_node_says_so(person):
+def test_it_brakes_where_the_trajectory_node_reports_that(person):
     person.topics.stop()
-    person.ticks(3 * PATIENCE)
+    person.ticks(3 * RELEASE)
     assert person.trajectory.asked == 1
     assert person.stops == []
 
@@ -78,7 +79,7 @@ def test_a_refusal_becomes_an_emergency_stop_at_once(person):
     person.trajectory.succeeds = False
     person.topics.stop()
     assert person.stops == [True]
-    person.ticks(3 * PATIENCE)
+    person.ticks(3 * RELEASE)
     assert person.stops == [True]
 
 
@@ -86,11 +87,11 @@ def test_so_does_a_trajectory_node_that_does_not_answer_in_time_however_often_it
     person.trajectory.succeeds = None
     person.topics.stop()
     person.topics.stop()
-    person.ticks(PATIENCE - TICK)
+    person.ticks(RELEASE - TICK)
     assert person.stops == []
     person.ticks(2 * TICK)
     assert person.stops == [True]
-    person.ticks(3 * PATIENCE)
+    person.ticks(3 * RELEASE)
     assert person.stops == [True]
 
 
@@ -112,5 +113,5 @@ def test_letting_go_of_home_is_no_emergency(person):
     person.topics.home(True)
     person.topics.home(False)
     assert person.trajectory.asked == 2
-    person.ticks(3 * PATIENCE)
+    person.ticks(3 * RELEASE)
     assert person.stops == []

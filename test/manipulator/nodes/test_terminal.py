@@ -73,17 +73,19 @@ def test_a_window_that_was_closed_reads_as_none_and_can_be_left(desk):
         terminal.show('nobody sees this')
 
 
-def test_no_terminal_is_said_in_one_line_and_status_1(monkeypatch, capsys, signals, tmp_path):
+def test_no_terminal_is_reported_in_one_line_and_status_1(monkeypatch, capsys, signals, tmp_path):
     (tmp_path / 'script').touch()
     monkeypatch.setattr('sys.stdin', (tmp_path / 'script').open())
     with pytest.raises(InvalidInput, match='standard input is none'):
         Terminal()
     assert keyboard_teleop() == 1
-    said = 'keyboard_teleop: needs a terminal to read keys from, standard input is none\n'
-    assert capsys.readouterr().err == said
+    text = 'keyboard_teleop: needs a terminal to read keys from, standard input is none\n'
+    assert capsys.readouterr().err == text
 
 
-def test_a_bad_parameter_is_said_and_the_terminal_is_as_before(monkeypatch, capsys, signals, desk):
+def test_a_bad_parameter_is_reported_and_the_terminal_is_as_before(
+    monkeypatch, capsys, signals, desk
+):
     arguments = ['keyboard_teleop', '--ros-args', '-p', 'rate:=1.0']
     monkeypatch.setattr('sys.argv', arguments)
     assert keyboard_teleop() == 1

@@ -13,7 +13,7 @@ STAMP = Time(sec=7, nanosec=9)
 FRAMES = Frames(Pose.from_xyz_rpy((0.1, 0.0, 0.2), (0.0, 0.0, 0.5))).with_pivot([0.0, 0.01, 0.02])
 
 
-def told(name, prefix=''):
+def reported(name, prefix=''):
     kinematics = machines.load(name).kinematics
     pose = kinematics.home
     joints = kinematics.inverse(pose)
@@ -34,7 +34,7 @@ def in_root(messages, frame):
 
 @pytest.mark.parametrize('name', ['robocake', 'stewart_6_6', 'arm_6r'])
 def test_every_frame_hangs_on_the_base_by_one_parent(name):
-    messages, pose = told(name)
+    messages, pose = reported(name)
     children = [m.child_frame_id for m in messages]
     assert len(children) == len(set(children))
     assert {in_root(messages, child)[0] for child in children} == {'base'}
@@ -43,7 +43,7 @@ def test_every_frame_hangs_on_the_base_by_one_parent(name):
 
 
 def test_pivot_and_work_frame_are_the_users():
-    messages, pose = told('robocake')
+    messages, pose = reported('robocake')
     _, pivot = in_root(messages, 'pivot')
     _, work = in_root(messages, 'work')
     assert np.abs(FRAMES.pivot(pose).twist_to(work.inverse() @ pivot)).max() < 1e-12
@@ -51,7 +51,7 @@ def test_pivot_and_work_frame_are_the_users():
 
 def test_prefix_stands_before_every_frame():
     frames = {
-        f for m in told('arm_6r', 'lab/arm_')[0] for f in (m.header.frame_id, m.child_frame_id)
+        f for m in reported('arm_6r', 'lab/arm_')[0] for f in (m.header.frame_id, m.child_frame_id)
     }
     assert {f.removeprefix('lab/arm_') for f in frames} == {
         *('base', 'work', 'platform', 'pivot'),

@@ -26,10 +26,10 @@ class User:
     buttons: list[int] = field(default_factory=lambda: [0] * 11)
 
     def send(self):
-        """One message of the present state; what is wanted right after it."""
+        """One message of the present state; what is command right after it."""
         self.now += PERIOD
-        self.reader = self.reader.hear(self.axes, self.buttons, self.now)
-        return self.wanted
+        self.reader = self.reader.receive(self.axes, self.buttons, self.now)
+        return self.command
 
     def push(self, **axes):
         """Moves axes by name and sends."""
@@ -53,12 +53,12 @@ class User:
         """Sends the same again and again, with a thumb that trembles by so much."""
         for i in range(round(seconds / PERIOD)):
             self.axes[7] = tremor * (i % 2)
-            wanted = self.send()
-        return wanted
+            command = self.send()
+        return command
 
     @property
-    def wanted(self):
-        return self.reader.wanted(self.now)
+    def command(self):
+        return self.reader.command(self.now)
 
 
 @pytest.fixture

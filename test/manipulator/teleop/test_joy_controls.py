@@ -29,7 +29,7 @@ def test_slow_wins_over_turbo(driver):
 
 
 def test_modes_cycle_both_ways_once_a_press(user):
-    first = user.wanted.mode
+    first = user.command.mode
     assert user.push(CROSS=-1.0).mode == XBOX.modes[1]
     assert user.send().mode == XBOX.modes[1]
     user.push(CROSS=0.0)
@@ -39,7 +39,7 @@ def test_modes_cycle_both_ways_once_a_press(user):
 
 
 def test_mode_and_frame_stay_while_driving(driver):
-    before = driver.wanted
+    before = driver.command
     driver.push(CROSS=-1.0)
     after = driver.press(FRAME)
     assert (after.mode, after.frame) == (before.mode, before.frame)
@@ -56,7 +56,7 @@ def test_gripper_moves_only_under_the_deadman(user):
     assert user.press(LB).grip == -1
     user.release(CLOSE)
     assert user.press(OPEN).grip == 1
-    assert user.reader.wanted(user.now + 0.3).grip == 0
+    assert user.reader.command(user.now + 0.3).grip == 0
 
 
 def test_stop_takes_the_deadman_away_until_it_is_pressed_anew(driver):
@@ -77,7 +77,7 @@ def test_home_runs_while_held_and_not_beside_the_deadman(driver):
     homing = driver.press(HOME)
     assert homing.is_homing
     assert not homing.is_held
-    assert not driver.reader.wanted(driver.now + 0.3).is_homing
+    assert not driver.reader.command(driver.now + 0.3).is_homing
     driver.now += 0.02
     ended = driver.release(HOME)
     assert not ended.is_homing

@@ -38,18 +38,18 @@ def test_no_stream_of_messages_moves_anything_without_a_deadman_pressed_after_re
         now += pause
         if pause > XBOX.lost_after:
             was_released = False
-        reader = reader.hear(axes, buttons, now)
+        reader = reader.receive(axes, buttons, now)
         is_whole = len(axes) >= 7 and len(buttons) >= 8
         is_whole = is_whole and all(abs(a) <= 1.05 for a in axes)
         is_whole = is_whole and all(b in (0, 1) for b in buttons)
         is_pressed = is_whole and buttons[LB] == 1
         was_released |= is_whole and buttons[LB] == 0
-        wanted = reader.wanted(now)
-        assert np.isfinite(wanted.twist).all()
-        assert not wanted.twist.any() or (is_pressed and was_released)
-        assert not wanted.twist.any() or wanted.is_held
+        command = reader.command(now)
+        assert np.isfinite(command.twist).all()
+        assert not command.twist.any() or (is_pressed and was_released)
+        assert not command.twist.any() or command.is_held
     if later > XBOX.lost_after:
-        assert not reader.wanted(now + later).twist.any()
+        assert not reader.command(now + later).twist.any()
 
 
 @settings(max_examples=enough(80, 200))
@@ -58,6 +58,6 @@ def test_twist_never_exceeds_turbo_speed(stream):
     reader, now = JoyReader(XBOX), 0.0
     for axes, buttons, pause in stream:
         now += pause
-        reader = reader.hear(axes, buttons, now)
-        twist = np.abs(reader.wanted(now).twist)
+        reader = reader.receive(axes, buttons, now)
+        twist = np.abs(reader.command(now).twist)
         assert (twist <= np.array([0.1] * 3 + [1.0] * 3) + 1e-12).all()

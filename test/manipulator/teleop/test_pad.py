@@ -56,7 +56,7 @@ def test_events_and_codes_of_other_things_are_ignored(pad):
     assert wide == pad
 
 
-def test_value_beyond_the_range_that_the_kernel_tells_is_full(pad):
+def test_value_beyond_the_range_that_the_kernel_reports_is_full(pad):
     assert pad.after(ABS, 0, -40000).joy[0][0] == 1.0
 
 

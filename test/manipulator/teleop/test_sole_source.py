@@ -18,7 +18,7 @@ def sent(rate, first, begin, end):
 
 def after(source, messages, publishers):
     for now, sequence in messages:
-        source = source.hear(sequence, publishers, now)
+        source = source.receive(sequence, publishers, now)
     return source
 
 
@@ -33,7 +33,7 @@ def test_no_message_counts_while_two_send(live, frozen, seed):
     has_begun = False
     for now, sequence, who in sorted(both):
         has_begun |= who == 'frozen'
-        source = source.hear(sequence, 2 if has_begun else 1, now)
+        source = source.receive(sequence, 2 if has_begun else 1, now)
         assert source.is_mixed(now) is has_begun
 
 
@@ -42,7 +42,7 @@ def test_publisher_that_was_known_long_before_its_first_message_does_not_count(l
     source = after(SoleSource(), sent(live, 1, 0.0, 1.0), 1)
     source = after(source, sent(live, source.sequence + 1, 1.0, 4.0), 2)
     assert not source.is_mixed(4.0)
-    source = source.hear(1, 2, 4.001)
+    source = source.receive(1, 2, 4.001)
     assert source.is_mixed(4.001)
 
 
@@ -53,7 +53,7 @@ def test_one_publisher_may_lose_messages(rate, share):
     source = SoleSource()
     for now, sequence in sent(rate, 77, 0.0, 20.0):
         if dice.random() >= share:
-            source = source.hear(sequence, 1, now)
+            source = source.receive(sequence, 1, now)
             assert not source.is_mixed(now)
 
 
@@ -61,7 +61,7 @@ def test_few_losses_are_tolerated_while_a_dead_publisher_is_still_known():
     source = SoleSource()
     for now, sequence in sent(50.0, 9, 0.0, 20.0):
         if sequence % 7:
-            source = source.hear(sequence, 2, now)
+            source = source.receive(sequence, 2, now)
             assert not source.is_mixed(now)
 
 
@@ -74,7 +74,7 @@ def test_two_pads_that_began_together_are_noticed_at_the_first_message(ahead, si
         for k in range(50):
             for offset, delay in ((0, 0.0), (ahead, 0.001)):
                 now = begin + 0.02 * k + delay
-                source = source.hear(700 + round(50 * begin) + k + offset, 2, now)
+                source = source.receive(700 + round(50 * begin) + k + offset, 2, now)
                 assert source.is_mixed(now)
 
 
@@ -82,30 +82,30 @@ def test_pad_that_was_killed_and_started_again_counts_after_a_second():
     killed = after(SoleSource(is_continuous=True), sent(50.0, 700, 0.0, 3.0), 1)
     assert not killed.is_mixed(3.0)
     for now, sequence in sent(50.0, 1, 5.0, 10.0):
-        killed = killed.hear(sequence, 2, now)
+        killed = killed.receive(sequence, 2, now)
         assert killed.is_mixed(now) is (now - 5.0 < QUIET)
 
 
 def test_source_of_twists_that_was_killed_and_started_again_counts_at_once():
     killed = after(SoleSource(), sent(50.0, 700, 0.0, 3.0), 1)
-    begin = killed.heard + OVERLAP + 0.01
+    begin = killed.received_at + OVERLAP + 0.01
     for now, sequence in sent(50.0, 1, begin, begin + 5.0):
-        killed = killed.hear(sequence, 2, now)
+        killed = killed.receive(sequence, 2, now)
         assert not killed.is_mixed(now)
 
 
 def test_one_counts_again_a_second_after_the_other_has_gone():
     source = after(SoleSource(), sent(50.0, 700, 0.0, 1.0), 1)
-    source = source.hear(5, 2, 1.0)
+    source = source.receive(5, 2, 1.0)
     went = 1.02
     for now, sequence in sent(50.0, 750, went, 4.0):
-        source = source.hear(sequence, 2, now)
+        source = source.receive(sequence, 2, now)
         assert source.is_mixed(now) is (now - went < QUIET)
 
 
 def test_without_numbers_every_known_publisher_counts_as_sending():
-    source = SoleSource().hear(None, 1, 0.0).hear(None, 1, 0.02)
+    source = SoleSource().receive(None, 1, 0.0).receive(None, 1, 0.02)
     assert not source.is_mixed(0.02)
-    source = source.hear(None, 2, 0.04)
+    source = source.receive(None, 2, 0.04)
     assert source.is_mixed(0.04)
-    assert not source.hear(None, 1, 2.0).is_mixed(2.0)
+    assert not source.receive(None, 1, 2.0).is_mixed(2.0)

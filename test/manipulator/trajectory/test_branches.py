@@ -12,11 +12,11 @@ from manipulator.errors import ManipulatorError
 from manipulator.pose import Pose
 from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
+from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.jogging import Wish
+from manipulator.trajectory.jogging import JogCommand
 from manipulator.trajectory.plan import MotionState
 from manipulator.trajectory.planner import Start, plan_goal
-from manipulator.trajectory.player import Player
 from manipulator.trajectory.worker import MOST_POSES, Effort
 
 DT = 0.01
@@ -26,22 +26,22 @@ GOALS = int(os.environ.get('GOALS', '30'))
 MACHINES = [*ARMS, 'robocake', 'stewart_6_3', 'stewart_6_6']
 
 
-def player_at(machine, degrees=None):
+def executor_at(machine, degrees=None):
     k = machine.kinematics
     joints = k.inverse(k.home) if degrees is None else np.radians(degrees)
-    return Player(machine, k.forward(joints).pose, joints, DT)
+    return Executor(machine, k.forward(joints).pose, joints, DT)
 
 
-def driven(player, goal, ticks=2000):
+def driven(executor, goal, ticks=2000):
     """The status that a goal ends with, and the largest step of a joint on the way."""
-    player.pursue(goal)
-    joints = [player.joints]
+    executor.pursue(goal)
+    joints = [executor.joints]
     for _ in range(ticks):
-        player.step()
-        joints.append(player.joints)
-        if player.status.result in ('reached', 'refused', 'stopped'):
+        executor.step()
+        joints.append(executor.joints)
+        if executor.status.result in ('reached', 'refused', 'stopped'):
             break
-    return player.status, np.abs(np.diff(joints, axis=0)).max()
+    return executor.status, np.abs(np.diff(joints, axis=0)).max()
 
 
 def home_of(machine):
@@ -55,22 +55,22 @@ def quarter_turn(pose):
 
 def test_the_fourth_quarter_turn_meets_the_stop_of_joint_6_and_home_unwinds_it():
     machine = load('arm_6r')
-    player = player_at(machine)
+    executor = executor_at(machine)
     for k in range(3):
-        status, _ = driven(player, Goal(quarter_turn(player.state.pose), 1.0 + k))
+        status, _ = driven(executor, Goal(quarter_turn(executor.state.pose), 1.0 + k))
         assert status.result == 'reached'
-    there = player.state.pose
-    status, _ = driven(player, Goal(quarter_turn(there), 4.0))
+    there = executor.state.pose
+    status, _ = driven(executor, Goal(quarter_turn(there), 4.0))
     assert (status.result, status.goal_stamp) == ('refused', 4.0)
     assert 'joint 6' in status.reason
     assert '6.109' in status.reason  # its stop, 350°
     assert 'of the line' in status.reason
     assert 'goal_motion: joint' in status.reason  # what would work
-    assert np.abs(player.state.pose.twist_to(there)).max() == 0.0
-    status, step = driven(player, home_of(machine))
+    assert np.abs(executor.state.pose.twist_to(there)).max() == 0.0
+    status, step = driven(executor, home_of(machine))
     assert status.result == 'reached'
     assert step <= 1.01 * machine.motion.joint.speed.max() * DT
-    np.testing.assert_allclose(player.joints, machine.kinematics.rest, atol=1e-9)
+    np.testing.assert_allclose(executor.joints, machine.kinematics.rest, atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -85,41 +85,41 @@ def test_a_line_that_a_stop_cuts_is_refused_by_name_and_a_joint_move_gets_there(
 ):
     machine = load(name)
     goal = Pose.from_xyz_quaternion(xyz, np.array(xyzw) / np.linalg.norm(xyzw))
-    player = player_at(machine)
-    status, _ = driven(player, Goal(goal, 1.0))
+    executor = executor_at(machine)
+    status, _ = driven(executor, Goal(goal, 1.0))
     assert status.result == 'refused'
     assert joint in status.reason
     assert 'outside' in status.reason
-    status, step = driven(player, Goal(goal, 2.0, motion=Motion.JOINT))
+    status, step = driven(executor, Goal(goal, 2.0, motion=Motion.JOINT))
     assert status.result == 'reached'
-    assert np.abs(player.state.pose.twist_to(goal)).max() < 1e-9
+    assert np.abs(executor.state.pose.twist_to(goal)).max() < 1e-9
     assert step <= 1.01 * machine.motion.joint.speed.max() * DT
 
 
 @pytest.mark.parametrize('direction', range(12))
 def test_home_is_reached_from_wherever_a_stick_has_led(direction):
     machine = load('arm_6r')
-    player = player_at(machine)
+    executor = executor_at(machine)
     twist = np.zeros(6)
     axis, sign = direction % 6, 1 - 2 * (direction // 6)
     twist[axis] = sign * (0.2 if axis < 3 else 1.2)
-    player.jog(Wish('cmd_vel/joy', twist, '', FREE))
+    executor.jog(JogCommand('cmd_vel/joy', twist, '', FREE))
     for tick in range(600):
-        before, pose = player.state.pose, player.step()
+        before, pose = executor.state.pose, executor.step()
         if tick > 20 and not before.twist_to(pose).any():
             break  # at the edge
-    player.jog(None)
+    executor.jog(None)
     for _ in range(50):
-        player.step()
-    status, step = driven(player, home_of(machine))
+        executor.step()
+    status, step = driven(executor, home_of(machine))
     assert status.result == 'reached', status.reason
     assert step <= 1.01 * machine.motion.joint.speed.max() * DT
-    np.testing.assert_allclose(player.joints, machine.kinematics.rest, atol=1e-9)
+    np.testing.assert_allclose(executor.joints, machine.kinematics.rest, atol=1e-9)
 
 
 def test_home_unwinds_a_joint_that_stands_at_270_degrees():
     machine = load('arm_6r')
-    status, _ = driven(player_at(machine, [0, 20, 80, 0, 80, 270]), home_of(machine))
+    status, _ = driven(executor_at(machine, [0, 20, 80, 0, 80, 270]), home_of(machine))
     assert status.result == 'reached'
 
 

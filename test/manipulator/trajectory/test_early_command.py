@@ -2,7 +2,7 @@ import pytest
 
 from manipulator.errors import Refused
 from manipulator.trajectory.early_command import PATIENCE, EarlyCommand
-from manipulator.trajectory.pilot import NotYet
+from manipulator.trajectory.supervisor import NotYet
 
 
 class Machine:

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
-from manipulator.command_check import CommandCheck
+from manipulator.setpoint_validator import SetpointValidator
 from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
+from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.jogging import Wish
-from manipulator.trajectory.player import Player
+from manipulator.trajectory.jogging import JogCommand
 from sampling import some
 
 TICK = 0.01
@@ -22,12 +22,15 @@ FULL = np.array([0.03, 0.03, 0.03, 0.5, 0.5, 0.5])
 
 
 class Driven:
-    """A player whose setpoints ik checks, tick by tick."""
+    """A executor whose setpoints ik checks, tick by tick."""
 
     def __init__(self, machine):
         home = machine.kinematics.home
         joints = machine.kinematics.inverse(home)
-        self.player, self.check = Player(machine, home, joints, TICK), CommandCheck(machine)
+        self.executor, self.check = (
+            Executor(machine, home, joints, TICK),
+            SetpointValidator(machine),
+        )
         self.check.note_joints(joints)
         self.now = 100.0
 
@@ -37,7 +40,7 @@ class Driven:
         return pose
 
     def run_until_it_stands(self, seconds):
-        before = self.player.state.pose
+        before = self.executor.state.pose
         for _ in range(round(seconds / TICK)):
             pose = self._tick()
             if not before.twist_to(pose).any():
@@ -48,15 +51,15 @@ class Driven:
     def run_until_reached(self, seconds):
         for _ in range(round(seconds / TICK)):
             pose = self._tick()
-            if self.player.status.result == 'reached':
+            if self.executor.status.result == 'reached':
                 return pose
-        raise AssertionError(self.player.status)
+        raise AssertionError(self.executor.status)
 
     def _tick(self):
         self.now += TICK
-        pose = self.player.step()
+        pose = self.executor.step()
         joints = self.check.admit(pose, self.now)
-        assert np.abs(joints - self.player.joints).max() < 1e-6
+        assert np.abs(joints - self.executor.joints).max() < 1e-6
         self.check.note_joints(joints)
         return pose
 
@@ -65,13 +68,15 @@ class Driven:
 def test_home_is_reached_from_the_edge_where_branches_meet(name, direction):
     machine = load(name)
     driven = Driven(machine)
-    driven.player.jog(Wish('cmd_vel/joy', FULL * direction / np.abs(direction).max(), '', FREE))
+    driven.executor.jog(
+        JogCommand('cmd_vel/joy', FULL * direction / np.abs(direction).max(), '', FREE)
+    )
     driven.run(0.1)
     driven.run_until_it_stands(4.0)
-    driven.player.jog(None)
+    driven.executor.jog(None)
     edge = driven.run(0.3)
     assert np.abs(edge.twist_to(machine.kinematics.home)).max() > 0.005
-    driven.player.pursue(Goal(machine.kinematics.home, 1.0))
+    driven.executor.pursue(Goal(machine.kinematics.home, 1.0))
     there = driven.run_until_reached(5.0)
     assert np.abs(there.twist_to(machine.kinematics.home)).max() < 1e-9
 
@@ -82,7 +87,7 @@ def test_home_is_reached_from_where_a_crank_is_nearer_to_the_other_branch():
     driven = Driven(machine)
     goal = machine.kinematics.home.moved([0.0155, 0, 0, 0, 0, 0])
     assert machine.kinematics.inverse(goal).min() < 0.85
-    driven.player.pursue(Goal(goal, 1.0))
+    driven.executor.pursue(Goal(goal, 1.0))
     driven.run(2.0)
-    driven.player.pursue(Goal(machine.kinematics.home, 2.0))
+    driven.executor.pursue(Goal(machine.kinematics.home, 2.0))
     driven.run_until_reached(2.0)

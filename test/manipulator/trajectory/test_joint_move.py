@@ -1,19 +1,20 @@
 """Joint moves by definition: straight in the joints, within every limit, at the pose they say."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from hexarm.machines import load
-from manipulator.command_check import CommandCheck
 from manipulator.errors import Refused, Unreachable
 from manipulator.pose import Pose
+from manipulator.setpoint_validator import SetpointValidator
+from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.joint_move import plan_joint_move
 from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.planner import Start, plan_goal
-from manipulator.trajectory.player import Player
+from manipulator.trajectory.planner import Start, compared, plan_goal
 from manipulator.trajectory.worker import Effort
 
 DT = 0.01
@@ -88,20 +89,39 @@ def test_a_joint_move_is_as_fast_as_the_platforms_speed_allows(name, part):
 
 
 @pytest.mark.parametrize('name', TARGETS)
-def test_a_player_drives_a_joint_move_on_its_joints(name):
+def test_an_executor_executes_a_joint_move_on_its_joints(name):
     machine, begin, goal, plan = planned(name)
-    player = Player(machine, machine.kinematics.home, begin, DT)
-    player.pursue(goal)
+    executor = Executor(machine, machine.kinematics.home, begin, DT)
+    executor.pursue(goal)
     joints = []
-    while player.status.result != 'reached':
-        pose = player.step()
-        joints.append(player.joints)
+    while executor.status.result != 'reached':
+        pose = executor.step()
+        joints.append(executor.joints)
         assert (
-            np.abs(machine.kinematics.forward(player.joints, pose).pose.twist_to(pose)).max()
+            np.abs(machine.kinematics.forward(executor.joints, pose).pose.twist_to(pose)).max()
             < 1e-7
         )
         assert len(joints) < 2000
     np.testing.assert_allclose(joints[-1], plan.joints_at(plan.duration), atol=1e-7)
+
+
+@pytest.mark.parametrize('name', ['stewart_6_6', 'robocake', 'arm_6r'])
+def test_a_plan_is_compared_with_the_other_motion_and_with_the_joints_rated_speed(name):
+    machine = load(name)
+    k = machine.kinematics
+    begin, pose = k.inverse(k.home), k.home.moved(TARGETS[name])
+    start = Start(MotionState.at_rest(k.home), begin, DT)
+    found = compared(machine, start, Goal(pose, motion=Motion.JOINT), Effort())
+    assert found.durations[Motion.JOINT] == found.plan.duration
+    line = plan_goal(machine, start, Goal(pose), Effort())
+    assert found.durations[Motion.LINE] == line.duration
+    longest = np.max(np.abs(k.inverse(pose, begin) - begin) / machine.motion.joint.speed)
+    assert found.rated == pytest.approx(longest)
+    assert found.rated < found.plan.duration
+    assert re.fullmatch(
+        r'line [\d.]+ s, joint [\d.]+ s; the joints at their speed limits alone: [\d.]+ s',
+        str(found),
+    )
 
 
 def test_a_goal_out_of_reach_is_refused_for_itself():
@@ -129,12 +149,15 @@ def test_a_joint_move_to_a_stop_passes_the_check_of_ik():
     begin = np.radians([0.0, 20.0, 80.0, 90.0, 60.0, 0.0])
     end = begin.copy()
     end[3] = machine.joint_ranges[1][3]
-    player, check = Player(machine, k.forward(begin).pose, begin, DT), CommandCheck(machine)
+    executor, check = (
+        Executor(machine, k.forward(begin).pose, begin, DT),
+        SetpointValidator(machine),
+    )
     check.note_joints(begin)
-    player.pursue(Goal(k.forward(end).pose, 1.0, motion=Motion.JOINT, joints=end))
+    executor.pursue(Goal(k.forward(end).pose, 1.0, motion=Motion.JOINT, joints=end))
     now = 100.0
-    while player.status.result != 'reached':
+    while executor.status.result != 'reached':
         now += DT
-        np.testing.assert_allclose(check.admit(player.step(), now), player.joints, atol=1e-6)
+        np.testing.assert_allclose(check.admit(executor.step(), now), executor.joints, atol=1e-6)
         assert now < 110.0
-    np.testing.assert_allclose(player.joints, end, atol=2e-6)
+    np.testing.assert_allclose(executor.joints, end, atol=2e-6)

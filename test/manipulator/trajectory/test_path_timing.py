@@ -11,11 +11,11 @@ from manipulator import rotation as so3
 from manipulator.errors import Refused
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.path import Tolerance, arc, line, path_along
 from manipulator.trajectory.path_limits import path_limits
 from manipulator.trajectory.path_timing import PathRequest, TimedPath, nodes_of, plan_path
-from manipulator.trajectory.player import Player
 
 DT = 0.01
 MACHINES = {name: load(name) for name in ('robocake', 'stewart_6_3', 'arm_6r')}
@@ -101,17 +101,17 @@ def said_by_rows(limits, squares, name):
 
 
 @pytest.mark.parametrize(('name', 'part'), [('platform', slice(0, 3)), ('turning', slice(3, 6))])
-def test_rows_of_a_path_say_how_much_the_platform_accelerates(on_a_path, name, part):
+def test_rows_of_a_path_report_how_much_the_platform_accelerates(on_a_path, name, part):
     """At either end of a step, within the polygon of directions: 15° from corner to corner."""
     limits, state, squares = on_a_path
     both = accelerations(state.twist[:, part], limits.nodes, squares)
     longest = np.linalg.norm(both, axis=2).max(axis=0)
-    said = said_by_rows(limits, squares, name)
-    assert (said <= longest * (1 + 1e-9)).all()
-    assert (said >= longest * np.cos(np.radians(7.5)) * (1 - 1e-9)).all()
+    text = said_by_rows(limits, squares, name)
+    assert (text <= longest * (1 + 1e-9)).all()
+    assert (text >= longest * np.cos(np.radians(7.5)) * (1 - 1e-9)).all()
 
 
-def test_rows_of_a_path_say_how_much_each_joint_accelerates(on_a_path):
+def test_rows_of_a_path_report_how_much_each_joint_accelerates(on_a_path):
     limits, state, squares = on_a_path
     jacobian = ROBOCAKE.kinematics.jacobian(state.pose, limits.joints)
     rates = np.linalg.solve(jacobian, state.twist[..., None])[..., 0]
@@ -221,66 +221,66 @@ def test_random_paths_inside_the_workspace_are_refused_or_driven_within_all_limi
         assert largest_shares(ROBOCAKE, plan, DT).max() <= 1.02
 
 
-def test_player_goes_to_the_first_pose_and_along_the_path_and_stops_on_it():
+def test_executor_goes_to_the_first_pose_and_along_the_path_and_stops_on_it():
     plan = planned(ROBOCAKE, circle_at_home(ROBOCAKE, 0.008))
-    player = Player(ROBOCAKE, HOME, ROBOCAKE.kinematics.inverse(HOME), DT)
+    executor = Executor(ROBOCAKE, HOME, ROBOCAKE.kinematics.inverse(HOME), DT)
     elsewhere = Pose.from_xyz_rpy((0.004, -0.003, 0.045))
-    player.pursue(Goal(elsewhere, 1.0))
+    executor.pursue(Goal(elsewhere, 1.0))
     for _ in range(20):
-        player.step()
-    player.pursue(Goal(plan.at(0.0).pose, 2.0, then=plan))
+        executor.step()
+    executor.pursue(Goal(plan.at(0.0).pose, 2.0, then=plan))
     poses, joints = [], []
-    while player.status.result != 'stopped':
-        poses.append(player.step())
-        joints.append(player.joints)
-        if player.status.percent is not None and player.status.percent > 40:
-            player.stop()
+    while executor.status.result != 'stopped':
+        poses.append(executor.step())
+        joints.append(executor.joints)
+        if executor.status.percent is not None and executor.status.percent > 40:
+            executor.stop()
     seen = np.array([p.position for p in poses[-60:]]) - HOME.position
     radii = np.hypot(seen[:, 0], seen[:, 1])
     assert np.ptp(radii[-40:]) < 1e-5
     assert np.abs(np.diff(joints, axis=0)).max() / DT <= 1.01 * ROBOCAKE.motion.joint.speed
     acceleration = np.abs(np.diff(joints, n=2, axis=0)).max() / DT**2
     assert acceleration <= 1.01 * ROBOCAKE.motion.joint.acceleration
-    assert player.status.goal_stamp == 2.0
+    assert executor.status.goal_stamp == 2.0
 
 
 def test_newer_goal_is_joined_from_the_middle_of_a_path():
     plan = planned(ROBOCAKE, circle_at_home(ROBOCAKE, 0.008))
-    player = Player(ROBOCAKE, HOME, ROBOCAKE.kinematics.inverse(HOME), DT)
-    player.pursue(Goal(plan.at(0.0).pose, 1.0, then=plan))
+    executor = Executor(ROBOCAKE, HOME, ROBOCAKE.kinematics.inverse(HOME), DT)
+    executor.pursue(Goal(plan.at(0.0).pose, 1.0, then=plan))
     for _ in range(50):
-        player.step()
-    assert player.status.mode == 'path'
-    player.pursue(Goal(HOME, 2.0))
+        executor.step()
+    assert executor.status.mode == 'path'
+    executor.pursue(Goal(HOME, 2.0))
     for _ in range(200):
-        player.step()
-    assert (player.status.mode, player.status.result) == ('hold', 'reached')
-    assert player.status.goal_stamp == 2.0
+        executor.step()
+    assert (executor.status.mode, executor.status.result) == ('hold', 'reached')
+    assert executor.status.goal_stamp == 2.0
 
 
 def test_path_on_another_branch_of_the_joints_is_not_begun():
     plan = planned(ROBOCAKE, circle_at_home(ROBOCAKE, 0.008))
     other = TimedPath(plan.path, plan.nodes, plan.squares, plan.joints + 1.0)
-    player = Player(ROBOCAKE, HOME, ROBOCAKE.kinematics.inverse(HOME), DT)
-    player.pursue(Goal(plan.at(0.0).pose, 1.0, then=other))
+    executor = Executor(ROBOCAKE, HOME, ROBOCAKE.kinematics.inverse(HOME), DT)
+    executor.pursue(Goal(plan.at(0.0).pose, 1.0, then=other))
     for _ in range(50):
-        player.step()
-    assert player.status.result == 'refused'
-    assert 'branch' in player.status.reason
+        executor.step()
+    assert executor.status.result == 'refused'
+    assert 'branch' in executor.status.reason
 
 
 @pytest.mark.parametrize('command', ['goal', 'stop', 'cycle'])
 def test_newer_command_ends_the_wait_for_a_path(command):
-    player = Player(ROBOCAKE, HOME, ROBOCAKE.kinematics.inverse(HOME), DT)
-    player.expect(5.0)
-    assert (player.status.result, player.status.goal_stamp) == ('planning', 5.0)
+    executor = Executor(ROBOCAKE, HOME, ROBOCAKE.kinematics.inverse(HOME), DT)
+    executor.expect(5.0)
+    assert (executor.status.result, executor.status.goal_stamp) == ('planning', 5.0)
     if command == 'goal':
-        player.pursue(Goal(HOME, 6.0))
+        executor.pursue(Goal(HOME, 6.0))
     elif command == 'stop':
-        player.stop()
+        executor.stop()
     else:
-        player.start_cycle(Cycle(HOME, [0.001, 0, 0, 0, 0, 0], [0.5] * 6, [0] * 6))
-    assert player.expected is None
+        executor.start_cycle(Cycle(HOME, [0.001, 0, 0, 0, 0, 0], [0.5] * 6, [0] * 6))
+    assert executor.expected is None
 
 
 def test_arc_of_the_arm_turns_the_tool_along():

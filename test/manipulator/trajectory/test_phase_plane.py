@@ -11,7 +11,7 @@ def straight(length, intervals, acceleration):
     return Rows(on_begin, -on_begin, np.full((intervals, 2), acceleration))
 
 
-def test_straight_way_is_driven_with_full_acceleration_and_full_braking():
+def test_straight_path_is_driven_with_full_acceleration_and_full_braking():
     length, intervals, acceleration = 2.0, 400, 3.0
     squares = fastest(straight(length, intervals, acceleration), np.full(intervals + 1, np.inf))
     s = np.linspace(0.0, length, intervals + 1)

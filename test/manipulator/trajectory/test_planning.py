@@ -12,13 +12,13 @@ from manipulator.errors import ManipulatorError, Refused
 from manipulator.pose import Pose
 from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
-from manipulator.trajectory.active_plan import Playing
+from manipulator.trajectory.active_plan import ActivePlan
 from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.jogging import Wish
+from manipulator.trajectory.jogging import JogCommand
 from manipulator.trajectory.joint_move import plan_joint_move
 from manipulator.trajectory.planning import LEADS, Planning
-from manipulator.trajectory.player import Player
 from manipulator.trajectory.worker import Effort, Job
 
 DT = 0.01
@@ -73,20 +73,20 @@ FREE = jog_mode('free', Feedback.for_delay(0.0))
 
 
 class Slow:
-    """A player whose plans take so many ticks; what it commanded, and what it reported."""
+    """A executor whose plans take so many ticks; what it commanded, and what it reported."""
 
     def __init__(self, ticks, machine=MACHINE):
         self.worker = Later(ticks)
         joints = machine.kinematics.inverse(HOME)
-        self.player = Player(machine, HOME, joints, DT, self.worker)
+        self.executor = Executor(machine, HOME, joints, DT, self.worker)
         self.poses, self.joints, self.reports = [HOME], [joints], []
 
     def run(self, ticks):
         for _ in range(ticks):
             self.worker.tick()
-            self.poses.append(self.player.step())
-            self.joints.append(self.player.joints)
-            status = self.player.status
+            self.poses.append(self.executor.step())
+            self.joints.append(self.executor.joints)
+            status = self.executor.status
             report = status.result, status.goal_stamp
             if not self.reports or self.reports[-1] != report:
                 self.reports.append(report)
@@ -110,7 +110,7 @@ def pose(x=0.0, y=0.0, z=0.0412):
 
 def test_a_goal_is_held_up_by_its_planning_and_reported_meanwhile():
     slow = Slow(30)
-    slow.player.pursue(Goal(pose(x=0.006), 1.0))
+    slow.executor.pursue(Goal(pose(x=0.006), 1.0))
     slow.run(30)
     assert slow.steps.max() == 0.0
     slow.run(120)
@@ -122,16 +122,16 @@ def test_a_goal_is_held_up_by_its_planning_and_reported_meanwhile():
 
 def test_quick_planning_is_not_reported():
     quick = Slow(3)
-    quick.player.pursue(Goal(pose(x=0.006), 1.0))
+    quick.executor.pursue(Goal(pose(x=0.006), 1.0))
     quick.run(120)
     assert [result for result, _ in quick.reports] == ['idle', 'moving', 'reached']
 
 
 def test_a_stop_while_a_goal_is_planned_drops_it():
     slow = Slow(30)
-    slow.player.pursue(Goal(pose(x=0.006), 1.0))
+    slow.executor.pursue(Goal(pose(x=0.006), 1.0))
     slow.run(20)
-    slow.player.stop()
+    slow.executor.stop()
     slow.run(60)
     assert slow.steps.max() == 0.0
     assert slow.reports[-1] == ('stopped', 1.0)
@@ -140,12 +140,12 @@ def test_a_stop_while_a_goal_is_planned_drops_it():
 
 def test_a_stop_in_motion_is_obeyed_while_the_next_goal_is_planned():
     slow = Slow(2)
-    slow.player.pursue(Goal(pose(x=0.012), 1.0))
+    slow.executor.pursue(Goal(pose(x=0.012), 1.0))
     slow.run(15)
     slow.worker.ticks = 60
-    slow.player.pursue(Goal(pose(y=0.012), 2.0))
+    slow.executor.pursue(Goal(pose(y=0.012), 2.0))
     slow.run(5)
-    slow.player.stop()
+    slow.executor.stop()
     slow.run(100)
     assert slow.steps[-70:].max() == 0.0
     assert slow.poses[-1].position[1] == pytest.approx(0.0, abs=1e-9)
@@ -154,11 +154,11 @@ def test_a_stop_in_motion_is_obeyed_while_the_next_goal_is_planned():
 
 def test_a_jog_that_begins_while_a_goal_is_planned_drops_it():
     slow = Slow(30)
-    slow.player.pursue(Goal(pose(x=0.01), 1.0))
+    slow.executor.pursue(Goal(pose(x=0.01), 1.0))
     slow.run(10)
-    slow.player.jog(Wish('cmd_vel/joy', np.array([0, 0.01, 0, 0, 0, 0.0]), '', FREE))
+    slow.executor.jog(JogCommand('cmd_vel/joy', np.array([0, 0.01, 0, 0, 0, 0.0]), '', FREE))
     slow.run(60)
-    slow.player.jog(None)
+    slow.executor.jog(None)
     slow.run(60)
     assert slow.poses[-1].position[1] > 0.001
     assert slow.poses[-1].position[0] == pytest.approx(0.0, abs=1e-9)
@@ -168,7 +168,7 @@ def test_a_jog_that_begins_while_a_goal_is_planned_drops_it():
 def test_of_goals_that_come_while_one_is_planned_the_newest_is_driven_last():
     slow = Slow(10)
     for k in range(5):
-        slow.player.pursue(Goal(pose(x=0.002 * k, y=0.003), 1.0 + k))
+        slow.executor.pursue(Goal(pose(x=0.002 * k, y=0.003), 1.0 + k))
         slow.run(1)
     slow.run(200)
     assert slow.reports[-1] == ('reached', 5.0)
@@ -179,10 +179,10 @@ def test_of_goals_that_come_while_one_is_planned_the_newest_is_driven_last():
 @pytest.mark.parametrize('ticks', [0, 2, 8, 30])
 def test_a_goal_in_motion_is_joined_without_a_stop(ticks):
     slow = Slow(2)
-    slow.player.pursue(Goal(pose(x=0.012), 1.0))
+    slow.executor.pursue(Goal(pose(x=0.012), 1.0))
     slow.run(12)
     slow.worker.ticks = ticks
-    slow.player.pursue(Goal(pose(x=0.012, y=0.006), 2.0))
+    slow.executor.pursue(Goal(pose(x=0.012, y=0.006), 2.0))
     slow.run(200)
     assert slow.reports[-1] == ('reached', 2.0)
     assert slow.poses[-1].position[1] == pytest.approx(0.006)
@@ -194,11 +194,11 @@ def test_a_goal_in_motion_is_joined_without_a_stop(ticks):
 
 def test_a_goal_whose_plans_always_come_too_late_is_driven_from_rest():
     slow = Slow(2)
-    slow.player.pursue(Goal(pose(x=0.02), 1.0))
+    slow.executor.pursue(Goal(pose(x=0.02), 1.0))
     slow.run(12)
     slow.worker.ticks = LEADS[-1] + 20
-    slow.player.override(0.2)  # so that it is still in motion after all attempts
-    slow.player.pursue(Goal(pose(y=0.01), 2.0))
+    slow.executor.override(0.2)  # so that it is still in motion after all attempts
+    slow.executor.pursue(Goal(pose(y=0.01), 2.0))
     slow.run(2000)
     assert slow.reports[-1] == ('reached', 2.0)
     slow.check_limits()
@@ -210,7 +210,7 @@ def behind_a_circle(slow, seconds=6.0):
     for t in np.arange(0.0, seconds, DT):
         wanted = pose(x=0.006 * np.sin(2 * t), y=0.006 * np.cos(2 * t))
         if t >= due:
-            slow.player.pursue(Goal(wanted, 1.0 + t))
+            slow.executor.pursue(Goal(wanted, 1.0 + t))
             due += 1 / 60
         slow.run(1)
         behind.append(np.linalg.norm(slow.poses[-1].position - wanted.position))
@@ -235,8 +235,8 @@ def test_a_stream_of_goals_is_followed_closest_by_an_explicit_inverse():
 
 def test_a_long_move_leaves_the_tick_also_with_an_explicit_inverse():
     slow = Slow(30, EXPLICIT)
-    slow.player.override(0.5)
-    slow.player.pursue(Goal(pose(x=0.006), 1.0, motion=Motion.JOINT))
+    slow.executor.override(0.5)
+    slow.executor.pursue(Goal(pose(x=0.006), 1.0, motion=Motion.JOINT))
     slow.run(30)
     assert slow.steps.max() == 0.0
     slow.run(300)
@@ -245,9 +245,9 @@ def test_a_long_move_leaves_the_tick_also_with_an_explicit_inverse():
 
 def test_a_goal_out_of_reach_is_refused_and_the_one_before_goes_on():
     slow = Slow(8)
-    slow.player.pursue(Goal(pose(x=0.01), 1.0))
+    slow.executor.pursue(Goal(pose(x=0.01), 1.0))
     slow.run(15)
-    slow.player.pursue(Goal(pose(x=0.06), 2.0))
+    slow.executor.pursue(Goal(pose(x=0.06), 2.0))
     slow.run(150)
     assert ('refused', 2.0) in slow.reports
     assert slow.reports[-1] == ('reached', 1.0)
@@ -257,18 +257,18 @@ def test_a_goal_out_of_reach_is_refused_and_the_one_before_goes_on():
 def test_a_cycle_is_checked_and_approached_beside_the_loop():
     slow = Slow(20)
     amplitude = [0.003, 0, 0, 0, 0, 0]
-    slow.player.start_cycle(Cycle(HOME, amplitude, [0.5] * 6, [0.5] * 6), 3.0)
+    slow.executor.start_cycle(Cycle(HOME, amplitude, [0.5] * 6, [0.5] * 6), 3.0)
     slow.run(300)
-    assert slow.player.status.mode == 'cycle'
+    assert slow.executor.status.mode == 'cycle'
     assert slow.reports[-1] == ('moving', 3.0)
     slow.check_limits()
 
 
-def test_a_machine_that_is_let_go_waits_for_no_plan():
+def test_a_machine_that_is_released_waits_for_no_plan():
     slow = Slow(30)
-    slow.player.pursue(Goal(pose(x=0.006), 1.0))
+    slow.executor.pursue(Goal(pose(x=0.006), 1.0))
     slow.run(10)
-    slow.player.close()
+    slow.executor.close()
     slow.run(60)
     assert slow.worker.cancelled == 1
     assert slow.steps.max() == 0.0
@@ -277,7 +277,7 @@ def test_a_machine_that_is_let_go_waits_for_no_plan():
 @pytest.mark.parametrize('accepted', [0, 1])
 def test_a_goal_that_the_worker_does_not_take_is_refused_and_the_machine_goes_on(accepted):
     slow = Slow(2)
-    slow.player.pursue(Goal(pose(x=0.012), 1.0))
+    slow.executor.pursue(Goal(pose(x=0.012), 1.0))
     slow.run(12)
     submit, submitted = slow.worker.submit, []
 
@@ -288,7 +288,7 @@ def test_a_goal_that_the_worker_does_not_take_is_refused_and_the_machine_goes_on
         return submit(task)
 
     slow.worker.submit, slow.worker.ticks = full, LEADS[0] + 2  # the first plan comes too late
-    slow.player.pursue(Goal(pose(y=0.006), 2.0))
+    slow.executor.pursue(Goal(pose(y=0.006), 2.0))
     slow.run(150)
     assert len(submitted) == accepted + 1
     assert ('refused', 2.0) in slow.reports
@@ -301,12 +301,12 @@ def test_a_goal_during_a_joint_move_is_planned_from_the_joints_that_the_move_has
     begin = np.array([0.2, 0.6, -0.9, -1.0, 0.5, 2.0])
     end = np.array([-0.2, 0.5, 0.6, 1.0, -0.5, 1.0])
     move = plan_joint_move(arm, arm.kinematics.forward(begin).pose, begin, end)
-    playing, worker = Playing(move), Later(1)
+    active, worker = ActivePlan(move), Later(1)
     for time in np.arange(DT, move.duration - LEADS[0] * DT, DT):
-        playing.time = time
+        active.time = time
         planning = Planning(replace(arm, kinematics=Costly(arm.kinematics)), DT, worker)
-        planning.ask(Goal(arm.kinematics.home, 1.0))
-        planning.step(playing, move.joints_at(time))
+        planning.request(Goal(arm.kinematics.home, 1.0))
+        planning.step(active, move.joints_at(time))
         _, task, *_ = worker.waiting[-1]
         _, ahead = task.args
         assert ahead.joints_at_end(arm) == pytest.approx(

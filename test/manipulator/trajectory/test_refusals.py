@@ -1,4 +1,4 @@
-"""What a player says of goals, cycles and paths that the machine cannot drive, or only just."""
+"""What a executor says of goals, cycles and paths that the machine cannot drive, or only just."""
 
 import re
 from dataclasses import replace
@@ -12,7 +12,7 @@ from manipulator.motion_limits import BRAKING_SHARE, Derivatives, JointDerivativ
 from manipulator.pose import Pose
 from manipulator.trajectory.check import first_fault
 from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.player import Goal, Player
+from manipulator.trajectory.executor import Executor, Goal
 
 MACHINE = load('robocake')
 HOME = MACHINE.kinematics.home
@@ -23,8 +23,8 @@ def raised(height):
     return HOME.moved([0.0, 0.0, height, 0.0, 0.0, 0.0])
 
 
-def player(machine=MACHINE, pose=HOME):
-    return Player(machine, pose, machine.kinematics.inverse(pose), DT)
+def executor(machine=MACHINE, pose=HOME):
+    return Executor(machine, pose, machine.kinematics.inverse(pose), DT)
 
 
 def drive(motion, goal):
@@ -37,8 +37,8 @@ def drive(motion, goal):
     return poses
 
 
-def test_a_goal_beyond_a_limit_is_refused_for_itself_and_not_for_a_moment_of_the_way():
-    motion = player()
+def test_a_goal_beyond_a_limit_is_refused_for_itself_and_not_for_a_moment_of_the_path():
+    motion = executor()
     drive(motion, Goal(raised(-0.02), 5.0))
     assert (motion.status.result, motion.status.goal_stamp) == ('refused', 5.0)
     assert motion.status.reason.startswith('platform height 0.02119 m below 0.02339')
@@ -47,20 +47,20 @@ def test_a_goal_beyond_a_limit_is_refused_for_itself_and_not_for_a_moment_of_the
 def test_a_line_that_leaves_the_reach_is_refused_with_the_place_and_the_reason():
     start = Pose([-0.0133, -0.0048, 0.026], so3.exp([0.083, 0.085, 0.113]))
     goal = Pose([-0.0056, 0.0144, 0.0281], so3.exp([0.049, -0.046, 0.03]))
-    motion = player(pose=start)
+    motion = executor(pose=start)
     drive(motion, Goal(goal, 6.0))
     assert (motion.status.result, motion.status.goal_stamp) == ('refused', 6.0)
     pattern = r'at 2\d % of the line: leg 2: crank angle 3\.6\d+ rad outside .*'
     assert re.fullmatch(pattern, motion.status.reason)
 
 
-def test_a_way_on_which_an_arm_would_have_to_turn_round_is_refused_before_it_takes_for_ever():
+def test_a_path_on_which_an_arm_would_have_to_turn_round_is_refused_before_it_takes_for_ever():
     """Behind joint 1's axis, which does not turn that far: its step is the same however slow."""
     arm = load('arm_6r')
     turn = np.array([2.0, 0.0, 0.0, 0.0, 0.0, 0.0])
     rest = arm.kinematics.rest
     right, left = (arm.kinematics.forward(rest + side * turn).pose for side in (-1.0, 1.0))
-    motion = Player(arm, right, rest - turn, DT)
+    motion = Executor(arm, right, rest - turn, DT)
     drive(motion, Goal(left, 7.0))
     assert (motion.status.result, motion.status.goal_stamp) == ('refused', 7.0)
     pattern = r'at 46 % of the line: joint 1: joint angle -2\.9672 rad outside .*; a joint move .*'
@@ -68,7 +68,7 @@ def test_a_way_on_which_an_arm_would_have_to_turn_round_is_refused_before_it_tak
 
 
 def test_a_machine_that_stands_beyond_a_limit_is_driven_in_and_not_further_out():
-    motion = player(pose=raised(-0.0182))
+    motion = executor(pose=raised(-0.0182))
     drive(motion, Goal(raised(-0.0190), 1.0))
     assert motion.status.result == 'refused'
     assert 'platform height' in motion.status.reason
@@ -79,7 +79,7 @@ def test_a_machine_that_stands_beyond_a_limit_is_driven_in_and_not_further_out()
 
 @pytest.mark.parametrize('way', [1e-9, 1e-8, 1e-7])
 def test_a_goal_that_takes_no_more_than_a_tick_is_driven_to_in_one(way):
-    motion = player()
+    motion = executor()
     poses = [HOME, *drive(motion, Goal(HOME.moved([way, 0, 0, 0, 0, 0]), 3.0))]
     assert motion.status.result == 'reached'
     steps = np.diff([pose.position[0] for pose in poses])
@@ -105,12 +105,12 @@ def limited(**parts):
 
 @pytest.mark.parametrize('limit', [0.02, 0.5, 3.0])
 @pytest.mark.parametrize('part', ['linear', 'angular'])
-def test_a_cycle_says_how_many_times_it_is_faster_than_platform_or_tool_may_be(part, limit):
+def test_a_cycle_reports_how_many_times_it_is_faster_than_platform_or_tool_may_be(part, limit):
     axis = 0 if part == 'linear' else 5
     amplitude, frequency = np.zeros(6), np.full(6, 10.0)
     amplitude[axis] = 0.005 if part == 'linear' else 0.1
     peak = 2 * np.pi * frequency[0] * amplitude[axis]
-    motion = player(limited(**{part: Derivatives(limit, 1e6, 1e9)}))
+    motion = executor(limited(**{part: Derivatives(limit, 1e6, 1e9)}))
     reason = refusal(motion, Cycle(HOME, amplitude, frequency, np.zeros(6)))
     if peak < limit:
         assert reason == ''
@@ -120,7 +120,7 @@ def test_a_cycle_says_how_many_times_it_is_faster_than_platform_or_tool_may_be(p
 
 
 @pytest.mark.parametrize(('axis', 'part'), [(2, 'linear'), (3, 'angular')])
-def test_a_cycle_says_how_many_times_it_must_be_slower_for_the_acceleration_of_its_own_part(
+def test_a_cycle_reports_how_many_times_it_must_be_slower_for_the_acceleration_of_its_own_part(
     axis, part
 ):
     amplitude, rate = np.zeros(6), 2 * np.pi * 2.0
@@ -128,21 +128,21 @@ def test_a_cycle_says_how_many_times_it_must_be_slower_for_the_acceleration_of_i
     peak = rate**2 * amplitude[axis]
     cycle = Cycle(HOME, amplitude, np.full(6, 2.0), np.zeros(6))
     other = 'angular' if part == 'linear' else 'linear'
-    assert refusal(player(limited(**{other: Derivatives(1e-3, 1e-3, 1e9)})), cycle) == ''
+    assert refusal(executor(limited(**{other: Derivatives(1e-3, 1e-3, 1e9)})), cycle) == ''
     strict = Derivatives(1e3, peak / 9.0 / (1.0 - BRAKING_SHARE))
     name = 'platform acceleration' if part == 'linear' else 'turning acceleration'
-    reason = refusal(player(limited(**{part: strict})), cycle)
+    reason = refusal(executor(limited(**{part: strict})), cycle)
     assert re.search(rf'{name} is [23]\.\d\d times too fast', reason)
 
 
-def test_nothing_came_of_a_path_is_said_with_its_stamp_and_reason():
-    motion = player()
+def test_nothing_came_of_a_path_is_reported_with_its_stamp_and_reason():
+    motion = executor()
     motion.expect(8.0)
     assert (motion.status.result, motion.status.goal_stamp) == ('planning', 8.0)
     assert motion.expected == 8.0
     motion.refuse(8.0, 'the path has a corner')
-    said = motion.status
-    assert (said.result, said.goal_stamp, said.reason) == ('refused', 8.0, 'the path has a corner')
+    text = motion.status
+    assert (text.result, text.goal_stamp, text.reason) == ('refused', 8.0, 'the path has a corner')
     assert motion.expected is None
 
 
@@ -154,7 +154,7 @@ def test_a_goal_farther_away_than_any_machine_is_refused_at_rest_and_in_motion(
 ):
     machine = load(name)
     home = machine.kinematics.home
-    motion = player(machine, home)
+    motion = executor(machine, home)
     motion.pursue(Goal(home.moved([0.0, 0.0, 0.004, 0.0, 0.0, 0.0]), 1.0))
     for _ in range(ticks):
         motion.step()

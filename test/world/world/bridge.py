@@ -63,10 +63,10 @@ class Bridge(Process):
         self._joints.send(self.stamp, positions if np.isfinite(positions).all() else None)
 
     def on_machine_state(self, state):
-        told = (state.status.word, state.is_followed, state.is_measured)
-        if not self.states or self.states[-1][1] != told:
-            self.states.append((self.now, told))
-            self._words.send(*told)
+        reported = (state.status.state, state.is_followed, state.is_measured)
+        if not self.states or self.states[-1][1] != reported:
+            self.states.append((self.now, reported))
+            self._words.send(*reported)
 
     def on_trouble(self, text):
         self.troubles.append((self.now, text))

@@ -1,8 +1,8 @@
 """The processes of inverse and forward kinematics."""
 
-from manipulator.command_check import CommandCheck
 from manipulator.pose_estimate import PoseEstimate
-from world.intake import Intake
+from manipulator.setpoint_validator import SetpointValidator
+from world.filtered_callback import FilteredCallback
 from world.timeline import Process
 
 
@@ -15,10 +15,12 @@ class Inverse(Process):
     def __init__(self, timeline, machine, commands):
         super().__init__(timeline)
         self._commands = commands
-        self.check = CommandCheck(machine)
+        self.check = SetpointValidator(machine)
         self.published = []
-        self.on_setpoint = Intake(self, self._take)
-        self.on_joints = Intake(self, lambda stamp, joints: self.check.note_joints(joints))
+        self.on_setpoint = FilteredCallback(self, self._take)
+        self.on_joints = FilteredCallback(
+            self, lambda stamp, joints: self.check.note_joints(joints)
+        )
 
     def _take(self, stamp, pose):
         joints = self.check.command(pose, self.now)
@@ -33,7 +35,7 @@ class Forward(Process):
         super().__init__(timeline)
         self._poses = poses
         self.estimate = PoseEstimate(machine)
-        self.on_joints = Intake(self, self._take)
+        self.on_joints = FilteredCallback(self, self._take)
 
     def _take(self, stamp, joints):
         solution = self.estimate.update(joints)

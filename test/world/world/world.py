@@ -13,8 +13,8 @@ from manipulator.trajectory.path_planning import PathGoal
 from manipulator.trajectory.path_timing import PathRequest
 from world.board import BoardProcess, Cable
 from world.bridge import Bridge
+from world.controller import ControllerProcess
 from world.kinematics import Forward, Inverse
-from world.supervisor import SupervisorProcess
 from world.timeline import Link, Process, Timeline
 
 PATIENCE = 20.0
@@ -25,16 +25,20 @@ MEASUREMENTS = 5
 
 
 class World:
-    """A machine by its name or the path of its file; time passes in `run` and `wait`."""
+    """A machine by its name or the path of its file; time passes in `run` and `wait`.
 
-    def __init__(self, name, boot_s=0.2):
+    hysteresis: play of each servo, rad or m; None: the machine file's.
+    """
+
+    def __init__(self, name, boot_s=0.2, hysteresis=None):
         self.machine = machines.load(name)
         self._config = config = BoardConfig.from_machine(machines.read(name))
         self.calibration = Calibration.from_config(config.servos)
         self.timeline = Timeline()
         self.bridge = None
         self.user = Process(self.timeline)
-        fake = FakeMachine.from_config(config, boot_s, hysteresis=config.hysteresis)
+        play = config.hysteresis if hysteresis is None else hysteresis
+        fake = FakeMachine.from_config(config, boot_s, hysteresis=play)
         self.board = BoardProcess(self.timeline, fake)
         self.cable = self.board.cable = Cable(self.timeline, self.board)
         nobody = self.user
@@ -42,15 +46,15 @@ class World:
         self.links = {name: Link(nobody, None) for name in names}
         deep = ('pose', 'joints_ik', 'joints_pose', 'joints')
         self.links |= {name: Link(nobody, None, depth=MEASUREMENTS) for name in deep}
-        for start in (self.start_supervisor, self.start_inverse, self.start_forward):
+        for start in (self.start_controller, self.start_inverse, self.start_forward):
             start()
         self.start_bridge()
 
     # Processes: each start takes the place of the one before, which is dead
 
-    def start_supervisor(self):
+    def start_controller(self):
         setpoints = self.links['setpoint']
-        new = self.supervisor = SupervisorProcess(self.timeline, self.machine, setpoints)
+        new = self.controller = ControllerProcess(self.timeline, self.machine, setpoints)
         for link, accept in (
             ('words', new.on_machine_state),
             ('goals', new.on_goal),
@@ -106,12 +110,12 @@ class World:
 
     @property
     def state(self):
-        return self.bridge.monitor.status.word
+        return self.bridge.monitor.status.state
 
     @property
     def status(self):
         """The last motion_status."""
-        return self.supervisor.statuses[-1][1]
+        return self.controller.statuses[-1][1]
 
     @property
     def summary(self):
@@ -122,10 +126,10 @@ class World:
         """Where the platform truly is."""
         order = [self.calibration.names.index(n) for n in self.machine.kinematics.joint_names]
         joints = self.board.machine.servos.positions[order]
-        pilot = self.supervisor.pilot
+        supervisor = self.controller.supervisor
         near = self.machine.kinematics.home
-        if pilot.is_driving:
-            near = pilot.machine.frames.platform(pilot.player.state.pose)
+        if supervisor.is_driving:
+            near = supervisor.machine.frames.platform(supervisor.executor.state.pose)
         return self.machine.kinematics.forward(joints, near).pose
 
     def frames(self, kind=object, since=float('-inf')):
@@ -156,7 +160,7 @@ class World:
         self.wait('board', lambda: self.state not in ('disconnected', 'booting'))
         assert self.ask(lambda driver: driver.enable(True)) == ''
         self.wait('enabled machine', lambda: self.state == 'enabled')
-        self.wait('supervisor that holds', lambda: self.status.mode == 'hold')
+        self.wait('controller that holds', lambda: self.status.mode == 'hold')
 
     def disable(self):
         return self.ask(lambda driver: driver.enable(False))

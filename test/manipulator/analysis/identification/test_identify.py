@@ -44,7 +44,7 @@ def test_after_40_poses_unseen_ones_are_known_to_50_micrometres_rms_an_axis(runs
     assert before.min() > 3 * GOAL
 
 
-def test_errors_are_as_large_as_the_covariance_says(runs):
+def test_errors_are_as_large_as_the_covariance_predicts(runs):
     after = np.sqrt(np.mean([run.after**2 for run in runs]))
     law = np.sqrt(np.mean([run.law**2 for run in runs]))
     assert 0.6 < after / law < 1.6
@@ -81,7 +81,7 @@ def test_combinations_that_no_measurement_sees_are_named(campaign):
     assert all('together' in name for name in dark.unseen)
 
 
-def test_a_combination_that_nobody_expects_is_told_by_its_terms(campaign):
+def test_a_combination_that_nobody_expects_is_reported_by_its_terms(campaign):
     found = campaign.run(1, are_frames_known=True).found
     free = found.is_free.copy()
     slopes = found.slopes.copy()
@@ -112,17 +112,17 @@ def test_a_group_that_there_is_not_is_named(campaign):
 def test_frames_are_guessed_exactly_from_poses_that_are_exact(campaign):
     frames = some_frames(np.random.default_rng(8))
     guess = DeviceFrames.guessed(campaign.poses, frames.seen(campaign.poses))
-    for told, true in zip(vars(guess).values(), vars(frames).values(), strict=True):
-        assert np.abs(true.twist_to(told)).max() < 1e-9
+    for reported, true in zip(vars(guess).values(), vars(frames).values(), strict=True):
+        assert np.abs(true.twist_to(reported)).max() < 1e-9
 
 
 def test_frames_cannot_be_guessed_from_poses_that_are_turned_alike(campaign):
     alike = Pose(campaign.poses.position, np.tile(np.eye(3), (len(campaign.joints), 1, 1)))
-    with pytest.raises(NoSolution, match='turned alike'):
+    with pytest.raises(NoSolution, match='one orientation'):
         DeviceFrames.guessed(alike, alike)
 
 
-def test_chosen_poses_tell_more_than_any_that_are_taken_by_chance(campaign):
+def test_chosen_poses_determine_more_than_any_that_are_taken_by_chance(campaign):
     model, generator = campaign.model, np.random.default_rng(1)
     own = model.slopes(np.zeros(len(model.parameters)), campaign.unseen_joints, campaign.unseen)
     rows = own * NOISE.weights[:, None] * np.array([p.tolerance for p in model.parameters])

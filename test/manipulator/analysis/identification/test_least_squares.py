@@ -52,7 +52,7 @@ def test_errors_without_a_minimum_are_no_machine():
         fit(lambda x: (np.exp(-x), -np.diag(np.exp(-x))), FREE)
 
 
-def test_no_machine_at_the_beginning_is_told():
+def test_no_machine_at_the_beginning_is_reported():
     def errors(_):
         raise NoSolution('no pose')
 

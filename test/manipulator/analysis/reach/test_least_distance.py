@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from manipulator.analysis.least_distance import nearest_point
+from manipulator.analysis.slope import nearest_point
 
 
 def test_nearest_point_keeps_every_bound_and_pulls_only_against_what_it_touches():

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from hexapod_control.workspace import sample
+from manipulator.analysis.free_paths import admits, is_connected
 from manipulator.analysis.nearest import nearest_reachable
 from manipulator.analysis.readings import displaced, distance
-from manipulator.analysis.way import admits, is_connected
 from manipulator.errors import InvalidInput
 from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames

@@ -3,9 +3,9 @@ import pytest
 
 from hexapod_control.workspace import sample
 from manipulator import rotation as so3
+from manipulator.analysis.free_paths import is_connected, is_free
 from manipulator.analysis.reach import reach
 from manipulator.analysis.readings import displaced, distance
-from manipulator.analysis.way import is_connected, is_free
 from manipulator.pose import Pose
 
 
@@ -22,7 +22,7 @@ def test_the_nearest_limit_comes_first(machine):
     assert distances == sorted(distances)
 
 
-def test_a_leg_that_does_not_close_says_by_how_much_its_rod_is_too_short(robocake):
+def test_a_leg_that_does_not_close_reports_by_how_much_its_rod_is_too_short(robocake):
     pose = robocake.kinematics.home.moved([0.03, 0, 0, 0, 0, 0])
     found = reach(robocake, pose)
     assert not found.is_reachable
@@ -118,12 +118,12 @@ def test_a_pose_beyond_a_forward_singularity_is_admitted_but_not_connected(roboc
         found = reach(robocake, poses[k])
         assert found.is_admitted
         assert not found.is_connected
-        assert 'no way from home' in found.reason
+        assert 'no path from home' in found.reason
     for k in np.flatnonzero(sides > 0.0)[:10]:
         assert is_connected(robocake, poses[k])
 
 
-def test_a_way_through_what_is_forbidden_is_not_free(robocake):
+def test_a_path_through_what_is_forbidden_is_not_free(robocake):
     left, right = (robocake.kinematics.home.moved([x, 0, 0, 0, 0, 0]) for x in (-0.01, 0.03))
     assert is_free(robocake, left, robocake.kinematics.home)
     assert not is_free(robocake, left, right)

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from hexapod_control.workspace import axis_range
+from manipulator.analysis.free_paths import admits
 from manipulator.analysis.travel import path_report, travel
-from manipulator.analysis.way import admits
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
 
@@ -63,7 +63,7 @@ def test_a_path_within_reach_can_be_driven(robocake):
     assert path_report(robocake, circle).is_drivable
 
 
-def test_a_path_tells_where_it_leaves_the_reach_and_why(robocake):
+def test_a_path_reports_where_it_leaves_the_reach_and_why(robocake):
     corners = [[0, 0, 0.04119], [0.01, 0, 0.04119], [0.03, 0, 0.04119], [0, 0, 0.02]]
     report = path_report(robocake, Pose.from_xyz_rpy(corners))
     assert not report.is_drivable
@@ -74,7 +74,7 @@ def test_a_path_tells_where_it_leaves_the_reach_and_why(robocake):
     assert 'rod too short' in first.reason
 
 
-def test_a_path_that_begins_out_of_reach_says_so_once(robocake):
+def test_a_path_that_begins_out_of_reach_reports_that_once(robocake):
     poses = Pose.from_xyz_rpy([[0.05, 0, 0.04], [0, 0, 0.04]])
     (fault,) = path_report(robocake, poses).faults
     assert (fault.segment, fault.share) == (0, 0.0)

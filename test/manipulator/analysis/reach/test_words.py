@@ -1,4 +1,4 @@
-from manipulator.analysis.explain import explained
+from manipulator.analysis.reach import explained
 from manipulator.pose import Pose
 
 

@@ -1,4 +1,4 @@
-"""Players that are jogged and keep where they went, for every kind of machine and its frames."""
+"""Executors that are jogged and keep where they went, for every kind of machine and its frames."""
 
 import itertools
 
@@ -10,8 +10,8 @@ from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames
 from manipulator.pose import Pose
 from manipulator.teleop.jog_modes import Free
-from manipulator.trajectory.jogging import Wish
-from manipulator.trajectory.player import Player
+from manipulator.trajectory.executor import Executor
+from manipulator.trajectory.jogging import JogCommand
 
 DT = 0.01
 FREE = Free()
@@ -23,8 +23,8 @@ MACHINES |= {f'{name} in frames': in_frames(MACHINES[name], FRAMES) for name in 
 PLATFORMS = [name for name in MACHINES if not name.startswith('arm')]
 
 
-class Jogged(Player):
-    """A player with the poses and joints of every tick so far, those of its beginning first."""
+class Jogged(Executor):
+    """A executor with the poses and joints of every tick so far, those of its beginning first."""
 
     def __init__(self, machine, pose, joints):
         super().__init__(machine, pose, joints, DT)
@@ -34,11 +34,11 @@ class Jogged(Player):
     def run(self, ticks, twist=None, mode=FREE, frame=''):
         """Poses of these ticks, the present one first; without a twist nobody jogs."""
         begin = len(self.poses) - 1
-        wish = None
+        command = None
         if twist is not None:
-            wish = Wish('cmd_vel/joy', np.array(twist, dtype=float), frame, mode)
+            command = JogCommand('cmd_vel/joy', np.array(twist, dtype=float), frame, mode)
         for _ in range(ticks):
-            self.jog(wish)
+            self.jog(command)
             self.poses.append(self.step())
             self.configurations.append(self.joints)
         return self.poses[begin:]
@@ -92,7 +92,7 @@ def platform(request):
 
 @pytest.fixture(scope='session')
 def at_home():
-    """Makes a player that holds its machine at home."""
+    """Makes a executor that holds its machine at home."""
 
     def make(machine):
         home = machine.kinematics.home
@@ -103,5 +103,5 @@ def at_home():
 
 @pytest.fixture(scope='session')
 def standing():
-    """Makes a player that holds its machine where it is told that it stands."""
+    """Makes a executor that holds its machine where it is told that it stands."""
     return Jogged

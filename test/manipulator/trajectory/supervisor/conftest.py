@@ -1,94 +1,57 @@
-"""A motion supervisor with a machine that does as it is told, in a time of its own."""
+"""A supervisor, and a machine that does as it is told and says where it is."""
 
 import pytest
 
 from hexarm.machines import load
-from manipulator.trajectory.supervisor import Supervisor
-from world.supervisor import Thread
-from world.timeline import Timeline
+from manipulator.pose import Pose
+from manipulator.trajectory.executor import Goal
+from manipulator.trajectory.supervisor import MotionSupervisor
 
-DT = 0.01
+MACHINE = load('robocake')
+HOME = MACHINE.kinematics.home
+ELSEWHERE = Pose.from_xyz_rpy((0.004, 0.002, 0.044), (0.0, 0.05, 0.0))
 
 
-class Stage:
-    """The supervisor (`core`), its bridge and its machine; `setpoints` and `statuses` came out."""
+class Rehearsal(MotionSupervisor):
+    """A supervisor whose machine is where it is seen."""
 
-    def __init__(self, machine, planning_s=None):
-        self.timeline = Timeline()
-        self.worker = None if planning_s is None else Thread(self.timeline, planning_s)
-        self.core = Supervisor(machine, DT, worker=self.worker)
-        self.machine = machine
-        self.pose = machine.kinematics.home
-        self.state, self.is_followed = 'enabled', True
-        self.does_bridge_say = self.does_pose_come = True
-        self.setpoints, self.statuses, self.refusals = [], [], []
+    def see(self, pose):
+        """Joints and pose of a machine that is there."""
+        self.note_joints(MACHINE.kinematics.inverse(pose))
+        self.note_pose(pose)
 
-    @property
-    def now(self):
-        return self.timeline.now
-
-    @property
-    def status(self):
-        return self.statuses[-1]
-
-    @property
-    def player(self):
-        return self.core.pilot.player
+    def enable_at(self, pose):
+        """A machine that is there is enabled, and its board follows."""
+        self.note_machine_state('enabled', is_followed=False)
+        self.see(pose)
+        self.step()
+        self.note_machine_state('enabled', is_followed=True)
 
     def run(self, ticks):
+        """The last pose of so many ticks, each followed by the machine."""
         for _ in range(ticks):
-            self.tick()
-
-    def tick(self, period=DT, within=0.001):
-        """One tick, `period` after the last one, that takes so long (s); the setpoint."""
-        self.timeline.run(period)
-        self.report()
-        self.core.begin_tick(self.now)
-        pose = self.core.end_tick(self.now + within)
-        if pose is not None:
-            self.pose = pose
-            self.setpoints.append(pose)
-        self.statuses += self.core.news.take()
+            pose = self.step()
+            if pose is not None:
+                self.see(pose)
         return pose
 
-    def report(self):
-        """What bridge and machine say before a tick."""
-        if self.does_bridge_say:
-            self.core.note_machine_state(self.state, self.is_followed, False, self.now)
-        if self.does_pose_come:
-            self.core.note_joints(self.machine.kinematics.inverse(self.pose))
-            self.core.note_pose(self.pose, self.now)
 
-    def pursue(self, goal, **options):
-        self.core.pursue(goal, self.refuse, self.now, **options)
-
-    def follow(self, path):
-        self.core.follow(path, self.refuse, self.now)
-
-    def refuse(self, error):
-        self.refusals.append(str(error))
+@pytest.fixture
+def supervisor():
+    """A supervisor that has heard nothing yet."""
+    return Rehearsal(MACHINE, 0.01)
 
 
 @pytest.fixture
-def staged():
-    """Makes a stage on which the machine of that name holds at home."""
-
-    def make(name='robocake', planning_s=None):
-        stage = Stage(load(name), planning_s)
-        stage.run(3)
-        assert stage.setpoints
-        return stage
-
-    return make
+def driving(supervisor):
+    """A supervisor that holds its machine at home."""
+    supervisor.enable_at(HOME)
+    return supervisor
 
 
 @pytest.fixture
-def stage(staged):
-    """The hexapod's."""
-    return staged()
-
-
-@pytest.fixture
-def slow(staged):
-    """A hexapod's whose plans take more than three ticks."""
-    return staged(planning_s=3.5 * DT)
+def moving(driving):
+    """A supervisor on its way to a goal."""
+    driving.executor.pursue(Goal(ELSEWHERE, 7.0))
+    driving.run(8)
+    return driving

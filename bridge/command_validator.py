@@ -1,0 +1,118 @@
+"""What a joint command must be before it may become a frame."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bridge.calibration import Calibration
+from bridge.protocol import Setpoint
+from manipulator.arrays import Array
+from manipulator.errors import InvalidInput, Refused
+from manipulator.formatting import counted
+from manipulator.message_filter import NOTABLE_OFFSET, StampFilter
+
+PULSE_PERIOD = 0.02
+LONGEST_GAP = 0.05
+START = 0.005
+
+
+class CommandValidator:
+    """Turns joint commands into setpoints; what must not move the machine is refused whole.
+
+    No jump: a command must lie within what the servos slew, at their rated speed, in the time
+    since the last command (at most 0.05 s) and one pulse period of 0.02 s; what that one left
+    unused of a gap before it counts as well, for after a stall two come at once. Where there is
+    no last command, or its deadline has passed, it must begin where the joints are: within
+    0.005 s at full speed.
+    """
+
+    def __init__(self, calibration: Calibration, deadline: float) -> None:
+        """The deadline that every setpoint carries, in seconds."""
+        self._calibration = calibration
+        self._deadline = deadline
+        self._stamps = StampFilter(maximum_age=deadline)
+        self._names: tuple[str, ...] | None = None
+        self._order: list[int] = []
+        self._last: Array | None = None
+        self._last_at = float('-inf')
+        self._unused = 0.0
+
+    @property
+    def clock_offset(self) -> float | None:
+        """Our clock minus the sender's, in seconds; None before the first stamp."""
+        return self._stamps.offset
+
+    @property
+    def has_notable_offset(self) -> bool:
+        """The sender's clock is off by so much that people should know."""
+        offset = self._stamps.offset
+        return offset is not None and abs(offset) > NOTABLE_OFFSET
+
+    def restart(self) -> None:
+        """The next command must start where the joints are."""
+        self._last = None
+
+    def admit(
+        self,
+        names: Sequence[str],
+        positions: Sequence[float],
+        stamp: float | None,
+        receipt: float,
+        present: Array | None,
+    ) -> Setpoint:
+        """The setpoint for a command that came at `receipt` (s, monotonic up to an offset).
+
+        `present` is where the joints are (rad or m, in the calibration's order; NaN: unknown).
+        stamp None means "now". InvalidInput, StaleMessage or Refused names what is wrong.
+        """
+        target = self._ordered(names, positions)
+        counts = self._calibration.counts(target)
+        if stamp is not None:
+            self._stamps.admit(stamp, receipt)
+        self._refuse_jump(target, receipt, present)
+        self._last, self._last_at = target, receipt
+        return Setpoint(round(1e3 * self._deadline), counts)
+
+    def _ordered(self, names: Sequence[str], positions: Sequence[float]) -> Array:
+        """Positions in the calibration's order, from any order."""
+        if len(names) != len(positions):
+            there = counted(len(positions), 'position')
+            raise InvalidInput(f'{counted(len(names), "joint name")}, but {there}')
+        if tuple(names) != self._names:
+            self._order = self._order_of(names)
+            self._names = tuple(names)
+        return np.array(positions, dtype=np.float64)[self._order]
+
+    def _order_of(self, names: Sequence[str]) -> list[int]:
+        known = self._calibration.names
+        unknown = next((name for name in names if name not in known), None)
+        if unknown is not None:
+            raise InvalidInput(f'unknown joint {unknown[:80]!r} (there are {", ".join(known)})')
+        if len(set(names)) < len(names):
+            repeated = next(name for name in known if list(names).count(name) > 1)
+            raise InvalidInput(f'joint {repeated} is named twice')
+        missing = [name for name in known if name not in names]
+        if missing:
+            raise InvalidInput(f'no position for {", ".join(missing)}')
+        return [list(names).index(name) for name in known]
+
+    def _refuse_jump(self, target: Array, receipt: float, present: Array | None) -> None:
+        elapsed = receipt - self._last_at
+        if self._last is not None and elapsed <= self._deadline:
+            start, where = self._last, 'the last command'
+            time = PULSE_PERIOD + min(max(elapsed, 0.0) + self._unused, LONGEST_GAP)
+        elif present is not None and np.all(np.isfinite(present)):
+            start, where, time, elapsed = present, 'the reported position', START, 0.0
+        else:
+            raise Refused('the positions of the joints are not known yet')
+        steps = np.abs(target - start)
+        i = int(np.argmax(steps))
+        allowed = self._calibration.speed * time
+        if steps[i] > allowed:
+            name, unit = self._calibration.names[i], self._calibration.unit
+            raise Refused(
+                f'{name}: {target[i]:.4g} {unit} would jump by {steps[i]:.4g} from {where}, '
+                f'at most {allowed:.4g}'
+            )
+        needed = float(steps[i]) / self._calibration.speed
+        self._unused = max(elapsed - PULSE_PERIOD - needed, 0.0)

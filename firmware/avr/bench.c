@@ -1,0 +1,58 @@
+/* What one step of each kinematics costs: a program of its own, for the simulated chip.
+ *
+ * It writes to a register before and after; the simulator notes the cycles.
+ */
+#include <avr/io.h>
+#include <math.h>
+
+#include "kinematics.h"
+#include "resolved_rate.h"
+#include "target.h"
+
+enum { NOTHING = 1, INVERSE = 2, ARM_STEP = 3, SINE = 4, DONE = 0xFF };
+
+#define MARK(what) (GPIOR0 = (what))
+
+static volatile float anything;
+
+static void inverse(float x, float angle)
+{
+    const float position[3] = {x, 0.002f, MACHINE.hexapod.home_height};
+    const float rpy[3] = {angle, -angle, 0.05f};
+    float rotation[9], cranks[LEGS];
+    MARK(INVERSE);
+    kinematics_rotation(rpy, rotation);
+    bool closes = kinematics_cranks(&MACHINE.hexapod, position, rotation, cranks);
+    MARK(INVERSE);
+    anything = closes ? cranks[5] : 0;
+}
+
+static void arm_step(float q)
+{
+    const PaperArm arm = {0.4f, 0.4f};
+    const float velocity[3] = {0.1f, -0.05f, 0.02f};
+    float joints[6] = {q, 0.4f + q, 1.2f, 0.3f, 0.9f - q, 0.2f};
+    MARK(ARM_STEP);
+    bool is_regular = resolved_rate_step(&arm, joints, velocity, 0.02f);
+    MARK(ARM_STEP);
+    anything = is_regular ? joints[5] : 0;
+}
+
+int main(void)
+{
+    for (int k = 0; k < 20; k++) {
+        anything = 0.01f * k;
+        MARK(NOTHING);
+        MARK(NOTHING);
+        float value = anything;
+        MARK(SINE);
+        value = sinf(value + 0.3f);
+        MARK(SINE);
+        anything = value;
+        inverse(0.0003f * k, 0.004f * k);
+        arm_step(0.02f * k);
+    }
+    MARK(DONE);
+    for (;;)
+        continue;
+}

@@ -1,6 +1,0 @@
-/* The start button: a machine without a host. */
-#pragma once
-
-/* Disarmed: arms where the program begins and plays it in a loop. Playing: ends it. Stopped: clears,
- * and moves nothing. A machine that a host drives is the host's. */
-void start_press(void);

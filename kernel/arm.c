@@ -1,0 +1,211 @@
+#include "arm.h"
+
+#include "general.h"
+#include "numerical.h"
+#include "vector.h"
+
+/* Of descent: from anywhere, and from the branches of the ideal arm. */
+enum { STARTS = 32, FEW_STARTS = 4, STEPS = 60, FEW_STEPS = 20 };
+/* Poses along one row at which all branches are searched for because Newton's method gave up. */
+enum { MOST_SEARCHES = 50 };
+/* What is left of the error of a solution, metres divided by the length. */
+#define TOLERANCE REAL(1e-10)
+/* Radians between two solutions of one branch that were found from different starts. */
+#define SAME REAL(1e-6)
+
+/* Whether the links, all in one line, come to a place: section 6. */
+static int is_within_reach(const struct chain *chain, const real place[3])
+{
+    real reach = 0, away[3];
+    for (int i = 0; i < JOINTS; i++) {
+        const real *next = i + 1 < JOINTS ? chain->point[i + 1] : chain->tool.position;
+        for (int k = 0; k < 3; k++)
+            away[k] = next[k] - chain->point[i][k];
+        reach += real_sqrt(dot3(away, away));
+    }
+    for (int k = 0; k < 3; k++)
+        away[k] = place[k] - chain->point[0][k];
+    return real_sqrt(dot3(away, away)) <= reach * (1 + REAL(1e-9));
+}
+
+static int is_known(real (*branches)[JOINTS], int count, const real joints[JOINTS])
+{
+    for (int k = 0; k < count; k++) {
+        real most = 0;
+        for (int i = 0; i < JOINTS; i++) {
+            real apart = real_fabs(nearest_turn(joints[i], branches[k][i]) - branches[k][i]);
+            most = apart > most ? apart : most;
+        }
+        if (most < SAME)
+            return 1;
+    }
+    return 0;
+}
+
+/* Descends from a start, and keeps what is found there, unless it is known; the number known. */
+static int found_from(const struct arm *arm, const struct frame *pose, const real start[JOINTS],
+                      int steps, real branches[MOST_BRANCHES][JOINTS], int count)
+{
+    real joints[JOINTS];
+    for (int i = 0; i < JOINTS; i++)
+        joints[i] = start[i];
+    if (count == MOST_BRANCHES || !(descend_joints(&arm->chain, pose, arm->length, steps, joints) < TOLERANCE)
+        || is_known(branches, count, joints))
+        return count;
+    for (int i = 0; i < JOINTS; i++)
+        branches[count][i] = joints[i];
+    return count + 1;
+}
+
+/* Start k of those that are spread over the ranges evenly: powers of the root of x^7 = x + 1. */
+static void cold_start(const struct ranges *ranges, int k, real start[JOINTS])
+{
+    static const real STEP[JOINTS] = {REAL(0.8986537126286992), REAL(0.8075784952213447),
+                                      REAL(0.7257334129697597), REAL(0.6521830259439715),
+                                      REAL(0.5860866975779693), REAL(0.5266889867007357)};
+    for (int i = 0; i < JOINTS; i++) {
+        real part = REAL(0.5) + STEP[i] * (real)k;
+        part -= real_floor(part);
+        start[i] = ranges->low[i] + part * (ranges->high[i] - ranges->low[i]);
+    }
+}
+
+static int from_spread_starts(const struct arm *arm, const struct frame *pose, int starts,
+                              real branches[MOST_BRANCHES][JOINTS], int count)
+{
+    for (int k = 0; k < starts; k++) {
+        real start[JOINTS];
+        cold_start(&arm->ranges, k, start);
+        count = found_from(arm, pose, start, STEPS, branches, count);
+    }
+    return count;
+}
+
+/* From near, from where elimination has the branches, and where it has none from anywhere. */
+static int from_anywhere(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
+                         real branches[MOST_BRANCHES][JOINTS])
+{
+    real candidates[MOST_CANDIDATES][JOINTS];
+    int first = (int)arm->first, known = 0;
+    if (!is_within_reach(&arm->chain, pose->position))
+        return 0;
+    if (first >= 0)
+        known = general_candidates(&arm->chain, arm->length, first, pose, candidates);
+    int count = found_from(arm, pose, near, STEPS, branches, 0);
+    for (int k = 0; k < known; k++)
+        count = found_from(arm, pose, candidates[k], STEPS, branches, count);
+    int starts = first < 0 || count == 0 ? STARTS : FEW_STARTS;
+    return from_spread_starts(arm, pose, starts, branches, count);
+}
+
+/* Of the ideal arm, each branch of the pose, or of one a little aside where the pose lacks it: at
+   the edge of the reach the arm as built may have a branch which the ideal one has not. */
+static void ideal_branches(const struct arm *arm, const struct frame *pose,
+                           const real near[JOINTS], real branches[CLOSED_BRANCHES][JOINTS])
+{
+    static const real ASIDE[] = {REAL(0.96), REAL(1.04), REAL(0.9)};
+    const real *shoulder = arm->form.chain.point[1];
+    closed_branches(&arm->form, pose, near, branches);
+    for (int n = 0; n < 3; n++) {
+        struct frame aside = *pose;
+        real others[CLOSED_BRANCHES][JOINTS];
+        int lost = 0;
+        for (int k = 0; k < CLOSED_BRANCHES; k++)
+            lost += isnan(branches[k][0]) != 0;
+        if (lost == 0)
+            return;
+        for (int i = 0; i < 3; i++)
+            aside.position[i] = shoulder[i] + ASIDE[n] * (pose->position[i] - shoulder[i]);
+        closed_branches(&arm->form, &aside, near, others);
+        for (int k = 0; k < CLOSED_BRANCHES; k++)
+            for (int i = 0; isnan(branches[k][JOINTS - 1]) && i < JOINTS; i++)
+                branches[k][i] = others[k][i];
+    }
+}
+
+static int from_ideal(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
+                      real branches[MOST_BRANCHES][JOINTS])
+{
+    real starts[CLOSED_BRANCHES][JOINTS];
+    ideal_branches(arm, pose, near, starts);
+    int count = found_from(arm, pose, near, FEW_STEPS, branches, 0);
+    for (int k = 0; k < CLOSED_BRANCHES; k++)
+        if (!isnan(starts[k][0]))
+            count = found_from(arm, pose, starts[k], FEW_STEPS, branches, count);
+    return count > 0 ? count : from_anywhere(arm, pose, near, branches);
+}
+
+int arm_branches(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
+                 real branches[MOST_BRANCHES][JOINTS])
+{
+    switch ((int)arm->closes) {
+    case CLOSED:
+        closed_branches(&arm->form, pose, near, branches);
+        return CLOSED_BRANCHES;
+    case ALMOST_CLOSED:
+        return from_ideal(arm, pose, near, branches);
+    default:
+        return from_anywhere(arm, pose, near, branches);
+    }
+}
+
+int arm_inverse(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
+                real joints[JOINTS])
+{
+    real branches[MOST_BRANCHES][JOINTS];
+    if ((int)arm->closes != CLOSED && continue_nearby(&arm->chain, pose, near, joints)
+        && are_within(&arm->ranges, joints))
+        return 1;
+    int count = arm_branches(arm, pose, near, branches);
+    for (int k = 0; k < count; k++)
+        unwrap(&arm->ranges, near, branches[k]);
+    int best = nearest_branch(&arm->ranges, near, branches, count);
+    for (int i = 0; i < JOINTS; i++)
+        joints[i] = best < 0 ? (real)NAN : branches[best][i];
+    return best >= 0;
+}
+
+void arm_miss(const struct arm *arm, const struct frame *pose, real miss[6])
+{
+    real least = (real)INFINITY, joints[JOINTS];
+    for (int k = 0; k <= STARTS; k++) {
+        cold_start(&arm->ranges, k, joints);
+        real left = descend_joints(&arm->chain, pose, arm->length, STEPS, joints);
+        if (left < least) {
+            posture there;
+            least = left;
+            chain_posture(&arm->chain, joints, &there);
+            twist_to_pose(&there.tool, pose, miss);
+        }
+    }
+}
+
+void arm_along(const struct arm *arm, const real (*positions)[3], const real (*rotations)[9],
+               long count, const real near[JOINTS], real (*joints)[JOINTS])
+{
+    real last[JOINTS], ahead[JOINTS], branches[MOST_BRANCHES][JOINTS];
+    int searches = 0;
+    for (int i = 0; i < JOINTS; i++)
+        last[i] = ahead[i] = near[i];
+    for (long n = 0; n < count; n++) {
+        struct frame pose;
+        for (int i = 0; i < 9; i++)
+            pose.rotation[i] = rotations[n][i];
+        for (int i = 0; i < 3; i++)
+            pose.position[i] = positions[n][i];
+        int closes = (int)arm->closes != CLOSED && searches <= MOST_SEARCHES
+                     && continue_nearby(&arm->chain, &pose, ahead, joints[n]);
+        if (!closes && ((int)arm->closes == CLOSED || searches++ < MOST_SEARCHES)) {
+            int found = arm_branches(arm, &pose, last, branches);
+            closes = continued(branches, found, ahead, joints[n]);
+        }
+        /* Where joints go on to at their speed: beside postures where two branches meet only the
+           motion tells them apart. */
+        for (int i = 0; i < JOINTS; i++) {
+            if (!closes)
+                joints[n][i] = (real)NAN;
+            ahead[i] = closes ? 2 * joints[n][i] - last[i] : last[i];
+            last[i] = closes ? joints[n][i] : last[i];
+        }
+    }
+}

@@ -1,0 +1,38 @@
+/* The inverse of any arm with six joints: docs/arm-kinematics.md, 4 to 6. */
+#ifndef KERNEL_ARM_H
+#define KERNEL_ARM_H
+
+#include "branches.h"
+#include "closed_forms.h"
+
+enum { MOST_BRANCHES = 16 }; /* of six revolute joints */
+
+/* Which closed form an arm has. */
+enum { NO_FORM, ALMOST_CLOSED, CLOSED };
+
+struct arm {
+    struct chain chain;      /* as built */
+    struct closed_form form; /* its own, or that of the arm that it almost is */
+    real closes;             /* NO_FORM, ALMOST_CLOSED or CLOSED */
+    real length;             /* divides metres beside radians */
+    struct ranges ranges;
+    real first; /* where the loop of `general_candidates` begins, -1 where that has no use */
+};
+
+/* The branches of a pose, in the first rows; how many rows, some of which may be NaN. `near` gives
+   what the pose leaves free, and where to begin. */
+int arm_branches(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
+                 real branches[MOST_BRANCHES][JOINTS]);
+
+/* The branch to take from `near`; 0 and NaN where there is none. */
+int arm_inverse(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
+                real joints[JOINTS]);
+
+/* The twist that is left to a pose that is not reached, at the best of 33 attempts. */
+void arm_miss(const struct arm *arm, const struct frame *pose, real miss[6]);
+
+/* Joints on one branch along a row of poses, from `near` on: continuous, whatever the ranges. */
+void arm_along(const struct arm *arm, const real (*positions)[3], const real (*rotations)[9],
+               long count, const real near[JOINTS], real (*joints)[JOINTS]);
+
+#endif

@@ -1,0 +1,97 @@
+#include "chain.h"
+
+#include "vector.h"
+
+#include <string.h>
+
+static const struct frame UNMOVED = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+
+/* A B. */
+static void product9(const real a[9], const real b[9], real product[9])
+{
+    for (int row = 0; row < 9; row += 3)
+        for (int column = 0; column < 3; column++)
+            product[row + column] =
+                a[row] * b[column] + a[row + 1] * b[3 + column] + a[row + 2] * b[6 + column];
+}
+
+/* The rotation by an angle about a unit axis: the upper left of (1.1). */
+static void rotation_about(const real w[3], real angle, real rotation[9])
+{
+    real sine = real_sin(angle), cosine = real_cos(angle), versine = 1 - cosine;
+    real x = versine * w[0], y = versine * w[1], z = versine * w[2];
+    rotation[0] = cosine + x * w[0];
+    rotation[1] = x * w[1] - sine * w[2];
+    rotation[2] = x * w[2] + sine * w[1];
+    rotation[3] = x * w[1] + sine * w[2];
+    rotation[4] = cosine + y * w[1];
+    rotation[5] = y * w[2] - sine * w[0];
+    rotation[6] = x * w[2] - sine * w[1];
+    rotation[7] = y * w[2] + sine * w[0];
+    rotation[8] = cosine + z * w[2];
+}
+
+/* The rotation of the link before each joint, and where the joint's point is; last, the tool's. */
+static void turn_links(const struct chain *chain, const real joints[JOINTS],
+                       struct frame links[JOINTS + 1])
+{
+    links[0] = UNMOVED;
+    for (int k = 0; k < 3; k++)
+        links[0].position[k] = chain->point[0][k];
+    for (int i = 0; i < JOINTS; i++) {
+        const real *next = i + 1 < JOINTS ? chain->point[i + 1] : chain->tool.position;
+        real turn[9], length[3];
+        rotation_about(chain->axis[i], joints[i], turn);
+        product9(links[i].rotation, turn, links[i + 1].rotation);
+        for (int k = 0; k < 3; k++)
+            length[k] = next[k] - chain->point[i][k];
+        rotate3(links[i + 1].rotation, length, links[i + 1].position);
+        for (int k = 0; k < 3; k++)
+            links[i + 1].position[k] += links[i].position[k];
+    }
+}
+
+void chain_displacements(const struct chain *chain, const real joints[JOINTS],
+                         struct frame moved[JOINTS + 1])
+{
+    turn_links(chain, joints, moved);
+    for (int i = 0; i <= JOINTS; i++) {
+        real turned[3];
+        rotate3(moved[i].rotation, i < JOINTS ? chain->point[i] : chain->tool.position, turned);
+        for (int k = 0; k < 3; k++)
+            moved[i].position[k] -= turned[k];
+    }
+}
+
+void chain_posture(const struct chain *chain, const real joints[JOINTS], posture *turned)
+{
+    struct frame links[JOINTS + 1];
+    turn_links(chain, joints, links);
+    for (int i = 0; i < JOINTS; i++) {
+        rotate3(links[i].rotation, chain->axis[i], turned->axis[i]);
+        memcpy(turned->point[i], links[i].position, sizeof links[i].position);
+    }
+    product9(links[JOINTS].rotation, chain->tool.rotation, turned->tool.rotation);
+    memcpy(turned->tool.position, links[JOINTS].position, sizeof links[JOINTS].position);
+}
+
+void chain_jacobian(const posture *turned, real jacobian[6][JOINTS])
+{
+    for (int i = 0; i < JOINTS; i++) {
+        real arm[3], velocity[3];
+        for (int k = 0; k < 3; k++)
+            arm[k] = turned->tool.position[k] - turned->point[i][k];
+        cross3(turned->axis[i], arm, velocity);
+        for (int k = 0; k < 3; k++) {
+            jacobian[k][i] = velocity[k];
+            jacobian[3 + k][i] = turned->axis[i][k];
+        }
+    }
+}
+
+void scale_jacobian(real length, real jacobian[6][JOINTS])
+{
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < JOINTS; i++)
+            jacobian[k][i] /= length;
+}

@@ -1,0 +1,38 @@
+/* Six revolute joints in a row: docs/arm-kinematics.md, 1. */
+#ifndef KERNEL_CHAIN_H
+#define KERNEL_CHAIN_H
+
+#include "real.h"
+
+enum { JOINTS = 6 };
+
+/* What maps coordinates of one frame to another: rotation, row by row, and the frame's origin. */
+struct frame {
+    real rotation[9];
+    real position[3];
+};
+
+/* At zero angles, in base axes: unit axes, a point of each axis, the tool. Metres. */
+struct chain {
+    real axis[JOINTS][3];
+    real point[JOINTS][3];
+    struct frame tool;
+};
+
+/* The same with the joints turned. */
+typedef struct chain posture;
+
+/* How far each link has moved, base first: E1, E1 E2, ... of (1.2). */
+void chain_displacements(const struct chain *chain, const real joints[JOINTS],
+                         struct frame moved[JOINTS + 1]);
+
+/* Axes, points and tool where the joints take them. */
+void chain_posture(const struct chain *chain, const real joints[JOINTS], posture *turned);
+
+/* The tool's twist (v, w) in base axes for unit joint rates, six rows of six: (1.3). */
+void chain_jacobian(const posture *turned, real jacobian[6][JOINTS]);
+
+/* Divides the metres of a Jacobian by a length. */
+void scale_jacobian(real length, real jacobian[6][JOINTS]);
+
+#endif

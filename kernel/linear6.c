@@ -1,0 +1,152 @@
+#include "linear6.h"
+
+static void swap(real *a, real *b)
+{
+    real kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+/* The lower half of A' A + damping I, and A' b. */
+static void normal_equations(real a[6][6], real damping, const real b[6],
+                             real normal[6][6], real right[6])
+{
+    for (int i = 0; i < 6; i++) {
+        right[i] = 0;
+        for (int row = 0; row < 6; row++)
+            right[i] += a[row][i] * b[row];
+        for (int j = 0; j <= i; j++) {
+            real sum = i == j ? damping : 0;
+            for (int row = 0; row < 6; row++)
+                sum += a[row][i] * a[row][j];
+            normal[i][j] = sum;
+        }
+    }
+}
+
+void damped6(real matrix[6][6], real damping, const real right[6], real solution[6])
+{
+    real l[6][6], inverse[6];
+    normal_equations(matrix, damping, right, l, solution);
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j <= i; j++) {
+            real sum = l[i][j];
+            for (int k = 0; k < j; k++)
+                sum -= l[i][k] * l[j][k];
+            if (i > j)
+                l[i][j] = sum * inverse[j];
+            else
+                inverse[i] = 1 / real_sqrt(sum > damping / 2 ? sum : damping / 2); /* rounding */
+        }
+        for (int k = 0; k < i; k++)
+            solution[i] -= l[i][k] * solution[k];
+        solution[i] *= inverse[i];
+    }
+    for (int i = 5; i >= 0; i--) {
+        for (int k = i + 1; k < 6; k++)
+            solution[i] -= l[k][i] * solution[k];
+        solution[i] *= inverse[i];
+    }
+}
+
+static real dot6(const real a[6], const real b[6])
+{
+    real sum = 0;
+    for (int k = 0; k < 6; k++)
+        sum += a[k] * b[k];
+    return sum;
+}
+
+static void turn_rows(real a[6], real b[6], real cosine, real sine)
+{
+    for (int k = 0; k < 6; k++) {
+        real x = a[k], y = b[k];
+        a[k] = cosine * x - sine * y;
+        b[k] = sine * x + cosine * y;
+    }
+}
+
+/* Turns two rows of `columns` (A's columns) until they are at a right angle; 1 where they were. */
+static int made_perpendicular(real columns[6][6], real right[6][6], int i, int j)
+{
+    real *a = columns[i], *b = columns[j];
+    real aa = dot6(a, a), bb = dot6(b, b), ab = dot6(a, b);
+    if (!(ab * ab > REAL_EPSILON * REAL_EPSILON * aa * bb))
+        return 1;
+    real zeta = (bb - aa) / (2 * ab);
+    real tangent = 1 / (real_fabs(zeta) + real_sqrt(1 + zeta * zeta));
+    if (zeta < 0)
+        tangent = -tangent;
+    real cosine = 1 / real_sqrt(1 + tangent * tangent);
+    turn_rows(a, b, cosine, cosine * tangent);
+    turn_rows(right[i], right[j], cosine, cosine * tangent);
+    return 0;
+}
+
+/* Exchanges rows so that the lengths of `columns` fall. */
+static void sort_rows(real columns[6][6], real sigma[6], real right[6][6])
+{
+    for (int i = 0; i < 6; i++)
+        sigma[i] = real_sqrt(dot6(columns[i], columns[i]));
+    for (int i = 1; i < 6; i++)
+        for (int j = i; j > 0 && sigma[j] > sigma[j - 1]; j--) {
+            swap(&sigma[j], &sigma[j - 1]);
+            for (int k = 0; k < 6; k++) {
+                swap(&columns[j][k], &columns[j - 1][k]);
+                swap(&right[j][k], &right[j - 1][k]);
+            }
+        }
+}
+
+/* What is left of the unit vector k without its parts along the first rows; its squared length. */
+static real remainder_of(int k, real rows[6][6], int count, real vector[6])
+{
+    for (int i = 0; i < 6; i++)
+        vector[i] = i == k;
+    for (int twice = 0; twice < 2; twice++)
+        for (int row = 0; row < count; row++) {
+            real along = dot6(vector, rows[row]);
+            for (int i = 0; i < 6; i++)
+                vector[i] -= along * rows[row][i];
+        }
+    return dot6(vector, vector);
+}
+
+/* Rows of length one; those that have no direction left get one at a right angle to all before. */
+static void make_unit_rows(real rows[6][6], const real sigma[6])
+{
+    for (int i = 0; i < 6; i++) {
+        real other[6], *row = rows[i], size = sigma[i];
+        if (!(sigma[i] > 12 * REAL_EPSILON * sigma[0])) {
+            /* Of six unit vectors one at least keeps a sixth of its squared length. */
+            int k = 0;
+            while (k + 1 < 6 && remainder_of(k, rows, i, other) < REAL(0.1))
+                k++;
+            size = real_sqrt(remainder_of(k, rows, i, row));
+        }
+        for (int j = 0; j < 6; j++)
+            row[j] /= size;
+    }
+}
+
+void svd6(real matrix[6][6], struct svd6 *parts)
+{
+    enum { MOST_SWEEPS = 20 };
+    real columns[6][6];
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++) {
+            columns[j][i] = matrix[i][j];
+            parts->right[i][j] = i == j;
+        }
+    for (int sweep = 0, done = 0; sweep < MOST_SWEEPS && !done; sweep++) {
+        done = 1;
+        for (int i = 0; i < 6; i++)
+            for (int j = i + 1; j < 6; j++)
+                done &= made_perpendicular(columns, parts->right, i, j);
+    }
+    sort_rows(columns, parts->sigma, parts->right);
+    make_unit_rows(columns, parts->sigma);
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 6; j++)
+            parts->left[i][j] = columns[j][i];
+}

@@ -1,0 +1,311 @@
+"""Executes plans tick by tick: goals in, setpoints out, and every stop along the checked path.
+
+A plan runs in its own time, whose rate goes from 0 (paused) to 1 (full speed). Stopping, pausing
+and slowing change the rate alone, so the machine never leaves the path that was checked. A jog
+begins and ends at rest: it first brakes the plan, and drops it.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from manipulator.arrays import Array
+from manipulator.errors import Refused, Unreachable
+from manipulator.machine import Machine
+from manipulator.pose import Pose
+from manipulator.states import MotionMode, MotionResult
+from manipulator.trajectory.active_plan import ActivePlan, TimeScaling
+from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.jogging import JogCommand, Jogging
+from manipulator.trajectory.joint_move import JointMove
+from manipulator.trajectory.motion_status import OVERTAKEN, STOPPED, TAKEN_OVER, MotionStatus
+from manipulator.trajectory.path_timing import TimedPath
+from manipulator.trajectory.plan import Hold, MotionState, Plan
+from manipulator.trajectory.planning import Planned, Planning
+from manipulator.trajectory.worker import InPlace, Worker
+
+AHEAD, AHEAD_ROWS = 0.5, 26
+"""Seconds in which the direction of a motion shows, and the poses that are looked at."""
+
+
+class Executor:
+    """Owns the commanded state of one machine from the moment that it is enabled."""
+
+    def __init__(
+        self, machine: Machine, pose: Pose, joints: Array, dt: float, worker: Worker | None = None
+    ) -> None:
+        """Begins by holding `pose`, where the joints are; worker: where plans are made."""
+        self.status = MotionStatus()
+        self.joints = joints
+        self._machine = machine
+        self._dt = dt
+        self._scaling = TimeScaling(machine.motion.braking_rate, dt)
+        self._active = ActivePlan(Hold(pose))
+        self._planning = Planning(machine, dt, worker or InPlace())
+        self._next: Goal | Cycle | TimedPath | None = None
+        self.expected: float | None = None
+        self.dropped = TAKEN_OVER
+        self._jog_command: JogCommand | None = None
+        self._jogging: Jogging | None = None
+        self._measured: Pose | None = None
+        self.awaits_arrival = False
+        self.is_waiting = False
+
+    @property
+    def state(self) -> MotionState:
+        """The commanded state, in the plan's own time while a plan is executed."""
+        if self._jogging is not None:
+            motion = self._jogging.motion
+            return MotionState(motion.pose, motion.twist, np.zeros(6))
+        return self._active.state
+
+    @property
+    def newest_stamp(self) -> float:
+        """The stamp of the newest goal, active or waiting."""
+        waiting = self._planning.goal or self._next
+        return waiting.stamp if isinstance(waiting, Goal) else self.status.goal_stamp
+
+    @property
+    def pursued(self) -> Pose | None:
+        """The newest goal, active or waiting; None for other motion and at rest."""
+        waiting = self._planning.goal or self._next
+        if isinstance(waiting, Goal):
+            return waiting.pose
+        return self._active.end.pose if self._active.mode == MotionMode.MOVE else None
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether nothing moves and nothing is about to."""
+        is_jogged = self._jogging is not None or self._jog_command is not None
+        return self._is_holding and not is_jogged
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a goal or a cycle is active, or waits."""
+        return not self._is_holding
+
+    @property
+    def is_executing(self) -> bool:
+        """Whether a plan is executed, neither paused nor braked, or has just reached its end."""
+        if self._active.is_hold:
+            return self._jogging is None and self.status.result == MotionResult.REACHED
+        return self._scaling.target > 0.0
+
+    def joints_ahead(self) -> Array:
+        """The joints (k, n) with which the active plan goes on."""
+        active = self._active
+        times = active.time + np.linspace(0.0, AHEAD, AHEAD_ROWS)
+        rows = active.plan.joints_at(times)
+        if rows is None:
+            rows = self._machine.kinematics.inverse_along(active.plan.at(times).pose, self.joints)
+        return rows
+
+    def begin_waiting(self) -> None:
+        """Begins the path or cycle that waited for the machine's arrival at its first pose."""
+        self.is_waiting = False
+        if not isinstance(self._active.plan, Cycle):
+            self._scaling.jump()
+
+    def pursue(self, goal: Goal) -> None:
+        """Plans a goal from the next tick on; of several the newest wins.
+
+        Refused during a jog. The active plan continues until the new one is ready.
+        """
+        self._refuse_while_jogged()
+        self._planning.request(goal)
+        self._drop_path(OVERTAKEN)
+
+    def expect(self, stamp: float) -> None:
+        """Notes that a path of that stamp is being planned; `dropped` is the reason if it ends."""
+        self._refuse_while_jogged()
+        self.expected = stamp
+        self._report(MotionResult.PLANNING, stamp)
+
+    def refuse(self, stamp: float, reason: str) -> None:
+        """Reports the expected path as refused."""
+        self.expected = None
+        self._report(MotionResult.REFUSED, stamp, reason)
+
+    def jog(self, command: JogCommand | None) -> None:
+        """The jog command of the owning source from now on; None without an owner.
+
+        The active plan brakes along its path and is dropped.
+        """
+        if command is not None and self._jog_command is None and self.is_busy:
+            self._drop()
+            self._scaling.is_stopping = not self._active.is_hold
+        if command is not None:
+            self._drop_path(command.takeover)
+        self._jog_command = command
+
+    def note_measured(self, pose: Pose) -> None:
+        """The measured pose: the feedback of jog modes."""
+        self._measured = pose
+
+    def start_cycle(self, cycle: Cycle, stamp: float = 0.0) -> None:
+        """Moves to the cycle's first pose and begins it there; checked before anything moves.
+
+        Refused during a jog.
+        """
+        self.pursue(Goal(cycle.at(0.0).pose, stamp, then=cycle))
+
+    def stop(self) -> None:
+        """Brakes along the path, then holds; waiting goals are dropped."""
+        stamp, reason = self._to_come
+        self._drop()
+        self._drop_path(STOPPED)
+        self._jog_command = None
+        if self._jogging is None and self._active.is_hold:
+            self._report(MotionResult.STOPPED, stamp, reason)
+        else:
+            self._scaling.is_stopping = True
+
+    def close(self) -> None:
+        """The machine is released: cancels planning."""
+        self._drop()
+
+    def pause(self, is_paused: bool) -> None:
+        """Brakes along the path and waits, or continues."""
+        self._scaling.is_paused = is_paused
+
+    def blind(self, is_blind: bool) -> None:
+        """As `pause`, independent of the user's: the joints' positions are unknown."""
+        self._scaling.is_blind = is_blind
+
+    def override(self, rate: float) -> None:
+        """Runs everything at `rate` times its speed; Refused outside [0, 1]."""
+        self._scaling.override(rate)
+
+    def step(self) -> Pose:
+        """Advances by one tick and returns the pose to command."""
+        if self._jogging is not None or (self._jog_command is not None and self._is_holding):
+            return self._step_jog()
+        if self._active.is_hold:
+            self._scaling.jump()
+        self._plan()
+        before = self.state.pose
+        self._advance()
+        pose = self.state.pose
+        try:
+            self.joints = self._machine.kinematics.inverse(pose, self._near)
+        except Unreachable as error:
+            self._drop()
+            self._begin(Hold(before), self._active.stamp)
+            self._report(MotionResult.STOPPED, self._active.stamp, str(error))
+            return before
+        return pose
+
+    @property
+    def _is_holding(self) -> bool:
+        return self._active.is_hold and self._planning.goal is None
+
+    @property
+    def _near(self) -> Array:
+        """The joints to stay near: those of the plan, where it has any."""
+        plan = self._active.plan
+        return plan.joints_at(self._active.time) if isinstance(plan, JointMove) else self.joints
+
+    @property
+    def _to_come(self) -> tuple[float, str]:
+        """The stamp of what a stop ends, and the reason if it never began, else ''."""
+        waiting = self._planning.goal
+        if self.expected is not None:
+            return self.expected, STOPPED
+        return (self._active.stamp if waiting is None else waiting.stamp), ''
+
+    def _drop_path(self, reason: str) -> None:
+        """Drops the expected path, if any."""
+        if self.expected is not None:
+            self.expected, self.dropped = None, reason
+
+    def _drop(self) -> None:
+        """Drops waiting goals and cancels planning."""
+        self._next = None
+        self._planning.cancel()
+
+    def _refuse_while_jogged(self) -> None:
+        if self._jog_command is not None:
+            raise Refused(f'{self._jog_command.source} controls the machine')
+
+    def _step_jog(self) -> Pose:
+        if self._jogging is None:
+            self._jogging = Jogging(self._machine, self.state.pose, self.joints, self._dt)
+        jogging = self._jogging
+        jogging.step(self._jog_command, self._scaling.target, self._measured)
+        self.joints = jogging.motion.joints
+        is_stopping = self._scaling.is_stopping
+        if jogging.motion.is_at_rest and (self._jog_command is None or is_stopping):
+            result = MotionResult.STOPPED if is_stopping else MotionResult.IDLE
+            self._jogging, self._scaling.is_stopping = None, False
+            self._begin(Hold(jogging.motion.pose), 0.0)
+            self._report(result, 0.0)
+        else:
+            self.status = MotionStatus(MotionMode.JOG, MotionResult.MOVING, 0.0, jogging.reason)
+        return jogging.motion.pose
+
+    def _plan(self) -> None:
+        """Plans the newest goal; where that fails it is refused, or planned from rest."""
+        if self._scaling.is_stopping and self._scaling.factor > 0.0:
+            self._next = self._planning.goal or self._next
+            self._planning.cancel()
+            return
+        failed = self._planning.step(self._active, self.joints)
+        if failed is not None and failed.is_final:
+            self._report(MotionResult.REFUSED, failed.goal.stamp, str(failed.error))
+        elif failed is not None:
+            self._next, self._scaling.is_stopping = failed.goal, True
+        elif self._planning.is_notable:
+            self._report(MotionResult.PLANNING, self.newest_stamp)
+
+    def _join(self, planned: Planned) -> None:
+        """Switches to a plan that begins at this tick, or has begun within it."""
+        since = 0.0 if self._active.is_hold else self._active.time - planned.begin
+        self._next = planned.goal.then
+        self._begin(planned.job.result(), planned.goal.stamp)
+        self._active.time = since
+
+    def _begin(self, plan: Plan, stamp: float) -> None:
+        self._active, self._planning.ready = ActivePlan(plan, stamp), None
+        self.is_waiting = False
+        if not self._active.is_hold:
+            self._report(MotionResult.MOVING, stamp)
+
+    def _report(self, result: MotionResult, stamp: float, reason: str = '') -> None:
+        self.status = MotionStatus(self._active.mode, result, stamp, reason)
+
+    def _advance(self) -> None:
+        ready = self._planning.ready
+        if ready is not None and self._active.is_hold:
+            self._join(ready)
+            ready = None
+        if not self.is_waiting:
+            self._scaling.advance()
+        self._active.time += self._scaling.factor * self._dt
+        if ready is not None and self._active.time >= ready.begin:
+            self._join(ready)
+        if self._scaling.is_stopping and self._scaling.factor <= 0.0:
+            self._settle(MotionResult.STOPPED)
+        elif self._active.is_over:
+            self._settle(MotionResult.REACHED)
+        elif self.status.result == MotionResult.MOVING:
+            self.status = replace(self.status, percent=self._active.percent)
+
+    def _settle(self, result: MotionResult) -> None:
+        """The plan has ended: hold its last pose, or begin the waiting goal."""
+        waiting, self._next = self._next, None
+        stamp = self._active.stamp
+        self._begin(Hold(self.state.pose), stamp)
+        self._scaling.is_stopping = False
+        self._scaling.jump()
+        if isinstance(waiting, (Cycle, TimedPath)):
+            self._begin(waiting, stamp)
+            self.is_waiting = self.awaits_arrival
+            if self.is_waiting or isinstance(waiting, Cycle):
+                self._scaling.factor = 0.0
+        elif isinstance(waiting, Goal):
+            if self._planning.goal is None:
+                self._planning.request(waiting)
+        else:
+            command = self._jog_command if result == MotionResult.STOPPED else None
+            self._report(result, stamp, command.takeover if command else '')
