@@ -120,6 +120,7 @@ def arm_branches(numbers: Array, pose: Pose, near: Array) -> Array:
 
 TRIED = 12
 """Postures on which the ways to begin the loop of an elimination are tried."""
+CANDIDATES = 48
 ORDER = (5, 2, 4, 0, 1, 3)
 """Most arms have axes that are parallel, or that meet, where the first of these have a use."""
 GOOD, USEFUL = 1e-9, 1e-3
@@ -134,7 +135,7 @@ def best_loop(chain: Chain, length: float) -> int:
     joints = np.random.default_rng(0).uniform(-np.pi, np.pi, (TRIED, JOINTS))
     poses, missed = chain.forward(joints), {}
     for first in ORDER:
-        found, how = np.empty((TRIED, MOST_BRANCHES, JOINTS)), np.array([length, first])
+        found, how = np.empty((TRIED, CANDIDATES, JOINTS)), np.array([length, first])
         _kernel.general_candidates(chain.numbers, how, poses.position, poses.rotation, found)
         apart = np.abs(np.exp(1j * found) - np.exp(1j * joints)[:, None]).max(axis=-1)
         nearest = np.sort(np.nan_to_num(apart, nan=np.inf).min(axis=-1))

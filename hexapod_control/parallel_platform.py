@@ -20,7 +20,7 @@ from manipulator.arrays import Array, Mask, frozen, stretched
 from manipulator.continuity import first_jump
 from manipulator.errors import ConfigError, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
-from manipulator.limits.limit import Bounds
+from manipulator.limits.limit import Bounds, Search
 from manipulator.links import PLATFORM, Link
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke, outline
@@ -248,12 +248,19 @@ class ParallelPlatform(ABC):
 
     def ranges(self, bounds: Sequence[Bounds]) -> Array:
         """See `LimitGroup`."""
-        low, high, ranges = np.full(VALUES, -np.inf), np.full(VALUES, np.inf), np.empty(RANGES)
-        for columns, least, most in bounds:
-            low[columns] = np.maximum(low[columns], least)
-            high[columns] = np.minimum(high[columns], most)
-        _kernel.limit_ranges(self.parameters, low, high, ranges)
+        ranges = np.empty(RANGES)
+        _kernel.limit_ranges(self.parameters, *_lowest_and_highest(bounds), ranges)
         return ranges
+
+    def descended(self, search: Search, bounds: Sequence[Bounds], start: Pose) -> Pose:
+        """See `LimitGroup`."""
+        target, position, rotation = search.target, np.empty(3), np.empty((3, 3))
+        _kernel.descended(
+            self.parameters, *_lowest_and_highest(bounds), search.pivot,
+            np.array([search.clearance, search.most_steps]), target.position, target.rotation,
+            start.position, start.rotation, position, rotation,
+        )  # fmt: skip
+        return Pose.unchecked(position, rotation)
 
     def keeps(self, ranges: Array, pose: Pose, joints: Array) -> Mask:
         """See `LimitGroup`."""
@@ -261,6 +268,15 @@ class ParallelPlatform(ABC):
         kept = np.empty(position.shape[:-1])
         _kernel.keeps_limits(self.parameters, ranges, position, rotation, given, kept)
         return np.asarray(kept != 0.0)
+
+
+def _lowest_and_highest(bounds: Sequence[Bounds]) -> tuple[Array, Array]:
+    """The strictest of all limited values (38,), ±∞ where there is none."""
+    low, high = np.full(VALUES, -np.inf), np.full(VALUES, np.inf)
+    for columns, least, most in bounds:
+        low[columns] = np.maximum(low[columns], least)
+        high[columns] = np.minimum(high[columns], most)
+    return low, high
 
 
 def _together(pose: Pose, joints: Array) -> tuple[Array, Array, Array]:

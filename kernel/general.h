@@ -4,7 +4,7 @@
 
 #include "chain.h"
 
-enum { MOST_CANDIDATES = 16 };
+enum { MOST_CANDIDATES = 48 };
 
 /* Joints near which every branch of a pose is; how many. Lengths are divided by `length`. The loop
    of the joints begins after joint `first`, 0 to 5, two before the joint that is solved for: some

@@ -2,6 +2,8 @@
    leg by leg. */
 #include <string.h>
 
+#include "descent.h"
+#include "least_distance.h"
 #include "limits.h"
 #include "matrix6.h"
 #include "newton.h"
@@ -222,6 +224,35 @@ static Py_ssize_t call_twist_between(real *const *a, Py_ssize_t items)
 }
 FUNCTION(twist_between, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, 6})
 
+static Py_ssize_t call_least_distance(real *const *a, Py_ssize_t items)
+{
+    return least_distance(a[0], (const real(*)[6])a[1], a[2], items, a[3]);
+}
+FUNCTION(least_distance, {WHOLE, 6}, {ITEMS, 6}, {ITEMS, 1}, {WRITTEN, 1})
+
+/* Platform, lowest and highest values, pivot; clearance and most steps; target; start; end. */
+static Py_ssize_t call_descended(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        const struct descent descent = {
+            .platform = (const struct platform *)a[0],
+            .low = a[1],
+            .high = a[2],
+            .pivot = a[3],
+            .clearance = a[4][0],
+            .target_position = a[5] + 3 * i,
+            .target_rotation = a[6] + 9 * i,
+        };
+        memcpy(a[9] + 3 * i, a[7] + 3 * i, 3 * sizeof(real));
+        memcpy(a[10] + 9 * i, a[8] + 9 * i, 9 * sizeof(real));
+        descend(&descent, (int)a[4][1], a[9] + 3 * i, a[10] + 9 * i);
+    }
+    return 0;
+}
+FUNCTION(descended, {WHOLE, NUMBERS(struct platform)}, {WHOLE, VALUES}, {WHOLE, VALUES},
+         {WHOLE, 3}, {WHOLE, 2}, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, 3},
+         {WRITTEN, 9})
+
 PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(crank_inverse),
     METHOD(crank_elbows),
@@ -239,5 +270,7 @@ PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(rotation_log),
     METHOD(moved),
     METHOD(twist_between),
+    METHOD(least_distance),
+    METHOD(descended),
     {NULL, NULL, 0, NULL},
 };

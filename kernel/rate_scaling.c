@@ -105,24 +105,27 @@ struct rate_scale scale_rates(const struct joint_limits *limits, const real room
 static void choose_rates(const struct joint_limits *limits, const real before[JOINTS], real part,
                          const real rates[JOINTS], real dt, real chosen[JOINTS])
 {
-    real least = -(real)INFINITY, most = (real)INFINITY, slowest = 1, excess = 0;
+    real least = -(real)INFINITY, most = (real)INFINITY, slowest = 1;
+    int is_reached = 1;
     for (int i = 0; i < JOINTS; i++) {
-        real size = size_of(rates[i]), reach = limits->acceleration[i] * dt / size;
-        real now = before[i] * rates[i] < 0 ? -real_fabs(before[i]) / size
-                                            : real_fabs(before[i]) / size;
-        least = most_of(least, now - reach);
-        most = least_of(most, now + reach);
+        real size = real_fabs(rates[i]), gain = limits->acceleration[i] * dt;
+        slowest = most_of(slowest, real_fabs(part * rates[i] - before[i]) / gain);
+        if (size < STANDING) {
+            is_reached &= real_fabs(before[i]) <= gain;
+            continue;
+        }
+        real now = (rates[i] > 0 ? before[i] : -before[i]) / size;
+        least = most_of(least, now - gain / size);
+        most = least_of(most, now + gain / size);
     }
     real multiple = least_of(most_of(part, least), most);
+    is_reached &= least <= most && most >= 0;
     for (int i = 0; i < JOINTS; i++) {
-        real gain = limits->acceleration[i] * dt;
         chosen[i] = multiple * rates[i];
-        excess = most_of(excess, real_fabs(chosen[i]) - limits->speed[i]);
-        slowest = most_of(slowest, real_fabs(part * rates[i] - before[i]) / gain);
+        is_reached &= real_fabs(chosen[i]) <= limits->speed[i] + STANDING;
     }
-    if (least > most || most < 0 || excess > STANDING)
-        for (int i = 0; i < JOINTS; i++)
-            chosen[i] = before[i] + (part * rates[i] - before[i]) / slowest;
+    for (int i = 0; i < JOINTS && !is_reached; i++)
+        chosen[i] = before[i] + (part * rates[i] - before[i]) / slowest;
 }
 
 void follow_rates(const struct joint_limits *limits, const real room[2 * JOINTS], real part,

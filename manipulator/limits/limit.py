@@ -1,12 +1,12 @@
 """What a limit is: named values of a configuration and the range that each must keep."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
-from manipulator.arrays import Array, Mask
+from manipulator.arrays import Array, Mask, frozen
 from manipulator.pose import Pose
 
 FEWEST_DIGITS, MOST_DIGITS = 4, 12
@@ -67,6 +67,24 @@ class LimitGroup(Protocol):
     def keeps(self, ranges: Array, pose: Pose, joints: Array) -> Mask:
         """Which configurations (...) have finite joints and all values in their ranges."""
         ...
+
+    def descended(self, search: 'Search', bounds: Sequence[Bounds], start: Pose) -> Pose:
+        """From an admitted pose to one at a local minimum of the distance, within the bounds."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What `descended` looks for: the pose nearest to `target`.
+
+    clearance (m) is how far inside every limit it stays, to first order; pivot (3,) the point of
+    the platform, in its frame, whose poses are meant.
+    """
+
+    target: Pose
+    clearance: float
+    most_steps: int
+    pivot: Array = field(default_factory=lambda: frozen(np.zeros(3)))
 
 
 @runtime_checkable

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from manipulator import rotation as so3
 from manipulator.arrays import Array, Mask, frozen
 from manipulator.limits.constraints import Constraints
 from manipulator.pose import Pose
@@ -71,22 +70,21 @@ class PlatformJogger:
         steps = np.arange(int(ticks.max()) + 1)
         parts = np.maximum(1.0 - steps / ticks[:, None], 0.0)
         gone = np.cumsum(parts, axis=1)[..., None] * twists[:, None] * dt
-        poses = Pose(
-            motion.pose.position + gone[..., :3],
-            so3.exp(gone[..., 3:]) @ motion.pose.rotation,
-        )
+        poses = motion.pose.moved(gone)
         joints = self.machine.kinematics.inverse_or_nan(poses, motion.joints)
         return _Ways(poses, joints, *self._excess(motion, joints, dt))
 
     def _excess(self, motion: JogMotion, joints: Array, dt: float) -> tuple[Array, Array]:
         """Speeds and accelerations of joints (k, ticks, n) from now on, over their limits."""
-        k, _, n = joints.shape
-        start = np.broadcast_to(motion.joints, (k, 1, n))
-        rates = np.diff(joints, axis=1, prepend=start) / dt
-        before = np.broadcast_to(motion.rates, (k, 1, n))
-        changes = np.diff(rates, axis=1, prepend=before) / dt
+        k, ticks, n = joints.shape
+        rates = np.empty((k, ticks + 1, n))  # with the present ones before
+        rates[:, 0] = motion.rates
+        np.subtract(joints[:, 0], motion.joints, out=rates[:, 1])
+        np.subtract(joints[:, 1:], joints[:, :-1], out=rates[:, 2:])
+        rates[:, 1:] /= dt
+        changes = (rates[:, 1:] - rates[:, :-1]) / dt
         limits = self.machine.motion.joint
-        return np.abs(rates) / limits.speed, np.abs(changes) / limits.acceleration
+        return np.abs(rates[:, 1:]) / limits.speed, np.abs(changes) / limits.acceleration
 
 
 @dataclass(frozen=True, eq=False)

@@ -139,6 +139,19 @@ def test_a_release_stops_the_arm_along_its_direction(jog):
     assert np.abs(state.rates).max() == 0.0
 
 
+@pytest.mark.parametrize('side', [1.0, -1.0])
+@pytest.mark.parametrize('moving', [[3], [0, 3], [0, 1, 2, 3, 4, 5]])
+def test_joints_that_all_turn_one_way_brake_no_harder_than_they_may(jog, side, moving):
+    rates = np.zeros(6)
+    rates[moving] = side * 0.5 * jog.arm.limits.speed[moving]
+    state = replace(JogState.at_rest(jog.arm.rest), rates=rates)
+    while state.rates.any():
+        after = jog.step(state, np.zeros(6), DT).state
+        changes = np.abs(after.rates - state.rates) / DT
+        assert (changes <= 1.001 * jog.arm.limits.acceleration).all()
+        state = after
+
+
 def test_a_joint_beyond_its_range_moves_only_back(machine_file):
     jog = jogging(machine_file('arm_6r'))
     beyond = jog.arm.rest.copy()

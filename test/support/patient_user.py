@@ -7,6 +7,7 @@ from manipulator.errors import Refused, Stopped, TimedOut
 
 PATIENCE = 60.0
 TRIES = 10
+SOON = 0.3
 
 
 class PatientUser(Client):
@@ -60,6 +61,7 @@ class PatientUser(Client):
             try:
                 return ask()
             except (Refused, Stopped, TimedOut, AssertionError) as error:
+                self.spin(SOON)  # a motion is reported as stopped before its reason is
                 if not self._has_lost(before) and not isinstance(error, TimedOut):
                     raise
             self.make_ready()

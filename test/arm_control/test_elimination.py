@@ -1,0 +1,78 @@
+"""All branches of arms without a closed form: parallel axes, axes that meet, and neither."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from arm_control.arm import SerialArm
+from arm_control.chain import Chain
+from arm_control.load import serial_arm
+from arm_control.numerical import NO_LOOP, Numerical
+from sampling import enough
+
+OFFSETS = {
+    'wrist axes pass each other by 10 mm': (4, 'a_mm', 10.0),
+    'axis 5 passes axis 4 by 60 mm': (3, 'a_mm', 60.0),
+    'wrist 100 mm long between axes 4 and 6': (4, 'd_mm', 100.0),
+    'forearm twisted by 20 degrees': (1, 'alpha_deg', 20.0),
+}
+
+
+@pytest.fixture(params=[*OFFSETS, 'every axis askew'])
+def arm(request, machine_file):
+    """A PUMA that was built otherwise."""
+    file = machine_file('puma560')
+    if request.param in OFFSETS:
+        row, key, value = OFFSETS[request.param]
+        rows = [dict(r) for r in file.geometry['dh']]
+        rows[row][key] = value
+        return serial_arm(replace(file, geometry={**file.geometry, 'dh': rows}))
+    puma, rng = serial_arm(file), np.random.default_rng(7)
+    axes = puma.chain.axes + rng.uniform(-0.2, 0.2, (6, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    chain = Chain(axes, puma.chain.points, puma.chain.home)
+    return SerialArm(chain, puma.limits, puma.characteristic_length, puma.rest)
+
+
+def apart(branches, joints):
+    """How far each branch (..., k, 6) is from joints (..., 6), whole turns aside; NaN as far."""
+    gaps = np.abs(np.exp(1j * branches) - np.exp(1j * joints)[..., None, :]).max(axis=-1)
+    return np.nan_to_num(gaps, nan=9.0)
+
+
+def some_joints(count):
+    return np.random.default_rng(4).uniform(-np.pi, np.pi, (count, 6))
+
+
+def test_the_joints_that_made_a_pose_are_among_its_branches(arm):
+    assert isinstance(arm.method, Numerical)
+    assert arm.method.first != NO_LOOP
+    joints = some_joints(enough(500, 5000))
+    branches = arm.method.branches(arm.chain.forward(joints), np.zeros(6))
+    assert (apart(branches, joints).min(axis=-1) < 1e-5).mean() > 0.99
+
+
+def test_every_branch_leads_to_the_pose_and_none_stands_twice(arm):
+    poses = arm.chain.forward(some_joints(50))
+    for k, branches in enumerate(arm.method.branches(poses, np.zeros(6))):
+        found = branches[np.isfinite(branches[:, 0])]
+        assert 2 <= len(found) <= 16
+        assert len(found) % 2 == 0 or arm.sigma_min(poses[k], found).min() < 0.02
+        for i, one in enumerate(found):
+            assert np.abs(arm.chain.forward(one).twist_to(poses[k])).max() < 1e-9
+            assert (apart(np.delete(found, i, axis=0), one) > 1e-6).all()
+
+
+def test_the_branch_nearest_to_given_joints_is_taken(arm):
+    joints = some_joints(100).clip(arm.limits.low + 0.1, arm.limits.high - 0.1)
+    near = joints + np.random.default_rng(5).uniform(-0.05, 0.05, joints.shape)
+    found = arm.inverse(arm.chain.forward(joints), near)
+    regular = arm.sigma_min(arm.home, joints) > 0.1
+    assert regular.sum() > 40
+    assert np.abs(found - joints)[regular].max() < 1e-7
+
+
+def test_a_place_beyond_all_links_has_no_branch(arm):
+    far = replace(arm.home, position=np.array([9.0, 0.0, 0.0]))
+    assert np.isnan(arm.inverse_all(far)).all()
