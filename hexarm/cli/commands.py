@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 
 @dataclass(frozen=True)
@@ -15,10 +15,6 @@ class Command:
     module: str
     help: str
     example: str
-
-    def declare(self, commands: 'Commands') -> None:
-        """Imports its module and has it declare its arguments, as those of its neighbours."""
-        import_module(self.module).add_parser(commands)
 
 
 COMMANDS = (
@@ -89,36 +85,33 @@ COMMANDS = (
 BY_NAME = {command.name: command for command in COMMANDS}
 
 
-class Commands:
-    """Stands for argparse's action: the modules add their parsers to it, help comes from here."""
+if TYPE_CHECKING:
+    SubParsers = argparse._SubParsersAction[argparse.ArgumentParser]
+else:
+    SubParsers = argparse._SubParsersAction
 
-    def __init__(self, action: 'argparse._SubParsersAction[Any]') -> None:
-        self._action = action
+
+class Commands(SubParsers):
+    """The modules add their parsers to it; their help comes from the table above."""
 
     def add_parser(self, name: str, **options: Any) -> argparse.ArgumentParser:
-        """As the action's, with the subcommand's help, and its example at the end."""
+        """As argparse's, with the subcommand's help, and its example at the end."""
         command = BY_NAME[name]
-        note = options.get('epilog')
-        example = f'example:\n  hexarm {command.example}'
-        parser: argparse.ArgumentParser = self._action.add_parser(
-            name,
-            **options
-            | {
-                'help': command.help,
-                'description': f'{command.help[0].upper()}{command.help[1:]}.',
-                'epilog': f'{example}\n\n{note}' if note else example,
-                'formatter_class': argparse.RawDescriptionHelpFormatter,
-            },
-        )
-        return parser
+        note, example = options.get('epilog'), f'example:\n  hexarm {command.example}'
+        own = {
+            'help': command.help,
+            'description': f'{command.help[0].upper()}{command.help[1:]}.',
+            'epilog': f'{example}\n\n{note}' if note else example,
+            'formatter_class': argparse.RawDescriptionHelpFormatter,
+        }
+        return super().add_parser(name, **options | own)
 
 
-def declare(action: 'argparse._SubParsersAction[Any]', words: Iterable[str]) -> None:
+def declare(commands: 'argparse._SubParsersAction[Any]', words: Iterable[str]) -> None:
     """Declares the subcommand that the words begin with; of all others the names and help."""
     name = next((word for word in words if not word.startswith('-')), '')
-    commands = Commands(action)
     if name in BY_NAME:
-        BY_NAME[name].declare(commands)
+        import_module(BY_NAME[name].module).add_parser(commands)
         return
     for command in COMMANDS:
         commands.add_parser(command.name)

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any, NoReturn
 
-from hexarm.cli.commands import declare
+from hexarm.cli.commands import Commands, declare
 from hexarm.cli.statuses import INTERRUPTED, PIPE_CLOSED, REFUSED
 from manipulator.errors import ManipulatorError
 from manipulator.requirements import missing
@@ -19,6 +19,7 @@ examples:
   hexarm demo                                          the whole graph on a fake board
   hexarm up hexapod                                    the graph, until Ctrl-C
   hexarm up hexapod --port /dev/ttyACM0                the same with a real board
+  hexarm go hexapod --xyz 0 0 0.047 --rpy 0 0 0.1      move it, from another terminal
   hexarm ik robocake --xyz 0 0 0.045 --rpy 0 0 0.1     metres and radians
   hexarm check my_machine.yaml                         what is wrong with a machine file
   hexarm calibrate servos robocake --output mine.yaml  signs and centres, on a fake board
@@ -125,8 +126,8 @@ def parser_for(words: list[str]) -> Parser:
     )
     parser.add_argument('--version', action=Version, help='show the version and exit')
     parser.set_defaults(run=None)
-    action = parser.add_subparsers(metavar='COMMAND', title='commands')
-    declare(action, words)
+    commands = parser.add_subparsers(metavar='COMMAND', title='commands', action=Commands)
+    declare(commands, words)
     return parser
 
 

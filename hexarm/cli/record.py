@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Collection
 from pathlib import Path
+from typing import TextIO
 
 from hexarm.cli.up import StopSignal
 from hexarm.namespaces import namespace_of
@@ -72,16 +73,16 @@ def run(arguments: argparse.Namespace) -> int:
     when = time.strftime('%Y%m%d-%H%M%S')
     path = arguments.output or Path(f'{namespace.replace("/", "_")}-{when}.mcap')
     selection = TopicSelection(namespace, arguments.topics, arguments.commands)
-    stop = StopSignal()
+    stop, out = StopSignal(), sys.stderr if arguments.json else sys.stdout
     begin = time.monotonic()
     with Bag(path) as bag:
-        _say(f'waiting for publishers of {_requested(selection)}')
+        _say(f'waiting for publishers of {_requested(selection)}', out)
         control = Control(
             begin + arguments.seconds,
             stop.check,
-            lambda: _say(f'recording /{namespace} into {path}; Ctrl-C ends it'),
+            lambda: _say(f'recording /{namespace} into {path}; Ctrl-C ends it', out),
             lambda there, domain: _say(
-                f'{_reason(selection, [], there, domain)}; still waiting, Ctrl-C ends it'
+                f'{_reason(selection, [], there, domain)}; still waiting, Ctrl-C ends it', out
             ),
         )
         there, domain = record(bag, namespace, selection, control)
@@ -117,6 +118,5 @@ def _requested(selection: TopicSelection) -> str:
     return ', '.join(selection.names) or f'/{selection.namespace}'
 
 
-def _say(line: str) -> None:
-    """On the error output: the other one is for the answer."""
-    print(line, file=sys.stderr, flush=True)
+def _say(line: str, out: TextIO) -> None:
+    print(line, file=out, flush=True)

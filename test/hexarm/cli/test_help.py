@@ -45,7 +45,7 @@ HEAVY = {'numpy', 'rclpy', 'scipy', 'matplotlib', 'mujoco', 'viser', 'rich', 'mc
         (['--help'], set()),
         (['--version'], set()),
         (['ik', 'robocake', '--xyz', '0', '0', '0.045'], {'numpy'}),
-        (['fk', 'robocake', *['2.1'] * 6], {'numpy', 'scipy'}),
+        (['fk', 'robocake', *['2.1'] * 6], {'numpy', 'scipy'}),  # for the other modes
         (['machines'], {'numpy'}),
         (['check', 'ur5'], {'numpy', 'scipy'}),
     ],
