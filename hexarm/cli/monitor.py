@@ -25,7 +25,7 @@ COLOURS = {b'\0': 'green', b'\1': 'yellow', b'\2': 'red', b'\3': 'red'}
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('monitor', help='show the diagnostics of the nodes, live')
+    parser = commands.add_parser('monitor')
     parser.add_argument(
         'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
     )

@@ -1,7 +1,9 @@
 """`hexarm record [NAMESPACE]`: every message of a machine into an MCAP file, until Ctrl-C."""
 
 import argparse
+import json
 import math
+import sys
 import time
 from collections.abc import Collection
 from pathlib import Path
@@ -19,7 +21,7 @@ class NothingRecorded(ManipulatorError):
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('record', help="write a machine's messages into an MCAP file")
+    parser = commands.add_parser('record')
     parser.add_argument(
         'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
     )
@@ -38,6 +40,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
         '--commands', action='store_true',
         help='commands that are published only once, too; see docs/recording.md, "Commands"',
     )  # fmt: skip
+    parser.add_argument('--json', action='store_true', help='answer for programs, at the end')
     parser.set_defaults(run=run)
 
 
@@ -87,9 +90,14 @@ def run(arguments: argparse.Namespace) -> int:
     if not any(topic.startswith(space) or topic in selection.names for topic in bag.counts):
         path.unlink()
         raise NothingRecorded(_reason(selection, bag.counts, there, domain))
-    for line in lines:
-        print(line)
     took = time.monotonic() - begin
+    if arguments.json:
+        counts = dict(bag.counts)
+        print(
+            json.dumps({'file': str(path), 'seconds': took, 'bytes': bag.size, 'counts': counts})
+        )
+        return 0
+    print(*lines, sep='\n', end='\n' if lines else '')
     print(
         f'{path}: {counted(bag.counts.total(), "message")} of '
         f'{counted(len(bag.counts), "topic")} in {took:.1f} s, {bag.size / 1e6:.1f} MB'
@@ -110,4 +118,5 @@ def _requested(selection: TopicSelection) -> str:
 
 
 def _say(line: str) -> None:
-    print(line, flush=True)
+    """On the error output: the other one is for the answer."""
+    print(line, file=sys.stderr, flush=True)

@@ -22,6 +22,14 @@ from manipulator.trajectory.plan import MotionState
 from manipulator.trajectory.planner import ComparedPlan, Start, compared
 from manipulator.trajectory.worker import Job, Worker
 
+STAMP = ', goal_stamp '
+"""What precedes the stamp in the answers of home and park: motion_status names the move by it."""
+
+
+def named(stamp: float) -> str:
+    """The end of an answer: the stamp, as motion_status has it."""
+    return f'{STAMP}{stamp:.9f}'
+
 
 @dataclass(frozen=True, eq=False)
 class _PlanCall:
@@ -77,12 +85,14 @@ class TrajectoryServices:
         return 'braking along the path, then holding'
 
     def _home(self) -> str:
-        self._controller.home(self._now(), time.monotonic())
-        return 'going home'
+        stamp = self._now()
+        self._controller.home(stamp, time.monotonic())
+        return f'going home{named(stamp)}'
 
     def _park(self) -> str:
-        self._controller.park(self._now(), time.monotonic())
-        return 'going to park'
+        stamp = self._now()
+        self._controller.park(stamp, time.monotonic())
+        return f'going to park{named(stamp)}'
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from hexarm.cli.main import main
+from hexarm.cli.statuses import OUT_OF_REACH
 
 PAPER = ['--legs', '0.15', '--to', '0.02', '0.02', '0.2']
 
@@ -63,7 +64,7 @@ def test_without_legs_the_motion_starts_at_home(capsys):
     ],
 )
 def test_what_cannot_be_simulated_is_refused_with_a_reason(capsys, words, reason):
-    assert main(['leg-motion', *words]) == 2
+    assert main(['leg-motion', *words]) == (OUT_OF_REACH if reason.startswith('leg 1') else 2)
     assert reason in capsys.readouterr().err
 
 
