@@ -59,7 +59,7 @@ setup(
         'physics': ['mujoco>=3.2', 'matplotlib>=3.8', 'pillow>=10'],
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.5', 'matplotlib>=3.8'],
         'panel': ['viser>=1.1,<1.2'],  # panel/nodes/web_server.py reaches into it
-        'terminal': ['rich>=13'],
+        'terminal': ['rich>=13', 'argcomplete>=3'],
         # Libraries that `make bench` compares with: docs/performance.md.
         'bench': [
             'reachy-mini-rust-kinematics>=1.0',

@@ -1,10 +1,46 @@
-"""What a person starts: the nodes, the `hexarm` command, the page, recordings, calibration.
+"""What a person starts: `hexarm`, the nodes, the page; and what a program imports: `Robot`.
 
 Importing it sets what Fast DDS reads from the environment, unless the user has set it.
 """
 
 import os
+from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from hexarm.robot import Robot
+    from manipulator.errors import InvalidInput, ManipulatorError, Refused, Stopped, TimedOut
+    from manipulator.pose import Pose
+
+_HOMES = {
+    'Robot': 'hexarm.robot',
+    'Pose': 'manipulator.pose',
+    'ManipulatorError': 'manipulator.errors',
+    'InvalidInput': 'manipulator.errors',
+    'Refused': 'manipulator.errors',
+    'Stopped': 'manipulator.errors',
+    'TimedOut': 'manipulator.errors',
+}
+"""Where the names of the Python client are: imported once they are used, since Robot needs ROS."""
+
+__all__ = [
+    'InvalidInput',
+    'ManipulatorError',
+    'Pose',
+    'Refused',
+    'Robot',
+    'Stopped',
+    'TimedOut',
+]
+
+
+def __getattr__(name: str) -> Any:
+    """One of the names of the Python client."""
+    if name not in _HOMES:
+        raise AttributeError(f'module hexarm has no attribute {name!r}')
+    return getattr(import_module(_HOMES[name]), name)
+
 
 _PROFILES = 'FASTRTPS_DEFAULT_PROFILES_FILE'
 _RANGE = 'ROS_AUTOMATIC_DISCOVERY_RANGE'

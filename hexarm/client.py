@@ -1,133 +1,67 @@
 """A client of one machine's graph: enables it, sends goals, receives their results."""
 
-import contextlib
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-import rclpy
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Path
-from rclpy.experimental import EventsExecutor
-from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy
-from rclpy.signals import SignalHandlerOptions
-from rclpy.utilities import try_shutdown
-from std_srvs.srv import SetBool, Trigger
 
-from manipulator.errors import ManipulatorError, Refused
+from hexarm.graph_client import GraphClient
+from manipulator.errors import ManipulatorError, Refused, Stopped
 from manipulator.nodes.messages import pose_message, seconds
 from manipulator.nodes.path_goals import path_message
-from manipulator.nodes.qos import COMMAND, LATCHED
+from manipulator.nodes.qos import COMMAND
+from manipulator.nodes.trajectory_services import STAMP
 from manipulator.pose import Pose
 from manipulator.states import UNKNOWN, MachineState, MotionMode, MotionResult
 
-MOST_REQUESTS, ANSWERED_WITHIN = 4, 4.0
 DRIVEN_WITHIN = 15.0
 """Seconds until a machine whose servos are on takes goals: its nodes may still be starting."""
 
+ENDS: dict[str, type[ManipulatorError]] = {
+    MotionResult.REFUSED: Refused,
+    MotionResult.STOPPED: Stopped,
+}
+"""What is raised for a goal that is not reached."""
 
-class NotReady(ManipulatorError, TimeoutError):
-    """The graph did not do in time what it was waited for."""
+FOLLOWED = (MotionResult.MOVING, MotionResult.REACHED, MotionResult.STOPPED)
+"""Results of another goal that has taken the place of ours."""
 
 
-class Stopped(ManipulatorError):
-    """The machine stopped before its goal: by a stop, or by a lost link."""
+@dataclass
+class Pursued:
+    """A goal of this client, and what motion_status has reported of it by now."""
+
+    stamp: str
+    result: str = ''
+    text: str = ''
+
+    def note(self, status: DiagnosticStatus) -> None:
+        """Takes up a status of this goal, and one that shows that another took its place."""
+        values = {pair.key: pair.value for pair in status.values}
+        stamp, result = values.get('goal_stamp', ''), values.get('result', '')
+        if self.result in ENDS or self.result == MotionResult.REACHED:
+            return
+        if stamp == self.stamp:
+            self.result, self.text = result, values.get('reason') or status.message
+        elif self.result and result in FOLLOWED:
+            self.result, self.text = MotionResult.STOPPED, 'another goal took its place'
 
 
-class Client:
-    """A node in `namespace`, spun only while it waits; a context manager.
-
-    `interrupt`, called at every wait, may raise to end it (a node has died, Ctrl-C).
-    """
+class Client(GraphClient):
+    """Enables the machine and sends goals, one at a time; see GraphClient."""
 
     def __init__(self, namespace: str, interrupt: Callable[[], None] = lambda: None) -> None:
-        self._owns_context = not rclpy.ok()
-        if self._owns_context:
-            rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-        self.node = Node('hexarm', namespace=namespace)
-        self.machine_state = DiagnosticStatus(message=UNKNOWN)
-        self.motion_status = DiagnosticStatus()
-        self.diagnostics: dict[str, DiagnosticStatus] = {}
-        self._states_received = 0
+        super().__init__(namespace, interrupt)
+        self.setpoint: Any = None
         self._setpoints: Any = None
-        self._commanded: Any = None
-        self._interrupt = interrupt
-        self._executor = EventsExecutor()
-        self._executor.add_node(self.node)
+        self._pursued = Pursued('')
         self._goals = self.node.create_publisher(PoseStamped, 'goal_pose', COMMAND)
         self._paths = self.node.create_publisher(Path, 'goal_path', COMMAND)
-        subscribe = self.node.create_subscription
-        subscribe(DiagnosticStatus, 'machine_state', self._on_machine_state, LATCHED)
-        subscribe(DiagnosticStatus, 'motion_status', self._on_motion_status, LATCHED)
-        subscribe(DiagnosticArray, '/diagnostics', self._on_diagnostics, 10)
-
-    def __enter__(self) -> 'Client':
-        """The client itself."""
-        return self
-
-    def __exit__(self, *exception: object) -> None:
-        """Leaves the graph."""
-        # Shutting down releases the node's handles: without it the node stays in the graph.
-        self._executor.shutdown()
-        self.node.destroy_node()
-        if self._owns_context:
-            try_shutdown()
-
-    def spin(self, seconds: float) -> None:
-        """Receives messages for a while."""
-        end = time.monotonic() + seconds
-        while True:
-            self._interrupt()
-            left = end - time.monotonic()
-            if left <= 0:
-                return
-            self._executor.spin_once(timeout_sec=min(left, 0.05))
-
-    def wait(
-        self,
-        what: str,
-        is_so: Callable[[], bool],
-        seconds: float,
-        progress: Callable[[], object] = lambda: None,
-    ) -> None:
-        """Receives messages until `is_so`; NotReady names what did not come.
-
-        The seconds begin again whenever `progress` changes.
-        """
-        end, before = time.monotonic() + seconds, progress()
-        while not is_so():
-            if time.monotonic() > end:
-                raise NotReady(
-                    f'timed out after {seconds:g} s, waiting for {what} ({self.summary})'
-                )
-            self.spin(0.005)
-            if (now := progress()) != before:
-                end, before = time.monotonic() + seconds, now
-
-    @property
-    def summary(self) -> str:
-        """Machine state and motion status in a few words."""
-        reason = {v.key: v.value for v in self.machine_state.values}.get('reason', '')
-        state = f'{self.machine_state.message}: {reason}' if reason else self.machine_state.message
-        motion = f', motion {self.motion_status.message}' if self.motion_status.message else ''
-        return f'machine {state}{motion}'
-
-    @property
-    def topics(self) -> list[str]:
-        """Every topic that has a publisher."""
-        names = [name for name, _ in self.node.get_topic_names_and_types()]
-        return [name for name in names if self.node.count_publishers(name)]
-
-    @property
-    def domain(self) -> int:
-        """The ROS domain."""
-        return int(self.node.context.get_domain_id())
-
-    def motion(self, key: str) -> str:
-        """One of the values of motion_status, '' before the first."""
-        return str({v.key: v.value for v in self.motion_status.values}.get(key, ''))
 
     def enable(self) -> None:
         """Energises the servos and waits until the machine takes goals; Refused with the reason.
@@ -137,7 +71,7 @@ class Client:
         self.wait(
             'the board', lambda: self.machine_state.message not in WITHOUT_BOARD, seconds=15.0
         )
-        self._call(SetBool, 'serial_bridge/enable', SetBool.Request(data=True))
+        self.switch('serial_bridge/enable', True)
         before = self._states_received
         self.wait(
             'enabling',
@@ -154,11 +88,7 @@ class Client:
 
     def disable(self) -> None:
         """Switches the servos off."""
-        self._call(SetBool, 'serial_bridge/enable', SetBool.Request(data=False))
-
-    def trigger(self, service: str) -> str:
-        """Calls a Trigger service of the graph; Refused with its reason when it fails."""
-        return self._call(Trigger, service, Trigger.Request())
+        self.switch('serial_bridge/enable', False)
 
     def publish_goal(self, pose: Pose) -> float:
         """Publishes a goal and returns its stamp, by which motion_status names it."""
@@ -166,43 +96,80 @@ class Client:
         self._goals.publish(pose_message(pose, stamp))
         return seconds(stamp)
 
-    def go_to(self, pose: Pose, seconds: float = 10.0) -> None:
-        """Publishes a goal and waits until it is reached; Refused or Stopped with the reason.
+    def send_goal(self, pose: Pose) -> None:
+        """Publishes a goal, once the machine can receive it; `is_there` reports its result."""
+        self.wait('a subscriber on goal_pose', lambda: self.reaches(self._goals), 10.0)
+        self._pursue(f'{self.publish_goal(pose):.9f}')
 
-        However long that takes: NotReady after `seconds` in which nothing moves or is received.
+    def send_path(self, poses: Pose, times: Sequence[float] | None = None) -> None:
+        """As send_goal, a path of poses (n,), n ≤ 2,000; `times` (s) at which to pass them."""
+        self.wait('a subscriber on goal_path', lambda: self.reaches(self._paths), 10.0)
+        stamp = self.node.get_clock().now().to_msg()
+        stamps = None if times is None else [time_message(t) for t in times]
+        self._paths.publish(path_message(poses, stamp, stamps=stamps))
+        self._pursue(f'{seconds(stamp):.9f}')
+
+    def send_to(self, place: str) -> None:
+        """As send_goal, to 'home' or 'park'; Refused with the reason."""
+        self._pursue(self.trigger(f'trajectory/{place}').rpartition(STAMP)[2])
+
+    def is_there(self) -> bool:
+        """Whether the newest own goal is reached; Refused or Stopped where it never will be."""
+        error = ENDS.get(self._pursued.result)
+        if error is not None:
+            raise error(self._pursued.text)
+        return self._pursued.result == MotionResult.REACHED
+
+    def is_known(self) -> bool:
+        """Whether the machine has reported anything of the newest own goal."""
+        return bool(self._pursued.result)
+
+    def await_goal(self, seconds: float, report: Callable[[], object] = lambda: None) -> None:
+        """Waits until the newest own goal is reached; Refused or Stopped with the reason.
+
+        However long that takes: TimedOut after `seconds` in which nothing moves or is received.
+        `report` is called again and again until it is reached.
         """
-        self.wait('a subscriber on goal_pose', lambda: self._reaches(self._goals), 10.0)
-        stamp = f'{self.publish_goal(pose):.9f}'
-        self._await_result(lambda: self.motion('goal_stamp') == stamp, seconds)
+
+        def progress() -> object:
+            report()
+            return (self.motion_status, self.setpoint) if self.is_known() else None
+
+        self.wait('reaching the goal', self.is_there, seconds, progress)
+
+    def go_to(self, pose: Pose, seconds: float = 10.0) -> None:
+        """Publishes a goal and waits until it is reached, as await_goal."""
+        self.send_goal(pose)
+        self.await_goal(seconds)
 
     def follow(self, poses: Pose, seconds: float = 60.0) -> None:
-        """Goes exactly along poses (n,), n ≤ 2,000; Refused or Stopped with the reason.
-
-        `seconds` as for go_to: they must also do for working the path out.
-        """
-        self.wait('a subscriber on goal_path', lambda: self._reaches(self._paths), 10.0)
-        stamp = self.node.get_clock().now().to_msg()
-        self._paths.publish(path_message(poses, stamp))
-        name = f'{stamp.sec + 1e-9 * stamp.nanosec:.9f}'
-        self._await_result(lambda: self.motion('goal_stamp') == name, seconds)
+        """Goes exactly along poses (n,), n ≤ 2,000; the seconds must also do for its planning."""
+        self.send_path(poses)
+        self.await_goal(seconds)
 
     def home(self, seconds: float = 10.0) -> None:
-        """Goes home and waits until it is there; Refused or Stopped with the reason.
-
-        `seconds` as for go_to.
-        """
-        self._go('home', seconds)
+        """Goes home and waits until it is there, as await_goal."""
+        self.send_to('home')
+        self.await_goal(seconds)
 
     def park(self, seconds: float = 10.0) -> None:
-        """Goes to the joints at which the servos are switched on and off; as `home`."""
-        self._go('park', seconds)
+        """Goes to the joints at which the servos are switched on and off, as await_goal."""
+        self.send_to('park')
+        self.await_goal(seconds)
 
-    def _go(self, place: str, seconds: float) -> None:
-        before = self.motion('goal_stamp')
-        self.trigger(f'trajectory/{place}')
-        self._await_result(lambda: self.motion('goal_stamp') != before, seconds)
+    def watch_setpoints(self) -> None:
+        """Receives setpoints from now on: while they change, the machine moves."""
+        if self._setpoints is None:
+            self._setpoints = self.node.create_subscription(
+                PoseStamped, 'setpoint', self._on_setpoint, COMMAND
+            )
 
-    def _reaches(self, publisher: Any) -> bool:
+    def _pursue(self, stamp: str) -> None:
+        self.watch_setpoints()
+        self._pursued = Pursued(stamp)
+        self._pursued.note(self.motion_status)
+
+    def reaches(self, publisher: Any) -> bool:
         """Whether all who subscribe to it are connected, the trajectory node among them."""
         found = [
             one
@@ -212,59 +179,18 @@ class Client:
         is_there = any(one.node_name == 'trajectory' for one in found)
         return is_there and bool(publisher.get_subscription_count() >= len(found))
 
-    def _await_result(self, is_ours: Callable[[], bool], seconds: float) -> None:
-        ends: dict[str, type[ManipulatorError] | None] = {
-            MotionResult.REACHED: None,
-            MotionResult.REFUSED: Refused,
-            MotionResult.STOPPED: Stopped,
-        }
-        if self._setpoints is None:
-            self._setpoints = self.node.create_subscription(
-                PoseStamped, 'setpoint', self._on_setpoint, COMMAND
-            )
-        self.wait(
-            'reaching the goal',
-            lambda: is_ours() and self.motion('result') in ends,
-            seconds,
-            lambda: (self.motion_status, self._commanded) if is_ours() else None,
-        )
-        error = ends[self.motion('result')]
-        if error is not None:
-            raise error(self.motion_status.message)
-
-    def _call(self, kind: type, name: str, request: Any) -> str:
-        client = self.node.create_client(kind, name)
-        try:
-            self.wait(f'service {name}', client.service_is_ready, seconds=10.0)
-            response = self.answer_of(client, request, f'an answer of {name}')
-        finally:
-            self.node.destroy_client(client)
-        if not response.success:
-            raise Refused(f'{name}: {response.message}')
-        return str(response.message)
-
-    def answer_of(self, client: Any, request: Any, what: str) -> Any:
-        """The service's response; requested again where it is lost, as just after discovery."""
-        for _ in range(MOST_REQUESTS):
-            future = client.call_async(request)
-            with contextlib.suppress(NotReady):
-                self.wait(what, future.done, ANSWERED_WITHIN)
-                return future.result()
-        raise NotReady(f'no answer: {what} was requested {MOST_REQUESTS} times ({self.summary})')
-
-    def _on_machine_state(self, message: DiagnosticStatus) -> None:
-        self.machine_state = message
-        self._states_received += 1
-
     def _on_motion_status(self, message: DiagnosticStatus) -> None:
         self.motion_status = message
+        self._pursued.note(message)
 
     def _on_setpoint(self, message: PoseStamped) -> None:
-        self._commanded = message.pose
+        self.setpoint = message.pose
 
-    def _on_diagnostics(self, message: DiagnosticArray) -> None:
-        for entry in message.status:
-            self.diagnostics[entry.name] = entry
+
+def time_message(seconds: float) -> Time:
+    """Seconds as a stamp."""
+    whole, rest = divmod(round(1e9 * seconds), 10**9)
+    return Time(sec=whole, nanosec=rest)
 
 
 WITHOUT_BOARD = (UNKNOWN, MachineState.DISCONNECTED, MachineState.BOOTING)

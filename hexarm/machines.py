@@ -7,9 +7,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from bridge.calibration import Calibration
 from bridge.servo_config import BoardConfig, ServosConfig
-from manipulator.arrays import Array, frozen
+from manipulator.arrays import frozen
 from manipulator.config import MAX_CHARACTERS, build, parse_yaml
 from manipulator.errors import ConfigError
 from manipulator.formatting import reason, shortened, shown
@@ -125,18 +127,19 @@ def load(name_or_path: str) -> Machine:
         machine = replace(machine, deflection=_deflection(machine_file, machine.kinematics))
     except ConfigError as error:
         raise ConfigError(error.problems, str(find(name_or_path))) from error
-    park = _park(machine_file, machine.kinematics)
-    return replace(machine, frames=Frames.from_config(machine_file.frames), park=park)
+    machine = replace(machine, frames=Frames.from_config(machine_file.frames))
+    return _with_servos(machine, machine_file)
 
 
-def _park(machine_file: MachineFile, kinematics: Kinematics) -> Array | None:
-    """The joints at park, in the kinematics' order; None where the servos cannot be used."""
+def _with_servos(machine: Machine, machine_file: MachineFile) -> Machine:
+    """With the joints at park, and their resolution; without where the servos cannot be used."""
     try:
         calibration = Calibration.from_config(build(ServosConfig, machine_file.servos, 'servos'))
-        order = [calibration.names.index(name) for name in kinematics.joint_names]
+        order = [calibration.names.index(name) for name in machine.kinematics.joint_names]
     except (ConfigError, ValueError):
-        return None
-    return frozen(calibration.park[order])
+        return machine
+    resolution = frozen(1.0 / np.abs(calibration.scale[order]))
+    return replace(machine, park=frozen(calibration.park[order]), resolution=resolution)
 
 
 def _deflection(machine_file: MachineFile, kinematics: Kinematics) -> StaticDeflection | None:

@@ -4,7 +4,7 @@ import argparse
 import re
 from collections.abc import Collection
 
-from manipulator.errors import ManipulatorError
+from manipulator.errors import TimedOut
 from manipulator.formatting import shown
 
 NAMESPACE = re.compile(r'/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*/?', re.ASCII)
@@ -14,7 +14,7 @@ MARK = '/machine_state'
 """The topic by which a machine's namespace is known."""
 
 
-class NoMachine(ManipulatorError):
+class NoMachine(TimedOut):
     """No machine answers in a namespace."""
 
 

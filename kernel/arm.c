@@ -49,7 +49,7 @@ static int found_from(const struct arm *arm, const struct frame *pose, const rea
     real joints[JOINTS];
     for (int i = 0; i < JOINTS; i++)
         joints[i] = start[i];
-    if (count == MOST_BRANCHES || !(descend(&arm->chain, pose, arm->length, steps, joints) < TOLERANCE)
+    if (count == MOST_BRANCHES || !(descend_joints(&arm->chain, pose, arm->length, steps, joints) < TOLERANCE)
         || is_known(branches, count, joints))
         return count;
     for (int i = 0; i < JOINTS; i++)
@@ -170,7 +170,7 @@ void arm_miss(const struct arm *arm, const struct frame *pose, real miss[6])
     real least = (real)INFINITY, joints[JOINTS];
     for (int k = 0; k <= STARTS; k++) {
         cold_start(&arm->ranges, k, joints);
-        real left = descend(&arm->chain, pose, arm->length, STEPS, joints);
+        real left = descend_joints(&arm->chain, pose, arm->length, STEPS, joints);
         if (left < least) {
             posture there;
             least = left;

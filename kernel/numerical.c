@@ -53,7 +53,7 @@ int continue_nearby(const struct chain *chain, const struct frame *pose, const r
     return 0;
 }
 
-real descend(const struct chain *chain, const struct frame *pose, real length, int steps,
+real descend_joints(const struct chain *chain, const struct frame *pose, real length, int steps,
              real joints[JOINTS])
 {
     real last = (real)INFINITY;

@@ -14,7 +14,7 @@ int continue_nearby(const struct chain *chain, const struct frame *pose, const r
 
 /* Damped steps from `joints` towards a pose; what is left of the error, metres divided by length.
    A start that hardly gets nearer is given up. */
-real descend(const struct chain *chain, const struct frame *pose, real length, int steps,
+real descend_joints(const struct chain *chain, const struct frame *pose, real length, int steps,
              real joints[JOINTS]);
 
 #endif

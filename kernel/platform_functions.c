@@ -2,6 +2,9 @@
    leg by leg. */
 #include <string.h>
 
+#include "braking.h"
+#include "descent.h"
+#include "least_distance.h"
 #include "limits.h"
 #include "matrix6.h"
 #include "newton.h"
@@ -222,6 +225,57 @@ static Py_ssize_t call_twist_between(real *const *a, Py_ssize_t items)
 }
 FUNCTION(twist_between, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, 6})
 
+static Py_ssize_t call_least_distance(real *const *a, Py_ssize_t items)
+{
+    return least_distance(a[0], (const real(*)[6])a[1], a[2], items, a[3]);
+}
+FUNCTION(least_distance, {WHOLE, 6}, {ITEMS, 6}, {ITEMS, 1}, {WRITTEN, 1})
+
+/* Platform, lowest and highest values, pivot; clearance and most steps; target; start; end. */
+static Py_ssize_t call_descended(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++) {
+        const struct descent descent = {
+            .platform = (const struct platform *)a[0],
+            .low = a[1],
+            .high = a[2],
+            .pivot = a[3],
+            .clearance = a[4][0],
+            .target_position = a[5] + 3 * i,
+            .target_rotation = a[6] + 9 * i,
+        };
+        memcpy(a[9] + 3 * i, a[7] + 3 * i, 3 * sizeof(real));
+        memcpy(a[10] + 9 * i, a[8] + 9 * i, 9 * sizeof(real));
+        descend(&descent, (int)a[4][1], a[9] + 3 * i, a[10] + 9 * i);
+    }
+    return 0;
+}
+FUNCTION(descended, {WHOLE, NUMBERS(struct platform)}, {WHOLE, VALUES}, {WHOLE, VALUES},
+         {WHOLE, 3}, {WHOLE, 2}, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, 3},
+         {WRITTEN, 9})
+
+/* Platform, ranges, frame, bounds; the present pose, joints and rates; twists; their paths. Returns
+   the index of the first twist with no obstacle, or how many there are; paths beyond are 0. */
+static Py_ssize_t call_first_free_path(real *const *a, Py_ssize_t items)
+{
+    const struct jogged machine = {(const struct platform *)a[0], (const struct limit_ranges *)a[1],
+                                   (const struct jog_frame *)a[2], (const struct jog_bounds *)a[3]};
+    const struct jog_state from = {a[4], a[5], a[6], a[7]};
+    struct braking_path *paths = (struct braking_path *)a[9];
+    memset(paths, 0, (size_t)items * sizeof *paths);
+    Py_ssize_t i = 0;
+    for (; i < items; i++) {
+        paths[i] = braking_path(&machine, &from, a[8] + 6 * i);
+        if (paths[i].obstacle == NOTHING)
+            break;
+    }
+    return i;
+}
+FUNCTION(first_free_path, {WHOLE, NUMBERS(struct platform)}, {WHOLE, NUMBERS(struct limit_ranges)},
+         {WHOLE, NUMBERS(struct jog_frame)}, {WHOLE, NUMBERS(struct jog_bounds)}, {WHOLE, 3},
+         {WHOLE, 9}, {WHOLE, LEGS}, {WHOLE, LEGS}, {ITEMS, 6},
+         {WRITTEN, NUMBERS(struct braking_path)})
+
 PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(crank_inverse),
     METHOD(crank_elbows),
@@ -239,5 +293,8 @@ PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(rotation_log),
     METHOD(moved),
     METHOD(twist_between),
+    METHOD(least_distance),
+    METHOD(descended),
+    METHOD(first_free_path),
     {NULL, NULL, 0, NULL},
 };

@@ -12,9 +12,17 @@ static inline real nearest_integer(real x)
     return (x + large) - large;
 }
 
+#define MOST_ANGLE REAL(1e5)
+
 #ifdef KERNEL_FLOAT
 
 #define angle_of atan2f
+
+static inline void sine_and_cosine(real angle, real *sine, real *cosine)
+{
+    *sine = real_sin(angle);
+    *cosine = real_cos(angle);
+}
 
 #else
 
@@ -40,8 +48,6 @@ static inline real angle_of(real y, real x)
     angle = x < 0 ? REAL_PI - angle : angle;
     return y < 0 ? -angle : angle;
 }
-
-#define MOST_ANGLE 1e5
 
 /* The sine and cosine of an angle up to MOST_ANGLE, to 3e-16. */
 static inline void sine_and_cosine(real angle, real *sine, real *cosine)

@@ -164,3 +164,35 @@ def follow_rates(
     limits: Array, room: Array, rates: Array, part_and_dt: Array, before: Array, joints: Array
 ) -> int:
     """Changes rates and joints to what they are dt later."""
+
+def least_distance(target: Array, normals: Array, slack: Array, multipliers: Array) -> int:
+    """1 where a point is found, else 0; `multipliers` are written: kernel/least_distance.h."""
+
+def descended(
+    platform: Array,
+    low: Array,
+    high: Array,
+    pivot: Array,
+    clearance_and_steps: Array,
+    target_position: Array,
+    target_rotation: Array,
+    start_position: Array,
+    start_rotation: Array,
+    position: Array,
+    rotation: Array,
+) -> int:
+    """0; the last two are written: kernel/descent.h."""
+
+def first_free_path(
+    platform: Array,
+    ranges: Array,
+    frame: Array,
+    bounds: Array,
+    position: Array,
+    rotation: Array,
+    joints: Array,
+    rates: Array,
+    twists: Array,
+    paths: Array,
+) -> int:
+    """The first of the twists that can be braked, or how many there are: kernel/braking.h."""

@@ -54,6 +54,14 @@ class Refused(ManipulatorError, ValueError):
     """A motion that is not begun, or a command that does not fit the present mode."""
 
 
+class Stopped(ManipulatorError):
+    """A motion that ended before its goal: by a stop, a newer goal, or a lost link."""
+
+
+class TimedOut(ManipulatorError, TimeoutError):
+    """What was waited for did not come in time."""
+
+
 class ProtocolError(ManipulatorError, ValueError):
     """Bytes on the serial line that are not a frame of this protocol."""
 

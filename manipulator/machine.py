@@ -48,7 +48,8 @@ class Machine:
     unless the machine was made by `in_frames`. make_jogger makes the jogger of this machine, or of
     the same in other frames. deflection: of the drives under load, where it is to be compensated.
     park (n,) are the joints at which the servos are switched on and off, None where the file has
-    no usable servos. jog_singularity: one of JOG_SINGULARITIES.
+    no usable servos. resolution (n,): the steps in which joints are commanded and reported, None
+    likewise. jog_singularity: one of JOG_SINGULARITIES.
     """
 
     kinematics: Kinematics
@@ -58,6 +59,7 @@ class Machine:
     frames: Frames = field(default_factory=Frames)
     deflection: StaticDeflection | None = None
     park: Array | None = None
+    resolution: Array | None = None
     jog_singularity: str = JOG_SINGULARITIES[0]
 
     def __post_init__(self) -> None:

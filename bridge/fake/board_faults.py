@@ -11,7 +11,7 @@ from bridge.protocol import PROTOCOL_VERSION, ResetCause
 
 @dataclass
 class BoardFaults:
-    """Begins and ends what `faults` says; the line's bytes pass through `heard` and `said`.
+    """Begins and ends what `faults` says; the line's bytes pass through `to_board` and `to_host`.
 
     plug: pulls the cable (False) and puts it back. A stuck servo is channel 0.
     """
@@ -40,11 +40,11 @@ class BoardFaults:
             if act is not None:
                 act(begins)
 
-    def heard(self, received: bytes, now: float) -> bytes:
+    def to_board(self, received: bytes, now: float) -> bytes:
         """What the board gets of the host's bytes."""
         return self._to_board.pass_on(received, self.faults.active, now)
 
-    def said(self, output: bytes, now: float) -> bytes:
+    def to_host(self, output: bytes, now: float) -> bytes:
         """What the host gets of the board's bytes."""
         passed = self._to_host.pass_on(output, self.faults.active, now)
         return b'' if FaultKind.MUTE in self.faults.active else passed

@@ -70,12 +70,12 @@ class BoardSettings:
 
     @property
     def can_loop(self) -> bool:
-        """No servo is outrun on the way from the table's last row to the first."""
+        """No servo is outrun from the table's last row to the first."""
         if self.table is None:
             return False
-        ways = (abs(a - b) for a, b in zip(self.table.rows[-1], self.table.rows[0], strict=True))
+        ends = zip(self.table.rows[-1], self.table.rows[0], self.count_speeds, strict=True)
         step = 1e-3 * self.table.step_ms
-        return all(way <= speed * step for way, speed in zip(ways, self.count_speeds, strict=True))
+        return all(abs(a - b) <= speed * step for a, b, speed in ends)
 
     @property
     def table_counts(self) -> tuple[int, ...]:

@@ -49,7 +49,7 @@ class BoardMachine(Protocol):
 class FakeMachine:
     """Board and servos of one machine, before they are put on a line.
 
-    is_measured: the board has encoders and tells what they read.
+    is_measured: the board has encoders and reports what they read.
     """
 
     board: AnyBoard
@@ -89,8 +89,8 @@ class FakeMachine:
 class BoardThread(threading.Thread):
     """Steps the machine at 100 Hz and whenever bytes arrive.
 
-    Board and line are touched in this thread alone; `do` hands a wish into it. on_positions
-    hears the true joint positions 50 times a second, in this thread.
+    Board and line are touched in this thread alone; `do` hands a request into it. on_positions
+    receives the true joint positions 50 times a second, in this thread.
     """
 
     def __init__(
@@ -108,15 +108,15 @@ class BoardThread(threading.Thread):
         self._machine = machine
         self._line: FakeLine | None = line
         self._on_positions = on_positions
-        self._wishes: deque[Callable[[], None]] = deque()
+        self._requests: deque[Callable[[], None]] = deque()
         self._is_stopping = False
 
-    def do(self, wish: Callable[[], None]) -> None:
+    def do(self, request: Callable[[], None]) -> None:
         """Has it done before the next step."""
-        self._wishes.append(wish)
+        self._requests.append(request)
 
     def plug(self, line: FakeLine | None) -> None:
-        """Pulls the plug, and puts it into another line if there is one; a wish."""
+        """Pulls the plug, and puts it into another line if there is one; a request."""
         if self._line is not None:
             self._line.close()
         self._line = line
@@ -135,8 +135,8 @@ class BoardThread(threading.Thread):
         steps = 0
         while not self._is_stopping:
             has_input = self._wait(start + steps * STEP)
-            while self._wishes:
-                self._wishes.popleft()()
+            while self._requests:
+                self._requests.popleft()()
             now = time.monotonic()
             self._faults.advance(now)
             self._machine.step(min(now - last, LONGEST_STEP), self._faults.stuck_channel)
@@ -163,7 +163,7 @@ class BoardThread(threading.Thread):
         if self._line is None:
             return
         received = self._line.read() if has_input else b''
-        board.feed(self._faults.heard(received, now))
-        output = self._faults.said(output + board.take_output(), now)
+        board.feed(self._faults.to_board(received, now))
+        output = self._faults.to_host(output + board.take_output(), now)
         if output and not self.is_mute:
             self._line.write(output)

@@ -23,12 +23,14 @@ from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import MEASUREMENT
 
 PRESETS: dict[str, Callable[[SimulationConfig], SimulationConfig]] = {
-    'normal': lambda told: told,
-    'bad_day': lambda told: replace(
-        told, hysteresis_deg=6 * told.hysteresis_deg, hysteresis_mm=6 * told.hysteresis_mm
+    'normal': lambda simulation: simulation,
+    'bad_day': lambda simulation: replace(
+        simulation,
+        hysteresis_deg=6 * simulation.hysteresis_deg,
+        hysteresis_mm=6 * simulation.hysteresis_mm,
     ),
-    'stepper': lambda told: replace(
-        told,
+    'stepper': lambda simulation: replace(
+        simulation,
         hysteresis_deg=0.0,
         hysteresis_mm=0.0,
         dead_band_us=0.0,
@@ -46,7 +48,7 @@ SEED = 'of the random faults: the same seed brings the same ones after the same 
 PER_MINUTE = 'random faults in 60 s, on average'
 MakeMachine = Callable[[str, BoardConfig, float, float, str, Callable[[str], object]], FakeMachine]
 """Makes the fake machine of a machine file's name or path: its configuration, the silence after a
-reset in s, the play of its joints in rad or m, what moves them, and who is told how fast."""
+reset in s, the play of its joints in rad or m, what moves them, what receives its speed."""
 
 
 class FakeHardware(Node):

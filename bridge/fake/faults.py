@@ -9,7 +9,7 @@ from random import Random
 
 
 class FaultKind(enum.Enum):
-    """One way in which a line or a board fails; the values are the names for people."""
+    """A failure of the line or the board; the values are the names for people."""
 
     DROP = 'drop'
     DUPLICATE = 'duplicate'

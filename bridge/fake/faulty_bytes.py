@@ -14,7 +14,7 @@ LONGEST_DELAY, LONGEST_GAP = 0.3, 0.03
 
 
 class FaultyBytes:
-    """Bytes stay in order, and at most those of the last 0.3 s are on their way."""
+    """Bytes stay in order, and at most those of the last 0.3 s are delayed."""
 
     def __init__(self, seed: int = 0) -> None:
         self._random = Random(seed)

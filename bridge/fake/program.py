@@ -12,21 +12,23 @@ LIBRARY = Path(bridge.__file__).with_name('_board.abi3.so')
 LEGS = 6
 MEMORY_BYTES = 160
 
-Vector = ctypes.c_float * 3
+Vectors = ctypes.c_float * LEGS * 3
+"""Coordinate by coordinate, of all legs."""
 Counts = ctypes.c_uint16 * MAX_JOINTS
 
 
-class CrankLeg(ctypes.Structure):
-    """One leg of a crank platform; metres, base frame but for `platform`."""
+class CrankLegs(ctypes.Structure):
+    """The legs of a crank platform side by side; metres, radians, base frame but for `end`."""
 
     _fields_ = (
-        ('centre', Vector),
-        ('normal', Vector),
-        ('tangent', Vector),
-        ('up', Vector),
-        ('platform', Vector),
-        ('crank', ctypes.c_float),
-        ('rod', ctypes.c_float),
+        ('centre', Vectors),
+        ('normal', Vectors),
+        ('tangent', Vectors),
+        ('up', Vectors),
+        ('end', Vectors),
+        ('crank', ctypes.c_float * LEGS),
+        ('rod', ctypes.c_float * LEGS),
+        ('middle', ctypes.c_float),
     )
 
 
@@ -48,10 +50,9 @@ class CrankHexapod(ctypes.Structure):
         ('is_known', ctypes.c_bool),
         ('home_height', ctypes.c_float),
         ('minimum_height', ctypes.c_float),
-        ('crank_centre', ctypes.c_float),
         ('crank_lowest', ctypes.c_float),
         ('crank_highest', ctypes.c_float),
-        ('legs', CrankLeg * LEGS),
+        ('legs', CrankLegs),
         ('servos', CrankServo * LEGS),
     )
 

@@ -14,7 +14,7 @@ class Steppers(Servos):
 
     Hobby servos hurry to each new pulse on their own: one has arrived while another still runs,
     and in between a tool that should keep its orientation at 250 mm/s is off by nearly a degree.
-    Drives that interpolate together do not leave the way.
+    Drives that interpolate together do not leave the path.
     """
 
     def _turned(self, error: Array, reach: float) -> Array:

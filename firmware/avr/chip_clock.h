@@ -1,6 +1,6 @@
 /* Time since the start. Owns timer 1, and timer 0 for waking up.
  *
- * Every period has one moment, LATCH, at which no pulse is under way on any channel: then, and
+ * Every period has one moment, LATCH, at which no pulse is in progress on any channel: then, and
  * only then, pulses.c changes the outputs. The board's period begins there.
  */
 #pragma once

@@ -36,7 +36,7 @@ void pulses_begin(void)
 {
     for (uint8_t i = 0; i < MACHINE.joint_count; i++)
         *CHANNELS[i].direction |= CHANNELS[i].pin;
-    /* Mode 14 as timer 1, and in step with it: none has a pulse under way at LATCH. */
+    /* Mode 14 as timer 1, and in step with it: none has a pulse in progress at LATCH. */
     ICR4 = PERIOD_COUNTS - 1;
     ICR5 = PERIOD_COUNTS - 1;
     TCCR4A = _BV(WGM41);

@@ -12,5 +12,5 @@ uint8_t command_counts(const uint8_t *payload, uint8_t length, uint16_t counts[M
 /* The payload has the length that its type needs. */
 bool command_is_well_formed(const Frame *frame);
 
-/* Does what a well-formed command asks for, or says why not: enum Result. */
+/* Does what a well-formed command asks for, or refuses with a reason: enum Result. */
 uint8_t command_obey(const Frame *frame);

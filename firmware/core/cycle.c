@@ -58,7 +58,9 @@ void cycle_begin(void)
 {
     Kept other = {0};
     bool is_whole = read_copy(0, &kept);
-    if (read_copy(1, &other) && (!is_whole || (int16_t)(uint16_t)(other.number - kept.number) > 0)) {
+    if (!read_copy(1, &other))
+        return;
+    if (!is_whole || (int16_t)(uint16_t)(other.number - kept.number) > 0) {
         kept = other;
         copy = 1;
     }

@@ -24,5 +24,5 @@ bool cycle_is_there(void);
 /* Seconds until all axes begin again; 0 where that takes more than a minute. */
 float cycle_duration(void);
 
-/* The counts at `time`, the way from home multiplied by `part`; false where it is out of reach. */
+/* The counts at `time`, the amplitudes multiplied by `part`; false where it is out of reach. */
 bool cycle_at(float time, float part, float *counts);

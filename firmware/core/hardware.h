@@ -53,7 +53,7 @@ void hardware_write_memory(uint16_t address, uint8_t value);
 typedef struct {
     uint16_t rows; /* 0: there is none */
     uint16_t step_ms;
-    bool can_loop; /* no servo is outrun on the way from the last row to the first */
+    bool can_loop; /* no servo is outrun from the last row to the first */
 } FlashTable;
 
 FlashTable hardware_flash_table(void);

@@ -11,8 +11,7 @@
 /* Rz(yaw)·Ry(pitch)·Rx(roll), row by row. */
 void kinematics_rotation(const float rpy[3], float rotation[9]);
 
-/* Crank angles of a pose, elbow out; false where a leg does not close. Prokopovich 2019,
- * eqs (3)-(11) with signs kept. */
+/* Crank angles of a pose, elbow out; false where a leg does not close. */
 bool kinematics_cranks(const CrankHexapod *hexapod, const float position[3],
                        const float rotation[9], float cranks[LEGS]);
 

@@ -7,19 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "crank.h"
 #include "protocol.h"
-
-enum { LEGS = 6 };
-
-typedef struct {
-    float centre[3];   /* of the crank */
-    float normal[3];   /* tangent x up */
-    float tangent[3];  /* where the crank's angle is 0 */
-    float up[3];       /* where it is a right angle */
-    float platform[3]; /* where the rod ends, platform frame */
-    float crank;       /* lengths */
-    float rod;
-} CrankLeg;
 
 typedef struct {
     uint8_t channel;
@@ -32,10 +21,9 @@ typedef struct {
     bool is_known; /* false: another kind of machine, and the rest means nothing */
     float home_height;
     float minimum_height;
-    float crank_centre; /* of the range that the angles are brought into, rad */
-    float crank_lowest;
+    float crank_lowest; /* rad */
     float crank_highest;
-    CrankLeg legs[LEGS];
+    struct crank_legs legs;
     CrankServo servos[LEGS];
 } CrankHexapod;
 

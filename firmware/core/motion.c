@@ -22,7 +22,7 @@ static void account_for_latch(void)
     }
 }
 
-/* One period's way from `now` towards `target`, shortened for all channels by one factor. */
+/* One period's step from `now` towards `target`, shortened for all channels by one factor. */
 static void look_ahead(float *ahead)
 {
     float needed = 1.0f;

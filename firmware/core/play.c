@@ -13,8 +13,8 @@
 #define PERIOD_S 0.02f
 #define RAMP_S 1.0f     /* from standing to full speed, and back */
 #define APPROACH_S 0.5f /* from where the joints are to the program's first counts */
-#define ROUNDING 1      /* counts by which a way that is just slow enough may seem too fast */
-#define NEAR_COUNTS 120 /* about 6 degrees: how far that way may be */
+#define ROUNDING 1      /* counts by which a step that is just slow enough may seem too fast */
+#define NEAR_COUNTS 120 /* about 6 degrees: how far the joints may be from the start */
 
 static STATE uint8_t program;
 static STATE bool is_loop;
@@ -38,54 +38,54 @@ static float smooth(float u)
     return u * u * (3 - 2 * u);
 }
 
-uint8_t play_has(uint8_t wanted)
+uint8_t play_has(uint8_t requested)
 {
     bool is_there = false;
-    if (wanted == PROGRAM_CYCLE)
+    if (requested == PROGRAM_CYCLE)
         is_there = cycle_is_there();
-    else if (wanted == PROGRAM_TABLE || wanted == PROGRAM_FLASH_TABLE)
-        is_there = table_is_there(wanted);
+    else if (requested == PROGRAM_TABLE || requested == PROGRAM_FLASH_TABLE)
+        is_there = table_is_there(requested);
     return is_there ? RESULT_OK : RESULT_NO_PROGRAM;
 }
 
-static bool first_counts(uint8_t wanted, float *counts)
+static bool first_counts(uint8_t requested, float *counts)
 {
-    if (wanted == PROGRAM_CYCLE)
-        return cycle_at(0, 0, counts); /* home: the way from it grows with the ramp */
-    table_at(wanted, 0, counts);
+    if (requested == PROGRAM_CYCLE)
+        return cycle_at(0, 0, counts); /* home: the amplitudes grow with the ramp */
+    table_at(requested, 0, counts);
     return true;
 }
 
-bool play_start_counts(uint8_t wanted, uint16_t *counts)
+bool play_start_counts(uint8_t requested, uint16_t *counts)
 {
     float exact[MAX_JOINTS] = {0};
-    if (!first_counts(wanted, exact))
+    if (!first_counts(requested, exact))
         return false;
     counts_round(exact, counts);
     return counts_out_of_range(counts) == NO_JOINT;
 }
 
-uint8_t play_begin(uint8_t wanted, bool wants_loop)
+uint8_t play_begin(uint8_t requested, bool in_loop)
 {
     uint16_t start[MAX_JOINTS] = {0};
-    if (play_has(wanted) != RESULT_OK)
+    if (play_has(requested) != RESULT_OK)
         return RESULT_NO_PROGRAM;
-    if (!play_start_counts(wanted, start))
+    if (!play_start_counts(requested, start))
         return RESULT_OUT_OF_RANGE;
     for (uint8_t i = 0; i < MACHINE.joint_count; i++) {
         from[i] = motion_count(i);
         if (fabsf(from[i] - start[i]) > NEAR_COUNTS)
             return RESULT_NOT_AT_START;
     }
-    if (wanted != PROGRAM_CYCLE && !table_is_slow_enough(wanted, wants_loop))
+    if (requested != PROGRAM_CYCLE && !table_is_slow_enough(requested, in_loop))
         return RESULT_TOO_FAST;
-    duration = wanted == PROGRAM_CYCLE ? cycle_duration() : table_duration(wanted, wants_loop);
+    duration = requested == PROGRAM_CYCLE ? cycle_duration() : table_duration(requested, in_loop);
     if (duration <= 0)
         return RESULT_OUT_OF_RANGE;
-    program = wanted;
-    is_loop = wants_loop;
+    program = requested;
+    is_loop = in_loop;
     is_finishing = false;
-    is_checked = wanted != PROGRAM_CYCLE; /* a table's rows were checked as they came */
+    is_checked = requested != PROGRAM_CYCLE; /* a table's rows were checked as they came */
     time = ramp = approach = 0;
     return RESULT_OK;
 }
@@ -95,7 +95,7 @@ void play_finish(void)
     is_finishing = true;
 }
 
-/* A servo could not do the way from the sample before within a period. */
+/* A servo could not follow from the sample before within a period. */
 static bool is_too_fast(const float *exact, float tolerance)
 {
     for (uint8_t i = 0; i < MACHINE.joint_count; i++)
@@ -159,7 +159,7 @@ static void change_ramp(void)
     ramp = fmaxf(fminf(ramp, 1), 0);
 }
 
-/* A cycle grows out of home and shrinks back into it, at its own pace. */
+/* A cycle grows out of home and shrinks back into it, at its own rate. */
 static uint8_t cycle_step(void)
 {
     float exact[MAX_JOINTS] = {0};
@@ -174,15 +174,15 @@ static uint8_t cycle_step(void)
     return aim(exact, is_finishing && ramp <= 0 ? PLAY_DONE : PLAY_MOVING);
 }
 
-/* A table keeps its way: its pace grows from nothing, and shrinks to nothing. */
+/* A table keeps its path: its rate grows from nothing, and shrinks to nothing. */
 static uint8_t table_step(void)
 {
     float exact[MAX_JOINTS] = {0};
     change_ramp();
-    float pace = smooth(ramp);
+    float rate = smooth(ramp);
     if (!is_loop) /* slow enough to stand at the last row */
-        pace = fminf(pace, sqrtf(2 * fmaxf(duration - time, 0) / RAMP_S));
-    time += pace * PERIOD_S;
+        rate = fminf(rate, sqrtf(2 * fmaxf(duration - time, 0) / RAMP_S));
+    time += rate * PERIOD_S;
     bool is_over = is_finishing && ramp <= 0;
     if (is_loop && time >= duration)
         time -= duration;

@@ -15,10 +15,10 @@ typedef struct {
     uint16_t value;
 } Fault;
 
-/* Aims at counts that are good for `deadline_ms`; or says why not, and nothing has changed. */
+/* Aims at counts that are good for `deadline_ms`, or refuses with a reason and changes nothing. */
 Fault safety_follow(uint16_t deadline_ms, const uint16_t *counts, uint8_t joints);
 
-/* Each does what is asked, or says why not and changes nothing: enum Result. */
+/* Each does what is requested, or refuses with a reason and changes nothing: enum Result. */
 uint8_t safety_arm(const uint16_t *park, uint8_t joints);
 uint8_t safety_arm_to_play(const uint16_t *start, uint8_t program); /* as soon as armed, in a loop */
 uint8_t safety_disarm(void);
@@ -26,7 +26,7 @@ uint8_t safety_stop(void);
 uint8_t safety_clear(void);
 uint8_t safety_play(uint8_t program, bool is_loop);
 
-/* Call after a command of a host was obeyed: what the start button wanted to play is forgotten, and
+/* Call after a command of a host was obeyed: what the start button requested is forgotten, and
  * after a claim the machine is the host's from then on, until its deadline passes. */
 void safety_note_host(bool is_claim);
 

@@ -9,7 +9,7 @@ void supply_watch(void);
 /* Millivolts, as measured last. */
 uint16_t supply_mv(void);
 
-/* Below what the machine file asks for, now. */
+/* Below what the machine file requires, now. */
 bool supply_is_low(void);
 
 /* It has been for half a second. */

@@ -27,8 +27,8 @@ static uint16_t *uploaded_row(uint16_t row)
     return uploaded + row * MACHINE.joint_count;
 }
 
-/* No servo is faster than it can be on the way between two rows that were uploaded. */
-static bool is_way_slow_enough(const uint16_t *from, const uint16_t *to)
+/* No servo is faster than it can be from one uploaded row to another. */
+static bool is_step_slow_enough(const uint16_t *from, const uint16_t *to)
 {
     float periods = uploaded_step_ms * PERIODS_A_MS;
     for (uint8_t i = 0; i < MACHINE.joint_count; i++)
@@ -40,7 +40,7 @@ static bool is_way_slow_enough(const uint16_t *from, const uint16_t *to)
 static void append(const uint16_t *counts)
 {
     uint16_t *row = uploaded_row(uploaded_rows);
-    if (uploaded_rows && !is_way_slow_enough(row - MACHINE.joint_count, counts))
+    if (uploaded_rows && !is_step_slow_enough(row - MACHINE.joint_count, counts))
         is_slow_so_far = false;
     for (uint8_t i = 0; i < MACHINE.joint_count; i++) {
         row[i] = counts[i];
@@ -109,7 +109,7 @@ bool table_is_slow_enough(uint8_t program, bool is_loop)
 {
     if (program == PROGRAM_FLASH_TABLE) /* its rows were checked when its header was made */
         return !is_loop || hardware_flash_table().can_loop;
-    if (is_loop && !is_way_slow_enough(uploaded_row((uint16_t)(uploaded_rows - 1)), uploaded))
+    if (is_loop && !is_step_slow_enough(uploaded_row((uint16_t)(uploaded_rows - 1)), uploaded))
         return false;
     return is_slow_so_far;
 }

@@ -1,4 +1,4 @@
-"""chip.so through ctypes: a simulated ATmega2560 that runs as far as it is told."""
+"""chip.so through ctypes: a simulated ATmega2560 that runs as far as requested."""
 
 import ctypes
 from pathlib import Path

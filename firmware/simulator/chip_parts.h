@@ -7,7 +7,7 @@
 
 enum { CLOCK_HZ = 16000000, CHANNELS = 8, LOG = 1 << 18 };
 
-/* What a servo pin's callback is told: which pin of which chip. */
+/* What a servo pin's callback receives: which pin of which chip. */
 typedef struct {
     Chip *chip;
     uint8_t channel;

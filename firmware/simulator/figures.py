@@ -26,7 +26,7 @@ def jitter_us(seconds: float = 60.0) -> float:
     worst = 0
     for _ in range(round(seconds)):
         for _ in range(100):
-            host.say(Setpoint(200, PARK))
+            host.send(Setpoint(200, PARK))
             host.run(rng.uniform(0.005, 0.015))
         rises, widths = host.pulses()
         worst = max(worst, int(np.abs(widths - CYCLES_A_COUNT * np.array(PARK)).max()))
@@ -41,14 +41,14 @@ def stand_still_ms(deadline_ms: int | None) -> list[float]:
     """
     host, found = armed(), []
     for phase in range(0, 40_000, 40_000 // PHASES):
-        host.say(Setpoint(1000, PARK))
+        host.send(Setpoint(1000, PARK))
         host.run(0.5)
         host.pulses()
         host.run_to_phase(phase)
-        host.say(Setpoint(1000 if deadline_ms is None else deadline_ms, FAR))
+        host.send(Setpoint(1000 if deadline_ms is None else deadline_ms, FAR))
         if deadline_ms is None:
             host.run(0.05)
-            host.say(Stop())
+            host.send(Stop())
         start = host.chip.cycle
         host.run(0.6)
         rises, widths = host.pulses()
@@ -77,7 +77,7 @@ def highest_rate() -> int:
     while True:
         host = armed()
         for _ in range(2 * rate):
-            host.say(Setpoint(200, PARK))
+            host.send(Setpoint(200, PARK))
             host.run(1 / rate)
         state = host.state()
         is_good = state.echo == host.sequence and not (state.refused or state.overruns)

@@ -33,7 +33,7 @@ def mutants(rng: random.Random, count: int) -> Iterator[bytes]:
 
 
 def fuzz(host: Host, seed: int, size: int) -> int:
-    """Sends at least `size` bytes to an armed board; how many it were. Moved says what went wrong.
+    """Sends at least `size` bytes to an armed board; how many it were. Moved gives the reason.
 
     Between the rounds an honest setpoint must get through, and all pulses are the ones at park.
     """
@@ -45,7 +45,7 @@ def fuzz(host: Host, seed: int, size: int) -> int:
         host.board.feed(garbage + DELIMITER)
         while host.board.backlog:
             host.run(STEP)
-        host.say(Setpoint(200, PARK))
+        host.send(Setpoint(200, PARK))
         state = host.state()
         if state.echo != host.sequence or state.mode is not Mode.ARMED:
             raise Moved(f'after {sent} bytes the link is stalled: {state}')

@@ -49,7 +49,7 @@ class Host:
         since = (self.chip.cycle - self._risen) % PERIOD
         self.run((CYCLES_A_COUNT * count - since) % PERIOD / CLOCK_HZ)
 
-    def say(self, message: Setpoint | Command) -> int:
+    def send(self, message: Setpoint | Command) -> int:
         """Under the next sequence number, which is the result."""
         self.sequence = (self.sequence + 1) & 0xFFFF
         self.board.feed(encode(message, self.sequence))
@@ -57,7 +57,7 @@ class Host:
 
     def ask(self, message: Command) -> Result:
         """The board's answer."""
-        sequence = self.say(message)
+        sequence = self.send(message)
         answers = [m for m in self.run(0.04) if isinstance(m, Ack) and m.sequence == sequence]
         return answers[0].result
 

@@ -13,7 +13,7 @@ from hexarm.board.table import flash_header, read_table
 from manipulator.errors import ConfigError
 
 WIDEST_COUNT = 36_000
-"""18 ms: a wider pulse would still be under way when the board prepares the next one."""
+"""18 ms: a wider pulse would still be in progress when the board prepares the next one."""
 BAUD_STEP, WORST_BAUD = 2_000_000, 0.025
 """Bits per second at the chip's fastest; 115200 is 2.1 % off, and still understood."""
 HIGHEST_BATTERY_MV = 9_990

@@ -3,7 +3,7 @@
 import numpy as np
 
 from bridge.calibration import Calibration
-from bridge.fake.program import LEGS, CrankHexapod, CrankLeg, CrankServo
+from bridge.fake.program import CrankHexapod, CrankLegs, CrankServo
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.limits.machine_limits import BodyHeight, JointRange
 from manipulator.machine import Machine
@@ -26,19 +26,19 @@ def crank_hexapod(machine: Machine, calibration: Calibration) -> CrankHexapod | 
         is_known=True,
         home_height=kinematics.geometry.home_height,
         minimum_height=lowest,
-        crank_centre=kinematics.crank_centre,
         crank_lowest=cranks.low.max(),
         crank_highest=cranks.high.min(),
-        legs=tuple(_leg(kinematics, i) for i in range(LEGS)),
+        legs=_legs(kinematics),
         servos=tuple(_servo(calibration, i) for i in order),
     )
 
 
-def _leg(kinematics: RotaryHexapod, i: int) -> CrankLeg:
+def _legs(kinematics: RotaryHexapod) -> CrankLegs:
     g = kinematics.geometry
-    vectors = (g.crank_centres[i], g.normals[i], g.tangents[i], g.ups[i], g.platform_points[i])
-    lengths = float(g.crank_lengths[i]), float(g.rod_lengths[i])
-    return CrankLeg(*(tuple(np.asarray(v).tolist()) for v in vectors), *lengths)
+    vectors = (g.crank_centres, g.normals, g.tangents, g.ups, g.platform_points)
+    by_coordinate = (tuple(map(tuple, np.asarray(v).T.tolist())) for v in vectors)
+    lengths = (tuple(np.asarray(v).tolist()) for v in (g.crank_lengths, g.rod_lengths))
+    return CrankLegs(*by_coordinate, *lengths, kinematics.crank_centre)
 
 
 def _servo(calibration: Calibration, i: int) -> CrankServo:

@@ -1,14 +1,13 @@
-"""`hexarm check FILE`: everything that is wrong with a machine file, at once."""
+"""`hexarm check FILE`: everything that is wrong with a machine file; `hexarm machines`: a list."""
 
 import argparse
 import json
 from typing import Any
 
-import numpy as np
-
+from hexarm.cli.answers import Answer, Units, add_units, answering, units_of
 from hexarm.cli.statuses import REFUSED
 from hexarm.machine_check import Report, report_of
-from hexarm.machines import find, text_of
+from hexarm.machines import find, read, shipped, text_of
 from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError
 from manipulator.formatting import counted
@@ -16,11 +15,32 @@ from manipulator.machine import Machine
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
-    """Declares the subcommand."""
-    parser = commands.add_parser('check', help='print all problems of a machine file')
+    """Declares both subcommands."""
+    parser = commands.add_parser('check')
     parser.add_argument('file', metavar='FILE', help='the path of a file, or a shipped name')
     parser.add_argument('--json', action='store_true', help='answer for programs')
+    add_units(parser)
     parser.set_defaults(run=run)
+    parser = commands.add_parser('machines')
+    parser.add_argument('--json', action='store_true', help='answer for programs')
+    parser.set_defaults(run=answering(shipped_machines))
+
+
+def shipped_machines(arguments: argparse.Namespace) -> Answer:
+    """Name, kind, description and path of each machine file that comes with the package."""
+    entries = []
+    for name, path in shipped().items():
+        machine = read(name)
+        entries.append(
+            {
+                'name': name,
+                'kind': machine.kind,
+                'description': machine.description,
+                'path': str(path),
+            }
+        )
+    lines = [f'{e["name"]:<14} {e["kind"]:<18} {e["description"]}' for e in entries]
+    return {'machines': entries}, lines
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -28,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         path = find(arguments.file)
         report = report_of(parse_yaml(text_of(path), str(path)))
-        lines = _in_words(arguments.file, report)
+        lines = _in_words(arguments.file, report, units_of(arguments))
     except ConfigError as error:
         report = Report(error.problems)
         lines = [str(error)]
@@ -40,21 +60,19 @@ def run(arguments: argparse.Namespace) -> int:
     return REFUSED if report.problems else 0
 
 
-def _in_words(file: str, report: Report) -> list[str]:
+def _in_words(file: str, report: Report, units: Units) -> list[str]:
     problems, warnings = len(report.problems), len(report.warnings)
     summary = counted(problems, 'problem') if problems else 'no problems'
     if warnings:
         summary += f', {counted(warnings, "warning")}'
     lines = [f'{file}: {summary}', *report.problems, *(f'warning: {w}' for w in report.warnings)]
-    return lines if report.machine is None else [*lines, _home_in_words(report.machine)]
+    return lines if report.machine is None else [*lines, _home_in_words(report.machine, units)]
 
 
-def _home_in_words(machine: Machine) -> str:
+def _home_in_words(machine: Machine, units: Units) -> str:
     kinematics = machine.kinematics
     joints = kinematics.inverse(kinematics.home)
-    factor, unit = (np.degrees(1.0), '°') if kinematics.joint_unit == 'rad' else (1e3, ' mm')
-    values = '  '.join(f'{value:.1f}' for value in factor * joints)
-    return f'joints at home: {values}{unit}'
+    return f'joints at home: {units.quantities(joints, kinematics.joint_unit)}'
 
 
 def _for_programs(report: Report) -> dict[str, Any]:

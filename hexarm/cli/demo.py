@@ -19,7 +19,7 @@ from hexarm.demo.report import Curve, Observation, Result, measure
 from hexarm.graph import Executable, Graph, link_folder, machine_graph
 from hexarm.machines import load
 from hexarm.panel_process import offered_panel
-from manipulator.errors import Refused
+from manipulator.errors import Refused, Stopped, TimedOut
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.states import MotionMode
@@ -39,9 +39,7 @@ Observed = TypeVar('Observed')
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser(
-        'demo', help='drive the RoboCake and an arm on fake boards, within a minute'
-    )
+    parser = commands.add_parser('demo')
     parser.add_argument(
         '--picture', type=picture_file, default=Path('demo.png'), help='where to save it'
     )
@@ -106,9 +104,7 @@ def on_graph(
 
 def put_away(client: 'Client') -> None:
     """Parks, where the computer lets it, and switches the servos of the fake board off."""
-    from hexarm.client import NotReady, Stopped  # noqa: PLC0415 (needs ROS)
-
-    with contextlib.suppress(Refused, Stopped, NotReady):
+    with contextlib.suppress(Refused, Stopped, TimedOut):
         client.park()
     client.disable()
 
@@ -140,9 +136,7 @@ def drive(client: 'Client', goal: Pose, *, is_possible: bool = True) -> None:
 
     A goal that is possible is refused only by a machine that is not ready.
     """
-    from hexarm.client import NotReady, Stopped  # noqa: PLC0415 (needs ROS)
-
-    busy = (Stopped, NotReady, Refused) if is_possible else (Stopped, NotReady)
+    busy = (Stopped, TimedOut, Refused) if is_possible else (Stopped, TimedOut)
     for tries_left in (2, 1, 0):
         client.wait('the machine', lambda: client.motion('mode') != MotionMode.DISABLED, 10.0)
         try:

@@ -23,7 +23,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 
 
 def _add_mjcf(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
-    parser = commands.add_parser('mjcf', help='write a machine as a MuJoCo model')
+    parser = commands.add_parser('mjcf')
     add_machine(parser)
     parser.add_argument('--output', type=Path, metavar='FILE', help='instead of the terminal')
     parser.set_defaults(run=answering(_mjcf))
@@ -66,7 +66,7 @@ THICKNESS = 0.06
 
 
 def _add_urdf(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
-    parser = commands.add_parser('urdf', help='write an arm as URDF')
+    parser = commands.add_parser('urdf')
     add_machine(parser)
     parser.add_argument('--output', type=Path, metavar='FILE', help='instead of the terminal')
     parser.set_defaults(run=answering(_urdf))

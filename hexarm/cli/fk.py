@@ -6,7 +6,15 @@ from typing import Any
 import numpy as np
 
 from hexapod_control.modes import Mode, all_modes
-from hexarm.cli.answers import Answer, add_machine, answering
+from hexarm.cli.answers import (
+    Answer,
+    Units,
+    add_machine,
+    add_units,
+    answering,
+    for_programs,
+    units_of,
+)
 from hexarm.machines import load
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, NoSolution
@@ -18,10 +26,15 @@ from manipulator.unit_hints import check_turns
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('fk', help='the pose of joint positions')
+    parser = commands.add_parser('fk')
     add_machine(parser)
+    add_units(parser)
     parser.add_argument(
-        'joints', nargs='+', type=float, metavar='A', help='joint positions in radians or metres'
+        'joints',
+        nargs='+',
+        type=float,
+        metavar='A',
+        help='joint positions, rad or m (or °, mm)',
     )
     parser.add_argument(
         '--all', action='store_true', help='every assembly mode, not the usual one'
@@ -33,41 +46,41 @@ def answer(arguments: argparse.Namespace) -> Answer:
     """The pose that the joints mean from home, or all that they can mean."""
     machine = load(arguments.machine)
     names = machine.kinematics.joint_names
-    joints = np.array(arguments.joints)
+    units = units_of(arguments)
+    joints = np.array(arguments.joints) / units.factor(machine.kinematics.joint_unit)
     if len(joints) != len(names):
         raise InvalidInput(
             f'{counted(len(joints), "joint position")}, {arguments.machine} has {len(names)}'
         )
     if machine.kinematics.joint_unit == 'rad':
-        check_turns(arguments.joints, names)
-    return every_mode(machine, joints) if arguments.all else from_home(machine, joints)
+        check_turns(joints.tolist(), names)
+    answer_of = every_mode if arguments.all else from_home
+    return answer_of(machine, joints, units)
 
 
-def from_home(machine: Machine, joints: Array) -> Answer:
+def from_home(machine: Machine, joints: Array, units: Units) -> Answer:
     """The pose, how it was found, what it violates, and what else the joints may mean."""
     solution = machine.kinematics.forward(joints)
     pose = solution.pose
     violations = [str(v) for v in machine.constraints.violations(pose, joints)]
     counts, text = other_modes(machine, joints, pose)
-    for_programs = {
-        'pose': for_program(pose),
+    answer = {
+        'pose': for_programs(pose),
         'iterations': solution.iterations,
         'residual': solution.residual,
         'sigma_min': solution.sigma_min,
         'violations': violations,
         **counts,
     }
-    xyz, rpy = in_words(pose)
     lines = [
-        f'x, y, z            {xyz} mm',
-        f'roll, pitch, yaw   {rpy} °',
+        *units.pose(pose),
         f'found in {counted(solution.iterations, "iteration")}, '
-        f'residual {solution.residual:.2g} m, '
+        f'residual {solution.residual * units.per_metre:.2g} {units.length}, '
         f'singularity margin {solution.sigma_min:.3f}',
         text,
         *(f'beyond a limit: {v}' for v in violations),
     ]
-    return for_programs, lines
+    return answer, lines
 
 
 def other_modes(machine: Machine, joints: Array, pose: Pose) -> tuple[dict[str, Any], str]:
@@ -86,20 +99,20 @@ def other_modes(machine: Machine, joints: Array, pose: Pose) -> tuple[dict[str, 
     return dict(zip(keys, (len(others), fitting), strict=True)), text
 
 
-def every_mode(machine: Machine, joints: Array) -> Answer:
+def every_mode(machine: Machine, joints: Array, units: Units) -> Answer:
     """A table of all assembly modes, the highest first."""
     found = all_modes(machine, joints)
     modes = [
         {
-            'pose': for_program(mode.pose),
+            'pose': for_programs(mode.pose),
             'sigma_min': mode.sigma_min,
             'is_reachable': mode.is_reachable,
             'violations': [str(v) for v in mode.violations],
         }
         for mode in found.modes
     ]
-    header = f'{"x, y, z (mm)":<33} {"roll, pitch, yaw (°)":<33} margin'
-    lines = [header, *(table_row(mode) for mode in found.modes)]
+    place, turn = f'x, y, z ({units.length})', f'roll, pitch, yaw ({units.angle})'
+    lines = [f'{place:<33} {turn:<33} margin', *(table_row(mode, units) for mode in found.modes)]
     lines.append(
         f'{counted(len(modes), "mode")}, {len(found.that_fit)} reachable within all limits'
     )
@@ -108,9 +121,10 @@ def every_mode(machine: Machine, joints: Array) -> Answer:
     return {'modes': modes, 'is_complete': found.is_complete}, lines
 
 
-def table_row(mode: Mode) -> str:
+def table_row(mode: Mode, units: Units) -> str:
     """One mode, and whether the machine can be in it."""
-    xyz, rpy = in_words(mode.pose)
+    xyz = '  '.join(units.number(v, 'm') for v in mode.pose.position)
+    rpy = '  '.join(units.number(v, 'rad') for v in mode.pose.rpy)
     if mode.is_reachable:
         verdict = 'reachable'
     elif mode.violations:
@@ -118,14 +132,3 @@ def table_row(mode: Mode) -> str:
     else:
         verdict = 'beyond a singularity'
     return f'{xyz:<33} {rpy:<33} {mode.sigma_min:<7.3f} {verdict}'
-
-
-def for_program(pose: Pose) -> dict[str, list[float]]:
-    """Metres and a unit quaternion."""
-    return {'xyz': pose.position.tolist(), 'quaternion_xyzw': pose.quaternion.tolist()}
-
-
-def in_words(pose: Pose) -> tuple[str, str]:
-    """Millimetres and degrees."""
-    xyz, rpy = (np.round(v, 4) + 0.0 for v in (1e3 * pose.position, np.degrees(pose.rpy)))
-    return '  '.join(f'{v:.4f}' for v in xyz), '  '.join(f'{v:.4f}' for v in rpy)

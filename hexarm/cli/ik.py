@@ -1,12 +1,20 @@
 """`hexarm ik MACHINE --xyz X Y Z --rpy R P Y`: the joints of a pose, or with --all every set."""
 
 import argparse
-import math
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from hexarm.cli.answers import Answer, add_machine, add_pose, answering, pose_asked
+from hexarm.cli.answers import (
+    Answer,
+    Units,
+    add_machine,
+    add_pose,
+    answering,
+    pose_asked,
+    units_of,
+)
+from hexarm.cli.statuses import STATUSES
 from hexarm.machines import load
 from manipulator.arrays import Array
 from manipulator.machine import Machine
@@ -25,7 +33,7 @@ class Branched(Protocol):
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('ik', help='the joints of a pose, or why it is out of reach')
+    parser = commands.add_parser('ik', epilog=STATUSES)
     add_machine(parser)
     add_pose(parser)
     parser.add_argument('--all', action='store_true', help='every branch, also beyond limits')
@@ -40,17 +48,17 @@ def answer(arguments: argparse.Namespace) -> Answer:
     with hint_at_metres(kinematics, pose):
         joints = kinematics.inverse(pose)
         if arguments.all:
-            return every_branch(machine, pose)
+            return every_branch(machine, pose, units_of(arguments))
         machine.constraints.check(pose, joints)
-    names, positions = list(kinematics.joint_names), joints.tolist()
+    names, positions, units = list(kinematics.joint_names), joints.tolist(), units_of(arguments)
     lines = [
-        f'{name:<12} {in_words(position, kinematics.joint_unit)}'
+        f'{name:<12} {units.quantities([position], kinematics.joint_unit):>16}'
         for name, position in zip(names, positions, strict=True)
     ]
     return {'joints': {'names': names, 'positions': positions}}, lines
 
 
-def every_branch(machine: Machine, pose: Pose) -> Answer:
+def every_branch(machine: Machine, pose: Pose, units: Units) -> Answer:
     """All sets of joints for the pose, one a row, with the limits that each violates."""
     kinematics = machine.kinematics
     found = kinematics.inverse(pose)[None]
@@ -63,21 +71,14 @@ def every_branch(machine: Machine, pose: Pose) -> Answer:
         {'positions': q, 'violations': broken}
         for q, broken in zip(positions, violations, strict=True)
     ]
-    is_rotary = kinematics.joint_unit == 'rad'
-    shown, unit = (np.degrees(closed), '°') if is_rotary else (1e3 * closed, 'mm')
-    headers = [f'{name} ({unit})' for name in names]
+    unit = kinematics.joint_unit
+    headers = [f'{name} ({units.name(unit)})' for name in names]
+    numbers = [[units.number(value, unit) for value in q] for q in closed]
     lines = [
-        '  '.join(f'{header:>12}' for header in headers),
+        '  '.join(f'{header:>14}' for header in headers),
         *(
-            '  '.join(f'{value:>12.4f}' for value in row) + (f'  {broken[0]}' if broken else '')
-            for row, broken in zip(shown, violations, strict=True)
+            '  '.join(f'{number:>14}' for number in row) + (f'  {broken[0]}' if broken else '')
+            for row, broken in zip(numbers, violations, strict=True)
         ),
     ]
     return {'names': names, 'branches': branches}, lines
-
-
-def in_words(position: float, unit: str) -> str:
-    """A joint position for people: radians with degrees, or metres with millimetres."""
-    if unit == 'rad':
-        return f'{position:>11.6f} rad {math.degrees(position):>10.4f}°'
-    return f'{position:>11.6f} m   {position * 1e3:>10.4f} mm'

@@ -1,85 +1,60 @@
 """`hexarm enable|disable|clear [NAMESPACE]`: a machine's services, without `ros2`."""
 
 import argparse
-import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from hexarm.cli.statuses import INTERRUPTED, REFUSED
-from hexarm.cli.up import Interrupted, StopSignal
-from hexarm.namespaces import NoMachine, namespace_of, no_machine_in
+from hexarm.cli.answers import Answer, answering
+from hexarm.namespaces import namespace_of
 from manipulator.errors import Refused
-from manipulator.states import UNKNOWN, MachineState
+from manipulator.states import MachineState
 
 if TYPE_CHECKING:
     from hexarm.client import Client
-
-RECEIVED_WITHIN = 8.0
-"""Seconds in which the bridge of a running machine publishes its state."""
 
 SETTLES = 0.5
 """Seconds in which the new state is received, too."""
 
 
-@dataclass(frozen=True)
-class Call:
-    """One subcommand: its request to the machine, and the answer, if any."""
-
-    name: str
-    help: str
-    act: 'Callable[[Client], object]'
-
-
-CALLS = (
-    Call(
-        'enable',
-        'servos on, one by one, to the park pose',
-        lambda client: client.enable(),
-    ),
-    Call(
-        'disable',
-        'servos off: they hold nothing any more',
-        lambda client: client.disable(),
-    ),
-    Call(
-        'clear',
-        'end a stop or a fault; nothing moves',
-        lambda client: client.trigger('serial_bridge/clear_fault'),
-    ),
-)
+CALLS: 'dict[str, Callable[[Client], str | None]]' = {
+    'enable': lambda client: client.enable(),
+    'disable': lambda client: client.disable(),
+    'clear': lambda client: client.trigger('serial_bridge/clear_fault'),
+}
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommands."""
-    for call in CALLS:
-        parser = commands.add_parser(call.name, help=call.help)
+    for name, act in CALLS.items():
+        parser = commands.add_parser(name)
         parser.add_argument(
             'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
         )
-        parser.set_defaults(run=partial(run, call))
+        parser.add_argument('--json', action='store_true', help='answer for programs')
+        parser.set_defaults(run=answering(partial(answer, act)))
 
 
-def run(call: Call, arguments: argparse.Namespace) -> int:
-    """Calls, and prints the machine's state; status 1 without a machine, 2 for a refusal."""
+def answer(act: 'Callable[[Client], str | None]', arguments: argparse.Namespace) -> Answer:
+    """Calls; the answer is the machine's state. Refused with the remedy, where there is one."""
     from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
 
-    stop = StopSignal()
-    try:
-        with Client(arguments.namespace, stop.check) as client:
-            await_machine(client)
-            answer = call.act(client)
-            client.spin(SETTLES)
-            words = f' ({answer})' if answer else ''
-            space = arguments.namespace
-            print(f'/{space}: {client.summary}{words}{remedy(client, space)}')
-    except Refused as error:
-        print(f'hexarm: {error}{remedy(client, arguments.namespace)}', file=sys.stderr)
-        return REFUSED
-    except Interrupted:
-        return INTERRUPTED
-    return 0
+    space = arguments.namespace
+    with Client(space) as client:
+        client.await_machine()
+        try:
+            text = act(client)
+        except Refused as error:
+            raise Refused(f'{error}{remedy(client, space)}') from error
+        client.spin(SETTLES)
+        words = f' ({text})' if text else ''
+        state = {
+            'namespace': f'/{space}',
+            'state': client.machine_state.message,
+            'motion': client.motion_status.message,
+            'answer': text or '',
+        }
+        return state, [f'/{space}: {client.summary}{words}{remedy(client, space)}']
 
 
 def remedy(client: 'Client', namespace: str) -> str:
@@ -87,15 +62,3 @@ def remedy(client: 'Client', namespace: str) -> str:
     if client.machine_state.message not in (MachineState.STOPPED, MachineState.FAULT):
         return ''
     return f'. Inspect the machine, then: hexarm clear {namespace}'
-
-
-def await_machine(client: 'Client') -> None:
-    """Waits for the machine's state; NoMachine names the namespace and domain."""
-    from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
-
-    try:
-        client.wait('a machine', lambda: client.machine_state.message != UNKNOWN, RECEIVED_WITHIN)
-    except NotReady as error:
-        raise NoMachine(
-            no_machine_in(client.node.get_namespace(), client.topics, client.domain)
-        ) from error

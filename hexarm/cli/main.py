@@ -7,9 +7,9 @@ import os
 import re
 import sys
 from pathlib import Path
-from types import ModuleType
-from typing import NoReturn
+from typing import Any, NoReturn
 
+from hexarm.cli.commands import Commands, declare
 from hexarm.cli.statuses import INTERRUPTED, PIPE_CLOSED, REFUSED
 from manipulator.errors import ManipulatorError
 from manipulator.requirements import missing
@@ -19,13 +19,13 @@ examples:
   hexarm demo                                          the whole graph on a fake board
   hexarm up hexapod                                    the graph, until Ctrl-C
   hexarm up hexapod --port /dev/ttyACM0                the same with a real board
+  hexarm go hexapod --xyz 0 0 0.047 --rpy 0 0 0.1      move it, from another terminal
   hexarm ik robocake --xyz 0 0 0.045 --rpy 0 0 0.1     metres and radians
   hexarm check my_machine.yaml                         what is wrong with a machine file
   hexarm calibrate servos robocake --output mine.yaml  signs and centres, on a fake board
 
-MACHINE is a shipped name (hexarm machines) or the path of a YAML file. Exit status: 0 good,
-1 failed, 2 refused or not understood, 3 out of reach (hexarm reach), 130 Ctrl-C, 141 output
-closed by its reader. `hexarm COMMAND --help` describes a command.
+MACHINE is a shipped name (hexarm machines) or the path of a YAML file; NAMESPACE is where a
+machine runs. `hexarm COMMAND --help` describes a command; docs/cli.md has the exit statuses.
 """
 
 
@@ -45,6 +45,18 @@ class Parser(argparse.ArgumentParser):
             message = f'{found[1]!r} is not one of {", ".join(choices)}'
             message += f', did you mean {near[0]!r}?' if near else ''
         super().error(message[:MOST_OF_AN_ERROR])
+
+
+class Version(argparse.Action):
+    """Prints the version, which is looked up only then."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options | {'nargs': 0})
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        """Prints and exits."""
+        print(f'hexarm {_version()}')
+        parser.exit()
 
 
 def main(words: list[str] | None = None) -> int:
@@ -82,7 +94,11 @@ def _silence() -> None:
 
 
 def _run(words: list[str] | None) -> int:
-    parser = _parser(sys.argv[1:] if words is None else words)
+    typed = sys.argv[1:] if words is None else words
+    if '_ARGCOMPLETE' in os.environ:
+        typed = os.environ.get('COMP_LINE', '').split()[1:]
+    parser = parser_for(typed)
+    _complete(parser)
     arguments = parser.parse_args(words)
     if arguments.run is None:
         parser.print_help(sys.stderr)
@@ -90,31 +106,29 @@ def _run(words: list[str] | None) -> int:
     return int(arguments.run(arguments))
 
 
-def _parser(words: list[str]) -> Parser:
+def _complete(parser: argparse.ArgumentParser) -> None:
+    """Answers the shell that completes a line, and ends; docs/cli.md."""
+    if '_ARGCOMPLETE' not in os.environ:
+        return
+    with contextlib.suppress(ModuleNotFoundError):
+        import argcomplete  # noqa: PLC0415 (an extra)
+
+        argcomplete.autocomplete(parser)
+
+
+def parser_for(words: list[str]) -> Parser:
+    """The parser, with the arguments of the subcommand that the words begin with."""
     parser = Parser(
         prog='hexarm',
         description='Six-axis manipulators, from a pose target to servo pulses.',
         epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument('--version', action='version', version=f'hexarm {_version()}')
+    parser.add_argument('--version', action=Version, help='show the version and exit')
     parser.set_defaults(run=None)
-    commands = parser.add_subparsers(metavar='COMMAND', title='commands')
-    for command in _commands(words):
-        command.add_parser(commands)
+    commands = parser.add_subparsers(metavar='COMMAND', title='commands', action=Commands)
+    declare(commands, words)
     return parser
-
-
-def _commands(words: list[str]) -> 'tuple[ModuleType, ...]':
-    """The modules of the subcommands; of `stop` its own alone, it waits for no other's import."""
-    if words[:1] == ['stop']:
-        from hexarm.cli import stop  # noqa: PLC0415
-
-        return (stop,)
-    # Imported here, where Ctrl-C is caught: it takes a third of a second.
-    from hexarm.cli.commands import COMMANDS  # noqa: PLC0415
-
-    return COMMANDS
 
 
 def _version() -> str:

@@ -6,6 +6,7 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from hexarm.cli.answers import Answer, answering
 from hexarm.cli.up import Interrupted, StopSignal
 from hexarm.namespaces import namespace_of, no_machine_in
 from manipulator.nodes.terminal import Terminal
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from hexarm.client import Client
 
 REDRAW = 0.25
+REPORTED_WITHIN = 1.5
+"""Seconds in which each node reports, which it does every second."""
 SILENT = 3.0
 """Seconds after which a node that reports every second is shown as silent."""
 
@@ -25,11 +28,37 @@ COLOURS = {b'\0': 'green', b'\1': 'yellow', b'\2': 'red', b'\3': 'red'}
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('monitor', help='show the diagnostics of the nodes, live')
+    parser = commands.add_parser('monitor')
     parser.add_argument(
         'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
     )
-    parser.set_defaults(run=run)
+    parser.add_argument('--json', action='store_true', help='once, as an answer for programs')
+    parser.set_defaults(run=lambda arguments: (once if arguments.json else run)(arguments))
+
+
+def answer(arguments: argparse.Namespace) -> Answer:
+    """The machine's state and the last report of each of its nodes."""
+    from hexarm.client import Client  # noqa: PLC0415 (needs ROS)
+
+    view = View(arguments.namespace)
+    with Client(arguments.namespace) as client:
+        client.await_machine()
+        client.spin(REPORTED_WITHIN)
+        view.note(client, time.monotonic())
+        nodes = {
+            node: {
+                'level': int.from_bytes(report.level, 'little'),
+                'message': report.message,
+                'values': {pair.key: pair.value for pair in report.values},
+            }
+            for node, (report, _) in sorted(view.reports.items())
+        }
+        state, motion = client.machine_state.message, client.motion_status.message
+        space = f'/{arguments.namespace}'
+        return {'namespace': space, 'state': state, 'motion': motion, 'nodes': nodes}, []
+
+
+once = answering(answer)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -14,7 +14,7 @@ from manipulator.states import MotionResult
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('plot', help='draw a recording')
+    parser = commands.add_parser('plot')
     parser.add_argument('file', type=Path, metavar='FILE', help='an MCAP recording, or its folder')
     parser.add_argument(
         '-o', '--output', type=picture_file, metavar='PICTURE', help='default: FILE with .png'

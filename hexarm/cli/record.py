@@ -1,10 +1,13 @@
 """`hexarm record [NAMESPACE]`: every message of a machine into an MCAP file, until Ctrl-C."""
 
 import argparse
+import json
 import math
+import sys
 import time
 from collections.abc import Collection
 from pathlib import Path
+from typing import TextIO
 
 from hexarm.cli.up import StopSignal
 from hexarm.namespaces import namespace_of
@@ -19,7 +22,7 @@ class NothingRecorded(ManipulatorError):
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('record', help="write a machine's messages into an MCAP file")
+    parser = commands.add_parser('record')
     parser.add_argument(
         'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
     )
@@ -38,6 +41,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
         '--commands', action='store_true',
         help='commands that are published only once, too; see docs/recording.md, "Commands"',
     )  # fmt: skip
+    parser.add_argument('--json', action='store_true', help='answer for programs, at the end')
     parser.set_defaults(run=run)
 
 
@@ -69,16 +73,16 @@ def run(arguments: argparse.Namespace) -> int:
     when = time.strftime('%Y%m%d-%H%M%S')
     path = arguments.output or Path(f'{namespace.replace("/", "_")}-{when}.mcap')
     selection = TopicSelection(namespace, arguments.topics, arguments.commands)
-    stop = StopSignal()
+    stop, out = StopSignal(), sys.stderr if arguments.json else sys.stdout
     begin = time.monotonic()
     with Bag(path) as bag:
-        _say(f'waiting for publishers of {_requested(selection)}')
+        _say(f'waiting for publishers of {_requested(selection)}', out)
         control = Control(
             begin + arguments.seconds,
             stop.check,
-            lambda: _say(f'recording /{namespace} into {path}; Ctrl-C ends it'),
+            lambda: _say(f'recording /{namespace} into {path}; Ctrl-C ends it', out),
             lambda there, domain: _say(
-                f'{_reason(selection, [], there, domain)}; still waiting, Ctrl-C ends it'
+                f'{_reason(selection, [], there, domain)}; still waiting, Ctrl-C ends it', out
             ),
         )
         there, domain = record(bag, namespace, selection, control)
@@ -87,9 +91,14 @@ def run(arguments: argparse.Namespace) -> int:
     if not any(topic.startswith(space) or topic in selection.names for topic in bag.counts):
         path.unlink()
         raise NothingRecorded(_reason(selection, bag.counts, there, domain))
-    for line in lines:
-        print(line)
     took = time.monotonic() - begin
+    if arguments.json:
+        counts = dict(bag.counts)
+        print(
+            json.dumps({'file': str(path), 'seconds': took, 'bytes': bag.size, 'counts': counts})
+        )
+        return 0
+    print(*lines, sep='\n', end='\n' if lines else '')
     print(
         f'{path}: {counted(bag.counts.total(), "message")} of '
         f'{counted(len(bag.counts), "topic")} in {took:.1f} s, {bag.size / 1e6:.1f} MB'
@@ -109,5 +118,5 @@ def _requested(selection: TopicSelection) -> str:
     return ', '.join(selection.names) or f'/{selection.namespace}'
 
 
-def _say(line: str) -> None:
-    print(line, flush=True)
+def _say(line: str, out: TextIO) -> None:
+    print(line, file=out, flush=True)

@@ -6,6 +6,7 @@ as can be: a busy computer takes a second for ROS alone, and discovery goes on m
 """
 
 import argparse
+import json
 import sys
 import time
 from collections.abc import Callable
@@ -46,12 +47,11 @@ class Button(Protocol):
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser(
-        'stop', help='emergency stop: the board holds at once, until `hexarm clear`'
-    )
+    parser = commands.add_parser('stop')
     parser.add_argument(
         'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
     )
+    parser.add_argument('--json', action='store_true', help='answer for programs')
     parser.set_defaults(run=run)
 
 
@@ -60,12 +60,16 @@ def run(arguments: argparse.Namespace) -> int:
     space = arguments.namespace
     send_stop(stop_address(f'/{space}/serial_bridge', domain_here()))
     with StopNode(space) as button:
-        if press(button):
-            print(f'/{space}: machine stopped. Inspect the machine, then: hexarm clear {space}')
-            return 0
+        is_confirmed = press(button)
         if button.state is None:
             raise NoMachine(button.no_machine())
     state, reason = button.state
+    if arguments.json:
+        print(json.dumps({'namespace': f'/{space}', 'state': state, 'reason': reason}))
+        return 0 if is_confirmed else REFUSED
+    if is_confirmed:
+        print(f'/{space}: machine stopped. Inspect the machine, then: hexarm clear {space}')
+        return 0
     print(
         f'hexarm: STOP is sent, but not confirmed within {OBEYED_WITHIN:g} s: machine {state}'
         f'{f": {reason}" if reason else ""}. The bridge repeats it until the board has obeyed; '

@@ -2,6 +2,8 @@
 
 import argparse
 import contextlib
+import glob
+import os
 import signal
 import sys
 from collections.abc import Callable
@@ -21,7 +23,7 @@ from hexarm.graph import (
 from hexarm.machines import described, family, load, read
 from hexarm.namespaces import NAMESPACE
 from hexarm.panel_process import panel_process, panel_words
-from manipulator.errors import ManipulatorError, Refused
+from manipulator.errors import ManipulatorError, Refused, TimedOut
 from manipulator.states import UNKNOWN, MachineState, MotionMode
 
 if TYPE_CHECKING:
@@ -29,10 +31,6 @@ if TYPE_CHECKING:
 
 SETTLES = 1.0
 """Seconds within which an earlier STOP is sent to the board, and obeyed."""
-LOOKS = 0.7
-"""Seconds in which a graph that runs already is found: at most 0.46 s in 64 tries."""
-OURS = ('trajectory', 'ik', 'pose', 'serial_bridge')
-"""Nodes of which a namespace has one; a fake board may be there for `--port` to name."""
 SERVOS_OFF = (
     UNKNOWN,
     MachineState.DISCONNECTED,
@@ -40,6 +38,8 @@ SERVOS_OFF = (
     MachineState.DISARMED,
 )
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
+BOARDS = ('fake', 'simavr')
+"""In place of a port."""
 NAME = 'a shipped name or the path of a machine file'
 PLANT = 'what a simulated board moves: servos, or rigid bodies with loads (mujoco)'
 SHORT = ', '.join(f'{kind} is short for {name}' for kind, name in MACHINES.items())
@@ -55,7 +55,7 @@ class Interrupted(ManipulatorError):
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('up', help='start a whole graph and enable the servos')
+    parser = commands.add_parser('up')
     parser.add_argument('name', metavar='MACHINE', help=f'{NAME}; {SHORT}')
     parser.add_argument('--machine', help=f'{NAME}, after hexapod or arm')
     parser.add_argument('--port', default='fake', help="a device, 'fake' (default) or 'simavr'")
@@ -72,6 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     machine = arguments.machine or MACHINES.get(arguments.name, arguments.name)
     check(arguments.name, machine, arguments.namespace)
+    check_port(arguments.port)
     namespace = arguments.namespace or family(machine)
     pages = [panel_process(machine)] if arguments.panel else []
     stop = StopSignal()
@@ -83,7 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     with parts, Client(namespace, interrupt) as client:
         parts.start_processes([*parts.board, *pages])
-        refuse_second(client, namespace)
+        client.refuse_second()
         print(described(machine), flush=True)
         parts.start_nodes(arguments.separate)
         try:
@@ -166,15 +167,18 @@ def check(name: str, machine: str, namespace: str | None) -> None:
         raise Refused(f'{machine} is a {read(machine).kind}: hexarm up {machine}')
 
 
-def refuse_second(client: 'Client', namespace: str) -> None:
-    """Raises Refused where a graph runs in this namespace: both would receive every call."""
-    client.spin(LOOKS)
-    found = client.node.get_node_names_and_namespaces()
-    if any(name in OURS and space.strip('/') == namespace.strip('/') for name, space in found):
+def check_port(port: str) -> None:
+    """Raises Refused for a port that does not exist, or that this user may not open."""
+    if port in BOARDS:
+        return
+    if not os.path.exists(port):
+        there = sorted(glob.glob('/dev/serial/by-id/*') + glob.glob('/dev/tty[AU][CS][MB]*'))
         raise Refused(
-            f'a graph runs in /{namespace.strip("/")} already: end it, or take another '
-            '--namespace or ROS_DOMAIN_ID (other computers on the network count)'
+            f'port {port} does not exist: is the board connected? '
+            f'Ports: {", ".join(there) or "none"}, or {" or ".join(BOARDS)}'
         )
+    if not os.access(port, os.R_OK | os.W_OK):
+        raise Refused(f'port {port} is not permitted: add yourself to the group dialout')
 
 
 class StopSignal:
@@ -247,13 +251,11 @@ def park(client: 'Client', stop: StopSignal) -> None:
 
 
 def _go_to_park(client: 'Client') -> None:
-    """Raises Refused, Stopped or NotReady where it does not get there."""
-    from hexarm.client import NotReady  # noqa: PLC0415 (needs ROS)
-
+    """Raises Refused, Stopped or TimedOut where it does not get there."""
     if client.machine_state.message != MachineState.ENABLED:
         raise Refused(f'the machine is {client.machine_state.message}')
     print('parking; Ctrl-C again switches the servos off where they are', flush=True)
-    with contextlib.suppress(NotReady):
+    with contextlib.suppress(TimedOut):
         client.wait(
             'the pose', lambda: client.motion('mode') not in ('', MotionMode.DISABLED), 1.0
         )

@@ -81,6 +81,10 @@ COUNTERS = ('setpoints_refused', 'twists_refused', 'joint_states_refused', 'refu
 """Diagnostics that count refusals; those of goals are in motion_status, each with its reason."""
 
 
+REPORTED_WITHIN = 3.0
+"""Seconds after which the first report of a node is that of a new node, which counts from 0."""
+
+
 def is_needed(topic: str) -> bool:
     """Whether a summary needs the topic."""
     return topic == DIAGNOSTICS or topic.endswith(tuple(f'/{name}' for name in TOPICS))
@@ -106,7 +110,7 @@ def summarise(
             parsers.setdefault(space, LogParser(space)).add(name, at, message)
     space = _chosen(parsers, namespace)
     for at, entry in diagnostics:
-        parsers[space].add_diagnostics(at, entry)
+        parsers[space].add_diagnostics(at, entry, first)
     return parsers[space].summary(first, last - first)
 
 
@@ -130,6 +134,8 @@ class LogParser:
     rows: dict[str, list[tuple[float, Any]]] = field(default_factory=dict)
     events: list[Event] = field(default_factory=list)
     _reported: dict[str, object] = field(default_factory=dict)
+    _latched: Event | None = None
+    _latched_stamp: float = 0.0
 
     def add(self, name: str, at: float, message: Any) -> None:
         """One message of the topic `name`, relative to the namespace."""
@@ -145,15 +151,19 @@ class LogParser:
             p, q = message.pose.position, message.pose.orientation
             self.rows.setdefault(name, []).append((at, (p.x, p.y, p.z, q.x, q.y, q.z, q.w)))
 
-    def add_diagnostics(self, at: float, entry: Any) -> None:
-        """A node's report: counts of refusals that have grown become events."""
+    def add_diagnostics(self, at: float, entry: Any, first: float) -> None:
+        """A node's report: counts of refusals that have grown become events.
+
+        What a node counted before the recording, which begins at `first`, is none of it.
+        """
         space, _, node = entry.name.rpartition('/')
         if space != self.namespace:
             return
         values = {pair.key: pair.value for pair in entry.values}
         for key in COUNTERS:
             count = int(values[key]) if values.get(key, '').isdigit() else 0
-            before = self._reported.get(f'{node} {key}', 0)
+            unknown = count if at - first < REPORTED_WITHIN else 0
+            before = self._reported.get(f'{node} {key}', unknown)
             self._reported[f'{node} {key}'] = count
             if isinstance(before, int) and count > before:
                 reason = values.get('last_twist_refusal' if 'twist' in key else 'last_refusal', '')
@@ -164,16 +174,20 @@ class LogParser:
     def _on_state(self, name: str, at: float, message: Any) -> None:
         values = {pair.key: pair.value for pair in message.values}
         what = values.get('result', message.message)
+        is_first = name not in self._reported
         report = (what, values.get('reason', ''), values.get('goal_stamp', ''))
         if report != self._reported.get(name) and what:
             self._reported[name] = report
             source = {'machine_state': 'machine', 'motion_status': 'motion'}[name]
-            self.events.append(Event(at, source, what, report[1], what in BAD_STATES))
+            event = Event(at, source, what, report[1], what in BAD_STATES)
+            if is_first and name == 'motion_status':
+                self._latched, self._latched_stamp = event, float(report[2] or 0.0)
+            self.events.append(event)
 
     def summary(self, first: float, duration: float) -> RunSummary:
         """All of it, with times from `first` on."""
         names = self._joint_names()
-        events = sorted(self.events, key=lambda e: e.time)
+        events = sorted(self._own_events(first), key=lambda e: e.time)
         setpoint = self._poses('setpoint', first)
         return RunSummary(
             self.namespace,
@@ -186,6 +200,11 @@ class LogParser:
             joint_states=self._joints('joint_states', names, first),
             events=tuple(replace(e, time=e.time - first) for e in events),
         )
+
+    def _own_events(self, first: float) -> list[Event]:
+        """Without the latched result of a goal that is older than the recording."""
+        is_older = 0.0 < self._latched_stamp < first
+        return [e for e in self.events if not (is_older and e is self._latched)]
 
     def _joint_names(self) -> tuple[str, ...]:
         every = [tuple(row) for name in JOINTS for _, row in self.rows.get(name, [])]

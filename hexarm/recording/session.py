@@ -80,9 +80,15 @@ class Recorder:
         self._unknown: set[str] = set()
         self.there: set[str] = set()
         """Every topic that was seen."""
+        self._is_settled = False
 
     def update(self, now: float) -> None:
         """Joins and leaves topics; again where publishers offer another quality of service."""
+        before = dict(self._qos)
+        self._update(now)
+        self._is_settled = self._qos == before
+
+    def _update(self, now: float) -> None:
         for name, types in self._node.get_topic_names_and_types():
             self.there.add(name)
             if name in self._unknown:
@@ -97,8 +103,14 @@ class Recorder:
                 self._unknown.add(name)
                 self._node.get_logger().warning(f'{name} is not recorded: {error}')
 
-    def is_matched(self, every: bool) -> bool:
-        """Whether a publisher of what is recorded has met us: one of each topic, or of any."""
+    def is_ready(self, every: bool) -> bool:
+        """Whether we have met a publisher of each topic, or of any, and no topic is new.
+
+        A machine's topics are discovered one after another.
+        """
+        return self._is_settled and self._is_matched(every)
+
+    def _is_matched(self, every: bool) -> bool:
         own = {n: s for n, s in self._subscriptions.items() if self._selection.is_own(n)}
         met = {name for name, subscription in own.items() if subscription.get_publisher_count()}
         published = {name for name in own if self._node.count_publishers(name)}
@@ -216,7 +228,7 @@ def _spin(
         if now >= update_at:
             recorder.update(now)
             update_at = now + UPDATE_PERIOD
-            if not is_met and recorder.is_matched(every=now < begin + DISCOVERY):
+            if not is_met and recorder.is_ready(every=now < begin + DISCOVERY):
                 is_met, until = True, control.until
                 control.on_listening()
         if now >= begin + DISCOVERY and not is_told:

@@ -3,11 +3,10 @@
 Where joint ranges are the only limits, the search is over joints, else over poses.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from manipulator.analysis.descent import descended
 from manipulator.analysis.free_paths import (
     admits,
     are_linked,
@@ -17,11 +16,12 @@ from manipulator.analysis.free_paths import (
 )
 from manipulator.analysis.readings import displaced, distance, offset, scale
 from manipulator.arrays import Array
+from manipulator.limits.limit import Search
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
 SETTLED = 1e-12
-CLEARANCE = 1e-9  # rad or m inside the ranges, so that the answer's inverse is in range, too
+JOINT_CLEARANCE = 1e-9  # rad or m inside the ranges, so that the answer's inverse is in range, too
 RANDOM_STARTS = 12
 
 
@@ -39,7 +39,7 @@ def nearest_by_joints(machine: Machine, target: Pose) -> Pose:
     starts = [kinematics.inverse(kinematics.home), *generator.uniform(*bounds, (RANDOM_STARTS, 6))]
     best, least = kinematics.home, float(distance(machine, kinematics.home, target))
     for start in starts:
-        pose = _descended(machine, target, start, low, high)
+        pose = _descended_by_joints(machine, target, start, low, high)
         metres = float(distance(machine, pose, target))
         if metres < least:
             best, least = pose, metres
@@ -52,12 +52,14 @@ def joint_box(machine: Machine) -> tuple[Array, Array]:
     """The strictest bounds (n,) of a machine with joint ranges alone, a hair within."""
     limits = machine.constraints.limits
     return (
-        np.max([limit.low for limit in limits], axis=0) + CLEARANCE,
-        np.min([limit.high for limit in limits], axis=0) - CLEARANCE,
+        np.max([limit.low for limit in limits], axis=0) + JOINT_CLEARANCE,
+        np.min([limit.high for limit in limits], axis=0) - JOINT_CLEARANCE,
     )
 
 
-def _descended(machine: Machine, target: Pose, start: Array, low: Array, high: Array) -> Pose:
+def _descended_by_joints(
+    machine: Machine, target: Pose, start: Array, low: Array, high: Array
+) -> Pose:
     """A local minimum of the distance over joints (n,) between `low` and `high`."""
     from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: only needed here)
 
@@ -79,6 +81,8 @@ def _descended(machine: Machine, target: Pose, start: Array, low: Array, high: A
 
 
 MOST_STEPS = 60
+CLEARANCE = 1e-6  # how far inside each limit an answer stays, by the characteristic length
+WIDE = 30.0  # times that at first, since next to where a leg just closes slopes have no end
 KICKS, KICK_POSES, KICK_RADII, KICK_GAIN = 12, 1500, (3e-2, 1e-2, 1e-3, 1e-4, 1e-5), 1e-5
 
 
@@ -101,7 +105,7 @@ def nearest_reachable(machine: Machine, target: Pose, most_steps: int = MOST_STE
         pose = nearest_by_joints(machine, target)
         return Nearest(pose, float(distance(machine, pose, target)))
     starts = _starts(machine, target)
-    near = [descended(machine, target, start, most_steps) for start in starts]
+    near = [_descended(machine, target, start, most_steps) for start in starts]
     found = [(float(distance(machine, pose, target)), k) for k, pose in enumerate(near)]
     for _, k in sorted(found):
         end = _settled(machine, target, near[k], most_steps)
@@ -124,8 +128,16 @@ def _settled(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Po
         if not nearer.any():
             break
         best = int(np.argmin(np.where(nearer, distances, np.inf)))
-        pose = descended(machine, target, trials[best], most_steps)
+        pose = _descended(machine, target, trials[best], most_steps)
     return pose
+
+
+def _descended(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Pose:
+    """An admitted pose at a local minimum of the distance, from the admitted `start`."""
+    clearance = CLEARANCE * machine.kinematics.characteristic_length
+    wide = Search(target, WIDE * clearance, most_steps)
+    pose = machine.constraints.descended(wide, start)
+    return machine.constraints.descended(replace(wide, clearance=clearance), pose)
 
 
 def _starts(machine: Machine, target: Pose) -> list[Pose]:

@@ -3,13 +3,22 @@
 A limit that a machine is beyond is stretched for the way back.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from manipulator.arrays import Array, Mask, frozen
-from manipulator.errors import LimitViolated
-from manipulator.limits.limit import Bounds, Grouped, Limit, LimitGroup, LimitOf, Violation
+from manipulator.errors import InvalidInput, LimitViolated
+from manipulator.limits.limit import (
+    Bounds,
+    Grouped,
+    Limit,
+    LimitGroup,
+    LimitOf,
+    Search,
+    Violation,
+)
 from manipulator.pose import Pose
 
 
@@ -27,6 +36,7 @@ class Constraints:
     places: tuple[tuple[LimitGroup | None, slice], ...] = field(
         init=False, compare=False, repr=False
     )
+    bounds: tuple[Sequence[Bounds], ...] = field(init=False, compare=False, repr=False)
     checks: tuple[tuple[LimitGroup, Array], ...] = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -44,6 +54,7 @@ class Constraints:
             'low': frozen(np.concatenate([[], *(limit.low for limit in limits)])),
             'high': frozen(np.concatenate([[], *(limit.high for limit in limits)])),
             'places': places,
+            'bounds': tuple(parts.values()),
             'checks': tuple((group, group.ranges(bounds)) for group, bounds in parts.items()),
         }.items():
             object.__setattr__(self, name, value)
@@ -71,6 +82,20 @@ class Constraints:
             ],
             axis=-1,
         )
+
+    @property
+    def is_one_group(self) -> bool:
+        """Whether one group computes all of the values."""
+        return len(self.checks) == 1 and all(group is not None for group, _ in self.places)
+
+    def descended(self, search: Search, start: Pose) -> Pose:
+        """From an admitted pose down the distance to another, see `LimitGroup`.
+
+        Raises InvalidInput where the limits are not all of one group.
+        """
+        if not self.is_one_group:
+            raise InvalidInput('the nearest pose is searched within the limits of one platform')
+        return self.checks[0][0].descended(search, self.bounds[0], start)
 
     def stretched_to(self, pose: Pose, joints: Array) -> 'Constraints':
         """These limits for a machine that is beyond some of them: it may not go further out.

@@ -1,12 +1,12 @@
 """What a limit is: named values of a configuration and the range that each must keep."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 
-from manipulator.arrays import Array, Mask
+from manipulator.arrays import Array, Mask, frozen
 from manipulator.pose import Pose
 
 FEWEST_DIGITS, MOST_DIGITS = 4, 12
@@ -67,6 +67,47 @@ class LimitGroup(Protocol):
     def keeps(self, ranges: Array, pose: Pose, joints: Array) -> Mask:
         """Which configurations (...) have finite joints and all values in their ranges."""
         ...
+
+    def descended(self, search: 'Search', bounds: Sequence[Bounds], start: Pose) -> Pose:
+        """From an admitted pose to one at a local minimum of the distance, within the bounds."""
+        ...
+
+    def first_free_path(self, ranges: Array, paths: 'BrakingPaths') -> tuple[int, Array]:
+        """The first of the paths that nothing holds back, their number if there is none.
+
+        And the paths (k, 20) up to it, `struct braking_path` of kernel/braking.h each.
+        """
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What `descended` looks for: the pose nearest to `target`.
+
+    clearance (m) is how far inside every limit it stays, to first order; pivot (3,) the point of
+    the platform, in its frame, whose poses are meant.
+    """
+
+    target: Pose
+    clearance: float
+    most_steps: int
+    pivot: Array = field(default_factory=lambda: frozen(np.zeros(3)))
+
+
+@dataclass(frozen=True, eq=False)
+class BrakingPaths:
+    """One tick at each of the twists (k, 6), then braking to rest: what `first_free_path` judges.
+
+    From pose, joints (n,) and their rates (n,); bounds and frame are `jog_bounds` and `jog_frame`
+    of kernel/braking.h, the frame None where poses are the platform's own.
+    """
+
+    bounds: Array
+    pose: Pose
+    joints: Array
+    rates: Array
+    twists: Array
+    frame: Array | None = None
 
 
 @runtime_checkable

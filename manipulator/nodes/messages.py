@@ -19,20 +19,31 @@ FASTEST_TWIST = 100.0
 BASE_FRAME, WORK_FRAME, PLATFORM_FRAME, PIVOT_FRAME = 'base', 'work', 'platform', 'pivot'
 
 
+NO_TURN = (0.0, 0.0, 0.0, 1.0)
+
+
 def seconds(stamp: Time) -> float:
     """A stamp in seconds."""
     return float(stamp.sec + stamp.nanosec * 1e-9)
 
 
-def pose_of(message: PoseStamped, frames: tuple[str, ...] = (BASE_FRAME,)) -> Pose:
-    """The pose in its frame, which must be one of `frames`; an empty frame_id means the first."""
+def pose_of(
+    message: PoseStamped, frames: tuple[str, ...] = (BASE_FRAME,), is_oriented: bool = True
+) -> Pose:
+    """The pose in its frame, which must be one of `frames`; an empty frame_id means the first.
+
+    A quaternion of zeros is no rotation, and allowed only where the pose is not `is_oriented`.
+    """
     check_frame(message.header.frame_id, frames)
     p, q = message.pose.position, message.pose.orientation
     numbers = {'x': p.x, 'y': p.y, 'z': p.z, 'qx': q.x, 'qy': q.y, 'qz': q.z, 'qw': q.w}
     for name, value in numbers.items():
         if not math.isfinite(value):
             raise InvalidInput(f'{name} is {value}, needs a finite number')
-    return Pose.from_xyz_quaternion((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+    xyzw = (q.x, q.y, q.z, q.w)
+    if not is_oriented and not any(xyzw):
+        xyzw = NO_TURN
+    return Pose.from_xyz_quaternion((p.x, p.y, p.z), xyzw)
 
 
 def goal_of(message: PoseStamped, frames: Frames) -> Pose:

@@ -3,17 +3,27 @@
 Those of `~/start_cycle` are six amplitudes, frequencies and phases a term.
 """
 
+from collections.abc import Sequence
+from enum import Enum
 from typing import Any
 
 import numpy as np
-from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 
 from manipulator.arrays import Array
-from manipulator.errors import InvalidInput
+from manipulator.errors import InvalidInput, Refused
 from manipulator.formatting import shown
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.goal import Motion
+from manipulator.trajectory.orientation import Orientation
 
 
 def declare(
@@ -50,6 +60,63 @@ def checked(name: str, value: Any, default: Any, bounds: tuple[float, float] | N
     if bounds is not None and not bounds[0] <= value <= bounds[1]:
         raise InvalidInput(f'parameter {name}: {value} outside [{bounds[0]}, {bounds[1]}]')
     return value
+
+
+CHOICES: dict[str, tuple[type[Enum], str]] = {
+    'goal_motion': (
+        Motion,
+        'how a machine at rest goes to goal_pose: line, joint (all joints in proportion), or any '
+        '(a line where it can)',
+    ),
+    'goal_orientation': (
+        Orientation,
+        'of goal_pose and goal_path: given, or by their points alone hold_orientation, parallel, '
+        'look_at (as jog_mode)',
+    ),
+}
+
+
+class GoalParameters:
+    """goal_motion and goal_orientation: names of which only known ones are taken."""
+
+    def __init__(self, node: Node) -> None:
+        """Declares both; Refused for an unknown name."""
+        self._node = node
+        for name, (kind, description) in CHOICES.items():
+            first = next(iter(kind)).value
+            choice(name, declare(node, name, first, description, is_read_only=False))
+        node.add_on_set_parameters_callback(_checked_choices)
+
+    @property
+    def motion(self) -> Motion:
+        """How to go to goals."""
+        return Motion(self._node.get_parameter('goal_motion').value)
+
+    @property
+    def orientation(self) -> Orientation:
+        """Where the orientation of goals and paths comes from."""
+        return Orientation(self._node.get_parameter('goal_orientation').value)
+
+
+def choice(name: str, value: object) -> Enum:
+    """What a parameter's value names; Refused, with the known names, for another."""
+    kind = CHOICES[name][0]
+    try:
+        return kind(value)
+    except ValueError:
+        known = ', '.join(one.value for one in kind)
+        raise Refused(f'parameter {name}: {shown(value)} is not one of {known}') from None
+
+
+def _checked_choices(parameters: Sequence[Parameter]) -> SetParametersResult:
+    """What the node answers to new values: those that it would refuse later are not taken."""
+    try:
+        for parameter in parameters:
+            if parameter.name in CHOICES:
+                choice(parameter.name, parameter.value)
+    except Refused as error:
+        return SetParametersResult(successful=False, reason=str(error))
+    return SetParametersResult(successful=True)
 
 
 AXES = 'x, y, z, roll, pitch, yaw; further terms follow as further six'

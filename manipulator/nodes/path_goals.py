@@ -20,8 +20,15 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.formatting import counted, shown
-from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, check_frame, pose_message, seconds
-from manipulator.nodes.parameters import declare
+from manipulator.nodes.messages import (
+    BASE_FRAME,
+    NO_TURN,
+    WORK_FRAME,
+    check_frame,
+    pose_message,
+    seconds,
+)
+from manipulator.nodes.parameters import GoalParameters, declare
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.subscriptions import FilteredCallback, decoded
 from manipulator.pose import Pose
@@ -49,8 +56,10 @@ class RawPath:
 class PathGoals:
     """The topic and its parameters."""
 
-    def __init__(self, node: Node, controller: MotionController) -> None:
-        self._node, self._controller = node, controller
+    def __init__(
+        self, node: Node, controller: MotionController, parameters: GoalParameters
+    ) -> None:
+        self._node, self._controller, self._parameters = node, controller, parameters
         fastest = controller.supervisor.machine.motion.linear.speed
         for name, default, description, bounds in (
             ('path_speed', fastest, 'speed along paths without stamps (m/s)', (1e-4, 10.0)),
@@ -81,8 +90,11 @@ class PathGoals:
         tolerance = Tolerance(
             self._parameter('path_tolerance'), self._parameter('path_turn_tolerance')
         )
-        read = partial(_request, message.serialized, self._parameter('path_speed'), tolerance)
-        return PathGoal(seconds(message.header.stamp), read, is_of_platform=frame == BASE_FRAME)
+        is_of_platform = frame == BASE_FRAME
+        rule = self._controller.orientation_rule(self._parameters.orientation, is_of_platform)
+        speed = self._parameter('path_speed')
+        read = partial(_request, message.serialized, speed, tolerance, rule.is_given)
+        return PathGoal(seconds(message.header.stamp), read, is_of_platform, rule)
 
     def _parameter(self, name: str) -> float:
         return float(self._node.get_parameter(name).value)
@@ -99,17 +111,20 @@ def raw_path(serialized: bytes) -> RawPath:
         return RawPath(Header(), serialized)
 
 
-def _request(serialized: bytes, speed: float, tolerance: Tolerance) -> PathRequest:
-    poses, stamps = path_of(decoded(serialized, Path, MOST_BYTES))
+def _request(
+    serialized: bytes, speed: float, tolerance: Tolerance, are_oriented: bool
+) -> PathRequest:
+    poses, stamps = path_of(decoded(serialized, Path, MOST_BYTES), are_oriented)
     return PathRequest(poses, speed, tolerance, stamps)
 
 
-def path_of(message: Path) -> tuple[Pose, Array | None]:
+def path_of(message: Path, are_oriented: bool = True) -> tuple[Pose, Array | None]:
     """Poses (n,) and their stamps (n,), in seconds from the first; None where all are equal.
 
     Raises InvalidInput for too few or many poses; naming the pose, for numbers that are not
     finite, quaternions that are no rotation, frames that are neither empty nor the path's, and
-    stamps that do not all increase.
+    stamps that do not all increase. Quaternions of zeros are allowed where the poses are not
+    oriented.
     """
     count, frame = len(message.poses), message.header.frame_id or BASE_FRAME
     if not 1 <= count <= MOST_POSES:
@@ -124,6 +139,8 @@ def path_of(message: Path) -> tuple[Pose, Array | None]:
         stamps[i] = stamp.sec, stamp.nanosec
         values[i, :3] = POSITION(stamped.pose.position)
         values[i, 3:] = ORIENTATION(stamped.pose.orientation)
+    if not are_oriented:
+        values[~values[:, 3:].any(axis=1), 3:] = NO_TURN
     return _poses(values), _seconds(stamps)
 
 

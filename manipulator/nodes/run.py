@@ -47,7 +47,7 @@ def run_nodes(makers: Makers, describe: Callable[[str], str] | None = None) -> i
         print(f'{sys.argv[0].rsplit("/", 1)[-1]}: {reason}', file=sys.stderr)
         try_shutdown()
         return 1
-    with _leaving_within(GOODBYE):
+    with leaving_within(GOODBYE):
         try_shutdown()
     _leave()
     return 0
@@ -107,7 +107,7 @@ def on_executor(makers: Makers) -> Iterator[tuple[list[Node], EventsExecutor]]:
             close = getattr(node, 'close', None)
             if close is not None:
                 close()
-        with _leaving_within(GOODBYE):
+        with leaving_within(GOODBYE):
             if executor is not None:
                 executor.shutdown()
             for node in reversed(nodes):
@@ -128,7 +128,7 @@ def _keep_for_good() -> None:
 
 
 @contextmanager
-def _leaving_within(seconds: float) -> Iterator[None]:
+def leaving_within(seconds: float) -> Iterator[None]:
     """Ends the process, with status 1, where taking leave of the graph never comes back.
 
     While others leave too, Fast DDS 2.14 now and then waits for itself (`set_listener`), and rclpy

@@ -1,18 +1,16 @@
 """The owner of the Cartesian state: goals in, one setpoint a tick out while enabled."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PointStamped, PoseStamped
-from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
-from manipulator.errors import ManipulatorError, Refused
+from manipulator.errors import ManipulatorError
 from manipulator.machine import JOG_SINGULARITIES, Machine
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
 from manipulator.nodes.messages import (
@@ -25,7 +23,7 @@ from manipulator.nodes.messages import (
     pose_of,
     seconds,
 )
-from manipulator.nodes.parameters import declare
+from manipulator.nodes.parameters import GoalParameters, declare
 from manipulator.nodes.path_goals import PathGoals
 from manipulator.nodes.planning_thread import PlanningThread
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
@@ -35,10 +33,11 @@ from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
 from manipulator.states import MotionResult
 from manipulator.teleop.arbiter import PEOPLE
-from manipulator.trajectory.controller import MEASUREMENT_DELAY, MotionController, lag_of
+from manipulator.trajectory.controller import MotionController, lag_of
 from manipulator.trajectory.following_error import Tolerances
-from manipulator.trajectory.goal import Goal, Motion
+from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
+from manipulator.trajectory.supervisor import MEASUREMENT_DELAY
 
 DELAY = 'age in seconds of a measured pose by the time that its correction moves the joints'
 SINGULARITY = 'what a jogged arm does where it cannot keep its direction: stop or slide'
@@ -50,27 +49,10 @@ GOAL_TOLERANCE = (
     'how far a measured joint may be from a goal that is reached (rad or m); '
     '0: 1 % of its range, at most 0.5 degrees'
 )
-GOAL_MOTION = 'how a machine at rest goes to goal_pose: line, joint, or any (a line where it can)'
-
-
-def motion_of(name: object) -> Motion:
-    """The kind of motion that the parameter names; Refused for another name."""
-    try:
-        return Motion(name)
-    except ValueError:
-        known = ', '.join(motion.value for motion in Motion)
-        raise Refused(f'parameter goal_motion: {name!r} is not one of {known}') from None
-
-
-def checked_parameters(parameters: Sequence[Parameter]) -> SetParametersResult:
-    """What the node answers to new values: those that it would refuse later are not taken."""
-    try:
-        for parameter in parameters:
-            if parameter.name == 'goal_motion':
-                motion_of(parameter.value)
-    except Refused as error:
-        return SetParametersResult(successful=False, reason=str(error))
-    return SetParametersResult(successful=True)
+POSE_TOLERANCE = (
+    'how far the pose of measured joints may be from a goal that is reached (m; turns in '
+    'proportion); 0: 0.1 % of the characteristic length'
+)
 
 
 class TrajectoryNode(Node):
@@ -82,18 +64,20 @@ class TrajectoryNode(Node):
         rate = declare(self, 'rate', 100.0, 'setpoints per second (Hz)', (10.0, 500.0))
         tolerance = declare(self, 'following_tolerance', 0.0, TOLERANCE, (0.0, 10.0))
         goal_tolerance = declare(self, 'goal_tolerance', 0.0, GOAL_TOLERANCE, (0.0, 10.0))
-        motion_of(declare(self, 'goal_motion', Motion.LINE.value, GOAL_MOTION, is_read_only=False))
+        distance = declare(self, 'pose_tolerance', 0.0, POSE_TOLERANCE, (0.0, 1.0))
+        self._goal_parameters = GoalParameters(self)
         delay = declare(self, 'measurement_delay', MEASUREMENT_DELAY, DELAY, (0.0, 1.0))
         singularity = declare(self, 'jog_singularity', JOG_SINGULARITIES[0], SINGULARITY)
-        self.add_on_set_parameters_callback(checked_parameters)
         dt, self._worker = 1.0 / rate, PlanningThread()
         machine = replace(load(name), jog_singularity=singularity)
-        tolerances = Tolerances.of(machine, tolerance, goal_tolerance)
+        tolerances = Tolerances.of(machine, tolerance, goal_tolerance, distance)
         self._controller = MotionController(machine, dt, tolerances, self._worker, delay)
         self._connect()
-        PathGoals(self, self._controller)
+        PathGoals(self, self._controller, self._goal_parameters)
         self._teleop_topics = TeleopTopics(self, self._controller.teleop)
-        self._answers = TrajectoryServices(self, self._controller, dt, self._worker)
+        self._answers = TrajectoryServices(
+            self, self._controller, self._goal_parameters, dt, self._worker
+        )
         self._timer = SteadyTimer(self, dt, self._tick)
         self._diagnostics = Diagnostics(self, self._report, ('setpoint', 'pose', *PEOPLE))
 
@@ -133,17 +117,16 @@ class TrajectoryNode(Node):
         self._controller.note_pose(pose_of(message), time.monotonic())
 
     def _on_goal(self, message: PoseStamped) -> None:
-        pose = pose_of(message, (BASE_FRAME, WORK_FRAME))
-        motion = motion_of(self.get_parameter('goal_motion').value)
+        is_of_platform = message.header.frame_id != WORK_FRAME
+        chosen = self._goal_parameters
+        rule = self._controller.orientation_rule(chosen.orientation, is_of_platform)
+        pose = pose_of(message, (BASE_FRAME, WORK_FRAME), rule.is_given)
+        stamp = seconds(message.header.stamp)
         self._controller.pursue(
-            Goal(
-                pose,
-                seconds(message.header.stamp),
-                motion=motion,
-            ),
+            Goal(pose, stamp, motion=chosen.motion, orientation=rule),
             lambda error: self._goals.refuse(message, error),
             time.monotonic(),
-            is_of_platform=message.header.frame_id != WORK_FRAME,
+            is_of_platform,
         )
 
     def _on_bad_goal(self, message: PoseStamped, error: ManipulatorError) -> None:

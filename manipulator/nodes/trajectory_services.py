@@ -15,12 +15,20 @@ from manipulator.errors import ManipulatorError
 from manipulator.machine import Machine
 from manipulator.nodes.late_answers import Call, create_late_service
 from manipulator.nodes.messages import goal_of, pose_message, seconds
-from manipulator.nodes.parameters import CycleParameters
+from manipulator.nodes.parameters import CycleParameters, GoalParameters
 from manipulator.trajectory.controller import MotionController
 from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.plan import MotionState, Plan
-from manipulator.trajectory.planner import Start, plan_goal
+from manipulator.trajectory.plan import MotionState
+from manipulator.trajectory.planner import ComparedPlan, Start, compared
 from manipulator.trajectory.worker import Job, Worker
+
+STAMP = ', goal_stamp '
+"""What precedes the stamp in the answers of home and park: motion_status names the move by it."""
+
+
+def named(stamp: float) -> str:
+    """The end of an answer: the stamp, as motion_status has it."""
+    return f'{STAMP}{stamp:.9f}'
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,17 +37,23 @@ class _PlanCall:
 
     call: Call
     machine: Machine
-    job: Job[Plan]
+    job: Job[ComparedPlan]
 
 
 class TrajectoryServices:
     """Answers with what will happen, or with why it will not; `poll` is called at every tick."""
 
     def __init__(
-        self, node: Node, controller: MotionController, dt: float, worker: Worker
+        self,
+        node: Node,
+        controller: MotionController,
+        parameters: GoalParameters,
+        dt: float,
+        worker: Worker,
     ) -> None:
         self._node = node
         self._controller = controller
+        self._parameters = parameters
         self._dt = dt
         self._worker = worker
         self._cycle = CycleParameters(node)
@@ -71,12 +85,14 @@ class TrajectoryServices:
         return 'braking along the path, then holding'
 
     def _home(self) -> str:
-        self._controller.home(self._now(), time.monotonic())
-        return 'going home'
+        stamp = self._now()
+        self._controller.home(stamp, time.monotonic())
+        return f'going home{named(stamp)}'
 
     def _park(self) -> str:
-        self._controller.park(self._now(), time.monotonic())
-        return 'going to park'
+        stamp = self._now()
+        self._controller.park(stamp, time.monotonic())
+        return f'going to park{named(stamp)}'
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:
@@ -105,7 +121,8 @@ class TrajectoryServices:
         try:
             goal = goal_of(call.request.goal, machine.frames)
             start = self._start_of(call.request)
-            job = self._worker.submit(lambda effort: plan_goal(machine, start, Goal(goal), effort))
+            request = Goal(goal, motion=self._parameters.motion)
+            job = self._worker.submit(lambda effort: compared(machine, start, request, effort))
         except ManipulatorError as error:
             self._node.get_logger().warning(f'plan: {error}')
             call.send()
@@ -115,10 +132,12 @@ class TrajectoryServices:
     def _answer_plan(self, plan: _PlanCall) -> None:
         machine, response = plan.machine, plan.call.response
         try:
-            move = plan.job.result()
+            compared_plan = plan.job.result()
         except ManipulatorError as error:
             self._node.get_logger().warning(f'plan: {error}')
         else:
+            move = compared_plan.plan
+            self._node.get_logger().info(f'plan: {compared_plan}')
             stamp = self._node.get_clock().now().to_msg()
             times = np.append(np.arange(0.0, move.duration, self._dt), move.duration)
             poses = machine.frames.platform(move.at(times).pose)

@@ -22,8 +22,9 @@ from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.following_error import Tolerances
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.motion_status import STOPPED, MotionNews, MotionStatus
+from manipulator.trajectory.orientation import Orientation, OrientationRule
 from manipulator.trajectory.path_planning import PathGoal, PathPlanning
-from manipulator.trajectory.supervisor import MotionSupervisor
+from manipulator.trajectory.supervisor import MEASUREMENT_DELAY, MotionSupervisor
 from manipulator.trajectory.teleop import Teleop
 from manipulator.trajectory.worker import InPlace, Worker
 
@@ -67,9 +68,6 @@ def lag_of(supervisor: MotionSupervisor) -> dict[str, float]:
     return {'lag_mm': 1e3 * shift, 'lag_deg': degrees(turn)}
 
 
-MEASUREMENT_DELAY = 0.06
-"""Seconds from a measured pose to the moment that its correction moves the joints, by default."""
-
 OVERTAKING = 0.5
 """Seconds by which a goal may overtake a path, which takes longer to send, or a path a goal."""
 
@@ -102,7 +100,7 @@ class MotionController:
         delay: float = MEASUREMENT_DELAY,
     ) -> None:
         """tolerances, worker: see `MotionSupervisor`; delay: see `Teleop`."""
-        self.supervisor = MotionSupervisor(machine, dt, tolerances, worker)
+        self.supervisor = MotionSupervisor(machine, dt, tolerances, worker, delay)
         self.teleop = Teleop(self.supervisor, delay)
         self.jitter = Jitter(dt)
         self.news = MotionNews()
@@ -145,6 +143,12 @@ class MotionController:
         """A path: it is planned, then executed like a goal, unless a newer command comes."""
         self._check_order(path.stamp, now)
         self._early.take(lambda: self._paths.begin(path), refuse, now)
+
+    def orientation_rule(self, orientation: Orientation, is_of_platform: bool) -> OrientationRule:
+        """For poses of the platform in the base frame, or of the pivot in the work frame."""
+        frames = self.supervisor.machine.frames
+        point = self.teleop.point_in(frames, is_in_work=not is_of_platform)
+        return OrientationRule(orientation, point)
 
     def home(self, stamp: float, now: float) -> None:
         """A goal at home, along a line or else by a joint move."""
@@ -228,9 +232,13 @@ class MotionController:
 
     def _pursue(self, goal: Goal, refuse: Refuse, now: float, is_of_platform: bool) -> None:
         def act() -> None:
-            frames = self.supervisor.machine.frames
-            pose = frames.pivot(goal.pose) if is_of_platform else goal.pose
-            self.supervisor.executor.pursue(replace(goal, pose=pose))
+            frames, executor = self.supervisor.machine.frames, self.supervisor.executor
+            start = executor.pursued or executor.state.pose
+            if is_of_platform:
+                oriented = goal.orientation.applied(goal.pose, frames.platform(start))
+                executor.pursue(replace(goal, pose=frames.pivot(oriented)))
+            else:
+                executor.pursue(replace(goal, pose=goal.orientation.applied(goal.pose, start)))
 
         self._early.take(act, refuse, now)
 

@@ -25,6 +25,9 @@ from manipulator.trajectory.plan import Hold, MotionState, Plan
 from manipulator.trajectory.planning import Planned, Planning
 from manipulator.trajectory.worker import InPlace, Worker
 
+AHEAD, AHEAD_ROWS = 0.5, 26
+"""Seconds in which the direction of a motion shows, and the poses that are looked at."""
+
 
 class Executor:
     """Owns the commanded state of one machine from the moment that it is enabled."""
@@ -46,6 +49,8 @@ class Executor:
         self._jog_command: JogCommand | None = None
         self._jogging: Jogging | None = None
         self._measured: Pose | None = None
+        self.awaits_arrival = False
+        self.is_waiting = False
 
     @property
     def state(self) -> MotionState:
@@ -79,6 +84,38 @@ class Executor:
     def is_busy(self) -> bool:
         """Whether a goal or a cycle is active, or waits."""
         return not self._is_holding
+
+    @property
+    def is_executing(self) -> bool:
+        """Whether a plan is executed, neither paused nor braked, or has just reached its end."""
+        if self._active.is_hold:
+            return self._jogging is None and self.status.result == MotionResult.REACHED
+        return self._scaling.target > 0.0
+
+    @property
+    def may_slow_down(self) -> bool:
+        """Whether a path is executed that has no times of its own."""
+        plan = self._active.plan
+        return isinstance(plan, TimedPath) and not plan.is_stamped
+
+    def slow_down(self, most: float) -> None:
+        """Scales the active plan to `most` of its speed, from (0, 1], as fast as it may brake."""
+        self._scaling.most = most
+
+    def joints_ahead(self) -> Array:
+        """The joints (AHEAD_ROWS, n) with which the active plan goes on for AHEAD seconds."""
+        active = self._active
+        times = active.time + np.linspace(0.0, AHEAD, AHEAD_ROWS)
+        rows = active.plan.joints_at(times)
+        if rows is None:
+            rows = self._machine.kinematics.inverse_along(active.plan.at(times).pose, self.joints)
+        return rows
+
+    def begin_waiting(self) -> None:
+        """Begins the path or cycle that waited for the machine's arrival at its first pose."""
+        self.is_waiting = False
+        if not isinstance(self._active.plan, Cycle):
+            self._scaling.jump()
 
     def pursue(self, goal: Goal) -> None:
         """Plans a goal from the next tick on; of several the newest wins.
@@ -240,6 +277,7 @@ class Executor:
 
     def _begin(self, plan: Plan, stamp: float) -> None:
         self._active, self._planning.ready = ActivePlan(plan, stamp), None
+        self.is_waiting = False
         if not self._active.is_hold:
             self._report(MotionResult.MOVING, stamp)
 
@@ -251,7 +289,8 @@ class Executor:
         if ready is not None and self._active.is_hold:
             self._join(ready)
             ready = None
-        self._scaling.advance()
+        if not self.is_waiting:
+            self._scaling.advance()
         self._active.time += self._scaling.factor * self._dt
         if ready is not None and self._active.time >= ready.begin:
             self._join(ready)
@@ -269,11 +308,11 @@ class Executor:
         self._begin(Hold(self.state.pose), stamp)
         self._scaling.is_stopping = False
         self._scaling.jump()
-        if isinstance(waiting, Cycle):
-            self._scaling.factor = 0.0
+        if isinstance(waiting, (Cycle, TimedPath)):
             self._begin(waiting, stamp)
-        elif isinstance(waiting, TimedPath):
-            self._begin(waiting, stamp)
+            self.is_waiting = self.awaits_arrival
+            if self.is_waiting or isinstance(waiting, Cycle):
+                self._scaling.factor = 0.0
         elif isinstance(waiting, Goal):
             if self._planning.goal is None:
                 self._planning.request(waiting)

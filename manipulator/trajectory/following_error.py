@@ -19,6 +19,9 @@ WINDOW = 0.5
 ARRIVAL_PATIENCE = 1.0
 """Seconds that the joints may take to arrive once a plan's time is over."""
 
+CORRECTION_DELAYS = 20.0
+"""Measurement delays that their correction may take besides: six times its time constant."""
+
 TAKEOVER_SHARE = 0.1
 """Of the following tolerance: how far joints may be from the pose at takeover."""
 
@@ -31,17 +34,33 @@ FOLLOWING_SHARE, MOST_FOLLOWING = 0.06, 0.2
 GOAL_SHARE, MOST_AT_GOAL = 0.01, radians(0.5)
 """Of a joint's range (and rad) that a measured joint may be from where a goal sent it."""
 
+DISTANCE_SHARE = 0.001
+"""Of the characteristic length that a measured pose may be from the goal."""
+
+COUNTS = 2.0
+"""Dead bands within which every joint is as near to its goal as it can come."""
+
 
 @dataclass(frozen=True, eq=False)
 class Tolerances:
-    """How far each joint may be from its recent commands, and from a goal: (n,), rad or m."""
+    """How far each joint may be from its recent commands, and from a goal: (n,), rad or m.
+
+    distance, turn: how far a measured pose may be from a goal, in m and rad.
+    """
 
     following: Array
     goal: Array
+    distance: float
+    turn: float
 
     @classmethod
-    def of(cls, machine: Machine, following: float = 0.0, goal: float = 0.0) -> 'Tolerances':
-        """One value for all joints (rad or m), or with 0 one by each joint's unit and range."""
+    def of(
+        cls, machine: Machine, following: float = 0.0, goal: float = 0.0, distance: float = 0.0
+    ) -> 'Tolerances':
+        """One value for all joints (rad or m), or with 0 one by each joint's unit and range.
+
+        distance: with 0 a share of the characteristic length; turns in proportion.
+        """
         low, high = machine.joint_ranges
         is_rotary = machine.kinematics.joint_unit == 'rad'
 
@@ -50,9 +69,34 @@ class Tolerances:
                 return frozen(np.full(len(low), value))
             return frozen(np.minimum(share * (high - low), most if is_rotary else np.inf))
 
+        length = machine.kinematics.characteristic_length
+        distance = distance or DISTANCE_SHARE * length
         return cls(
-            each(following, FOLLOWING_SHARE, MOST_FOLLOWING), each(goal, GOAL_SHARE, MOST_AT_GOAL)
+            each(following, FOLLOWING_SHARE, MOST_FOLLOWING),
+            each(goal, GOAL_SHARE, MOST_AT_GOAL),
+            distance,
+            distance / length,
         )
+
+    def violation(self, gap: Array) -> str:
+        """How far a measured pose is from its goal, in words; '' within tolerance. gap: (6,)."""
+        shift, turn = _sizes(gap)
+        if shift <= self.distance and turn <= self.turn:
+            return ''
+        return (
+            f'{missed(gap)} (tolerance {1e3 * self.distance:.3g} mm and '
+            f'{np.degrees(self.turn):.2g}°)'
+        )
+
+
+def missed(gap: Array) -> str:
+    """In words, what a twist (6,) leads from a goal to the pose instead."""
+    shift, turn = _sizes(gap)
+    return f'the goal is missed by {1e3 * shift:.3g} mm and {np.degrees(turn):.2g}°'
+
+
+def _sizes(gap: Array) -> tuple[float, float]:
+    return float(np.linalg.norm(gap[:3])), float(np.linalg.norm(gap[3:]))
 
 
 class FollowingError:
@@ -99,6 +143,13 @@ class FollowingError:
         away = np.abs(self._commanded[-1] - self._measured)
         worst, excess = self._furthest(away, tolerance, 'the goal')
         return worst if excess > 0.0 else ''
+
+    def is_within(self, dead_band: Array) -> bool:
+        """Whether every joint is as near to the last command as its dead band (n,) allows."""
+        if self._measured is None or not self._commanded:
+            return False
+        away = np.abs(self._commanded[-1] - self._measured)
+        return bool((away <= COUNTS * dead_band).all())
 
     @property
     def violation(self) -> str:
@@ -148,10 +199,11 @@ class PoseMatch:
 
 
 class Arrival:
-    """Delays the result *reached* until the joints are there, up to ARRIVAL_PATIENCE."""
+    """Delays the result *reached* until the joints are there, with limited patience."""
 
-    def __init__(self, dt: float) -> None:
-        self._dt = dt
+    def __init__(self, dt: float, delay: float) -> None:
+        """delay: seconds until the correction of a measured position moves the joints."""
+        self._patience = round((ARRIVAL_PATIENCE + CORRECTION_DELAYS * delay) / dt)
         self._judged: MotionStatus | None = None
         self._waited = 0
 
@@ -163,13 +215,13 @@ class Arrival:
         """The status to report, once a tick; None for nothing new.
 
         A plan whose time has ended reports *reached*. deviation: which joint is not there yet, in
-        words; after ARRIVAL_PATIENCE the result is *stopped*, with this reason.
+        words; when patience is over the result is *stopped*, with this reason.
         """
         if status is self._judged:
             return None
         is_late = status.result == MotionResult.REACHED and bool(deviation)
         self._waited = self._waited + 1 if is_late else 0
-        if is_late and self._waited * self._dt < ARRIVAL_PATIENCE:
+        if is_late and self._waited < self._patience:
             return None
         self._judged, self._waited = status, 0
         if is_late:

@@ -1,11 +1,12 @@
 """A goal: a pose, how to get there, and the path or cycle to begin there."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
+from manipulator.trajectory.orientation import OrientationRule
 from manipulator.trajectory.path_timing import TimedPath
 
 
@@ -25,7 +26,7 @@ class Goal:
     """A pose to go to, known to its sender by the stamp of the message.
 
     then: the path or cycle to drive from there, whose first pose it is. joints (n,): those to
-    arrive with, None where any of the pose's will do.
+    arrive with, None where any of the pose's will do. orientation: where the pose's comes from.
     """
 
     pose: Pose
@@ -33,3 +34,4 @@ class Goal:
     then: TimedPath | Cycle | None = None
     motion: Motion = Motion.LINE
     joints: Array | None = None
+    orientation: OrientationRule = field(default_factory=OrientationRule)

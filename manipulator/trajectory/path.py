@@ -81,7 +81,12 @@ class Path:
         return f'{word} pose {self.numbers[last]}, {self.metres(s):.4g} m along the path'
 
 
-def path_along(poses: Pose, tolerance: Tolerance, turn_length: float) -> Path | Pose:
+def path_along(
+    poses: Pose,
+    tolerance: Tolerance,
+    turn_length: float,
+    numbers: tuple[int, ...] | None = None,
+) -> Path | Pose:
     """The path whose parameter is its length in metres, or the one pose that all `poses` are.
 
     A segment is as long as its positions are apart, or as turn_length (m/rad) makes of its turn
@@ -97,12 +102,16 @@ def path_along(poses: Pose, tolerance: Tolerance, turn_length: float) -> Path | 
     marks = np.concatenate([[0.0], np.cumsum(spans)])
     share = 1.0 - REPEATED_SHARE
     left = Tolerance(share * tolerance.distance, share * tolerance.turn)
-    return _blended(distinct, marks, left, tuple(k + 1 for k in kept))
+    known = numbers or range(1, len(poses.position) + 1)
+    return _blended(distinct, marks, left, tuple(known[k] for k in kept))
 
 
-def path_in_time(poses: Pose, stamps: Array, tolerance: Tolerance) -> Path:
+def path_in_time(
+    poses: Pose, stamps: Array, tolerance: Tolerance, numbers: tuple[int, ...] | None = None
+) -> Path:
     """The path whose parameter is time: at each pose at its stamp (s, strictly increasing)."""
-    return _blended(poses, stamps - stamps[0], tolerance, tuple(range(1, len(stamps) + 1)))
+    known = numbers or tuple(range(1, len(stamps) + 1))
+    return _blended(poses, stamps - stamps[0], tolerance, known)
 
 
 def _blended(poses: Pose, marks: Array, tolerance: Tolerance, numbers: tuple[int, ...]) -> Path:

@@ -5,7 +5,7 @@ command replaces it.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused
@@ -15,6 +15,7 @@ from manipulator.states import MotionResult
 from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import OVERTAKEN, MotionNews, MotionStatus
+from manipulator.trajectory.orientation import OrientationRule
 from manipulator.trajectory.path_timing import PathRequest, TimedPath, plan_path
 from manipulator.trajectory.supervisor import MotionSupervisor
 from manipulator.trajectory.worker import Effort, Job, Worker
@@ -26,20 +27,23 @@ class PathGoal:
 
     read: returns the request; called where the path is planned, because thousands of poses take
     their time; raises InvalidInput. is_of_platform: the poses are the platform's in the base
-    frame, else the pivot's in the work frame.
+    frame, else the pivot's in the work frame. orientation: where the poses' comes from.
     """
 
     stamp: float
     read: Callable[[], PathRequest]
     is_of_platform: bool
+    orientation: OrientationRule = field(default_factory=OrientationRule)
 
     def planned(
-        self, machine: Machine, near: Array, dt: float, effort: Effort
+        self, machine: Machine, start: Pose, near: Array, dt: float, effort: Effort
     ) -> TimedPath | Pose:
-        """See `plan_path`."""
-        request = self.read()
+        """See `plan_path`; start: the pivot's pose in the work frame, from which it begins."""
+        frames = machine.frames
+        start = frames.platform(start) if self.is_of_platform else start
+        request = self.read().oriented(self.orientation, start)
         if self.is_of_platform:
-            request = replace(request, poses=machine.frames.pivot(request.poses))
+            request = replace(request, poses=frames.pivot(request.poses))
         return plan_path(machine, request, near, dt, effort)
 
 
@@ -56,11 +60,11 @@ class PathPlanning:
     def begin(self, path: PathGoal) -> None:
         """Plans it, in place of the one before; Refused as `Executor.expect`."""
         executor, machine = self._supervisor.executor, self._supervisor.machine
-        near, dt = executor.joints, self._dt
+        start, near, dt = executor.state.pose, executor.joints, self._dt
         executor.expect(path.stamp)
         self._drop(OVERTAKEN)
         try:
-            self._job = self._worker.submit(lambda e: path.planned(machine, near, dt, e))
+            self._job = self._worker.submit(lambda e: path.planned(machine, start, near, dt, e))
             self._stamp = path.stamp
         except Refused as error:
             executor.refuse(path.stamp, str(error))

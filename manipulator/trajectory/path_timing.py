@@ -15,6 +15,7 @@ from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.trajectory.check import TOLERANCE as CHECK_TOLERANCE
 from manipulator.trajectory.check import check_plan
+from manipulator.trajectory.orientation import OrientationRule
 from manipulator.trajectory.path import Path, Tolerance, path_along, path_in_time
 from manipulator.trajectory.path_limits import PathLimits, fastest, path_limits
 from manipulator.trajectory.plan import MotionState, PosePlan
@@ -33,13 +34,15 @@ MOST_TICKS = 100_000
 class TimedPath(PosePlan):
     """Squared speeds along the path at its nodes (m + 1,); between them s̈ is constant.
 
-    joints are those at the first pose: another branch of them cannot drive this plan.
+    joints are those at the first pose: another branch of them cannot drive this plan. is_stamped:
+    its poses have times of their own, so that it is never slowed down for the sake of accuracy.
     """
 
     path: Path
     nodes: Array
     squares: Array
     joints: Array
+    is_stamped: bool = False
 
     @cached_property
     def _times(self) -> Array:
@@ -86,12 +89,27 @@ class TimedPath(PosePlan):
 
 @dataclass(frozen=True, eq=False)
 class PathRequest:
-    """Poses (n,) to pass, n ≥ 1; at their stamps (s, (n,)), or at `speed` (m/s) at most."""
+    """Poses (n,) to pass, n ≥ 1; at their stamps (s, (n,)), or at `speed` (m/s) at most.
+
+    numbers (n,): those by which their sender knows them; None: from 1.
+    """
 
     poses: Pose
     speed: float
     tolerance: Tolerance
     stamps: Array | None = None
+    numbers: tuple[int, ...] | None = None
+
+    def oriented(self, rule: OrientationRule, start: Pose) -> 'PathRequest':
+        """With the orientations by a rule, and perhaps more poses; see `OrientationRule.along`."""
+        if rule.is_given:
+            return self
+        poses, places = rule.along(self.poses, start)
+        stamps = self.stamps
+        if stamps is not None:
+            stamps = np.interp(places, np.arange(len(stamps)), stamps)
+        numbers = tuple(int(place) + 1 for place in places)
+        return replace(self, poses=poses, stamps=stamps, numbers=numbers)
 
 
 def plan_path(
@@ -104,10 +122,12 @@ def plan_path(
     """
     turn_length = machine.motion.linear.speed / machine.motion.angular.speed
     if request.stamps is not None and len(request.stamps) > 1:
-        path: Path | Pose = path_in_time(request.poses, request.stamps, request.tolerance)
+        path: Path | Pose = path_in_time(
+            request.poses, request.stamps, request.tolerance, request.numbers
+        )
         speed = 1.0
     else:
-        path = path_along(request.poses, request.tolerance, turn_length)
+        path = path_along(request.poses, request.tolerance, turn_length, request.numbers)
         speed = request.speed
     if isinstance(path, Pose):
         return path
@@ -116,7 +136,7 @@ def plan_path(
         limits = path_limits(machine, path, nodes_of(path, refinement, length), near)
         if request.stamps is not None:
             _check_stamped(path, limits)
-        timed = timed_path(path, limits, speed)
+        timed = replace(timed_path(path, limits, speed), is_stamped=request.stamps is not None)
         _check_length(timed, dt)
         peak = check_plan(timed, machine, near, dt, effort)
         if peak.fits:

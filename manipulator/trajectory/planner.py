@@ -1,7 +1,7 @@
 """From a goal to a plan within all limits: slowed down where it is too fast, or refused."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -64,6 +64,42 @@ def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pla
         if goal.motion is Motion.LINE or not start.state.is_at_rest:
             raise Refused(f'{refusal}{_hint(machine, start, goal, effort)}') from refusal
     return _plan_joints(machine, start, goal, effort)
+
+
+@dataclass(frozen=True, eq=False)
+class ComparedPlan:
+    """A plan, and what it might take (s): along a line, by a joint move, at rated speed.
+
+    None where no such move is found. rated: what the joint with the longest way needs at its speed
+    limit, the other joints in proportion.
+    """
+
+    plan: Plan
+    durations: dict[Motion, float | None]
+    rated: float
+
+    def __str__(self) -> str:
+        found = [
+            f'{motion.value} {"none" if t is None else f"{t:.2f} s"}'
+            for motion, t in self.durations.items()
+        ]
+        return f'{", ".join(found)}; the joints at their speed limits alone: {self.rated:.2f} s'
+
+
+def compared(machine: Machine, start: Start, goal: Goal, effort: Effort) -> ComparedPlan:
+    """The plan of `plan_goal`, from rest, beside the other motions to the same goal."""
+    plan = plan_goal(machine, start, goal, effort)
+    durations: dict[Motion, float | None] = {}
+    for motion in (Motion.LINE, Motion.JOINT):
+        try:
+            durations[motion] = plan_goal(
+                machine, start, replace(goal, motion=motion), effort
+            ).duration
+        except (Refused, Unreachable, TooLong):
+            durations[motion] = None
+    end = machine.kinematics.inverse(goal.pose, start.joints)
+    rated = np.abs(end - start.joints) / machine.motion.joint.speed
+    return ComparedPlan(plan, durations, float(rated.max()))
 
 
 def _refuse_absurd(machine: Machine, pose: Pose) -> None:

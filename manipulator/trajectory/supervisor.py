@@ -7,8 +7,6 @@ ends that drops every goal; later motion begins where the joints then are.
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from manipulator.arrays import Array
 from manipulator.deadlines import POSE_DEADLINE, POSE_PAUSE, STATE_DEADLINE
 from manipulator.errors import Refused
@@ -17,8 +15,15 @@ from manipulator.frames import Frames
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.states import MachineState, MotionMode, MotionResult
+from manipulator.trajectory.closed_loop import ClosedLoop, dead_band_of
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.following_error import Arrival, FollowingError, PoseMatch, Tolerances
+from manipulator.trajectory.following_error import (
+    Arrival,
+    FollowingError,
+    PoseMatch,
+    Tolerances,
+    missed,
+)
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.worker import Worker
 
@@ -35,6 +40,9 @@ REMEDIES = {
     MachineState.FAULT: 'clear the fault first',
 }
 """What is missing before the machine can be driven, by machine state."""
+
+MEASUREMENT_DELAY = 0.06
+"""Seconds from a measured pose to the moment that its correction moves the joints, by default."""
 
 RESULTS = (MotionResult.REACHED, MotionResult.REFUSED, MotionResult.STOPPED)
 """Results of goals: still reported where a machine that held is taken over again at once."""
@@ -58,14 +66,21 @@ class MotionSupervisor:
         dt: float,
         tolerances: Tolerances | None = None,
         worker: Worker | None = None,
+        delay: float = MEASUREMENT_DELAY,
     ) -> None:
-        """tolerances: by default by the joints' ranges; worker: where plans are made."""
+        """tolerances: by default by the joints' ranges; worker: where plans are made.
+
+        delay: seconds from a measurement to the moment that its correction moves the joints.
+        """
         self.status = DISABLED
         self.machine = in_frames(machine, machine.frames)
         self._bare = machine
         self._dt = dt
         self._tolerances = tolerances or Tolerances.of(machine)
         self._worker = worker
+        self._delay = delay
+        self._dead_band = dead_band_of(machine)
+        self._loop: ClosedLoop | None = None
         self._executor: Executor | None = None
         self._following_error: FollowingError | None = None
         self._state = ''
@@ -73,7 +88,7 @@ class MotionSupervisor:
         self._is_measured = False
         self._joints: Array | None = None
         self._pose: Pose | None = None
-        self._arrival = Arrival(dt)
+        self._arrival = Arrival(dt, delay)
         self._match = PoseMatch(machine, self._tolerances.following)
         self._override = 1.0
         self._is_paused = False
@@ -123,8 +138,14 @@ class MotionSupervisor:
     def note_joints(self, joints: Array) -> None:
         """The reported joints (n,): they select the branch at takeover, and must follow."""
         self._joints = joints
-        if self._following_error is not None:
-            self._following_error.measure(joints)
+        if self._following_error is None:
+            return
+        self._following_error.measure(joints)
+        if self._is_measured:
+            self._loop = self._loop or ClosedLoop(
+                self._dead_band, self._tolerances, self._delay, self._dt
+            )
+            self._loop.measure(joints)
 
     def note_pose(self, T_base_platform: Pose) -> None:
         """The reported pose: a machine that can be driven is taken over there."""
@@ -165,7 +186,7 @@ class MotionSupervisor:
         if self._executor is not None:
             stamp = self._executor.newest_stamp
             self._executor.close()
-            self._executor = self._following_error = None
+            self._executor = self._following_error = self._loop = None
             self.status = MotionStatus(MotionMode.DISABLED, MotionResult.STOPPED, stamp, reason)
 
     def override(self, rate: float) -> None:
@@ -196,13 +217,21 @@ class MotionSupervisor:
             self.release(self._following_error.violation)
         if self._executor is None or self._following_error is None:
             return None
-        pose = self._executor.step()
-        self._following_error.command(self._executor.joints)
+        executor, pose = self._executor, self._executor.step()
+        self._following_error.command(executor.joints)
+        deviation = ''
         if self._is_followed:
-            words = self._following_error.deviation(self._is_measured)
-            words = f'{words}{self._distance_words()}' if words else ''
-            self.status = self._arrival.judged(self._executor.status, words) or self.status
+            deviation = self._deviation(executor, self._following_error)
+            self.status = self._arrival.judged(executor.status, deviation) or self.status
+        if self._loop is not None:
+            self._loop.prepare(executor, not deviation)
+            pose = self._loop.step(self.machine, executor, pose, self._is_correcting(executor))
         return self.machine.frames.platform(pose)
+
+    def _is_correcting(self, executor: Executor) -> bool:
+        """Whether a plan is executed, or its end not yet reached, by measured joints."""
+        is_over = executor.is_at_rest and self._arrival.has_judged(executor.status)
+        return self._is_measured and executor.is_executing and not is_over
 
     @property
     def _is_settled(self) -> bool:
@@ -213,14 +242,16 @@ class MotionSupervisor:
         is_awaited = self._is_followed and status.result == MotionResult.REACHED
         return self._executor.is_at_rest and (self._arrival.has_judged(status) or not is_awaited)
 
-    def _distance_words(self) -> str:
-        """How far the measured platform or tool is from the commanded pose."""
-        if not self._is_measured or self._pose is None or self._executor is None:
-            return ''
-        commanded = self.machine.frames.platform(self._executor.state.pose)
-        gap = commanded.twist_to(self._pose)
-        shift, turn = (float(np.linalg.norm(part)) for part in (gap[:3], gap[3:]))
-        return f': the goal is missed by {1e3 * shift:.3g} mm and {np.degrees(turn):.2g}°'
+    def _deviation(self, executor: Executor, following: FollowingError) -> str:
+        """How far the machine is from the commanded pose, in words; '' within tolerance."""
+        joint = following.deviation(self._is_measured)
+        if not self._is_measured or self._pose is None:
+            return joint
+        gap = executor.state.pose.twist_to(self.machine.frames.pivot(self._pose))
+        if joint:
+            return f'{joint}: {missed(gap)}'
+        is_closest = following.is_within(self._dead_band)
+        return '' if is_closest else self._tolerances.violation(gap)
 
     def _take_over(self, T_base_platform: Pose, near: Array) -> None:
         self._clear_mismatch()
@@ -237,7 +268,7 @@ class MotionSupervisor:
         self._following_error = FollowingError(
             kinematics.joint_names, kinematics.joint_unit, self._tolerances, self._dt
         )
-        self._arrival = Arrival(self._dt)
+        self._arrival = Arrival(self._dt, self._delay)
         self.status = executor.status if self._is_followed else CONNECTING
 
     def _clear_mismatch(self) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.errors import Refused
+from manipulator.frames import Frames
 from manipulator.teleop.arbiter import Arbiter
 from manipulator.teleop.jog_modes import Feedback, JogMode
 from manipulator.teleop.jogger import check_axes
@@ -70,6 +71,13 @@ class Teleop:
         to_work = self._supervisor.machine.frames.T_base_work.inverse()
         self._point = frozen(point if is_in_work else to_work.transform(point[None])[0])
         self._take(self._name)
+
+    def point_in(self, frames: Frames, is_in_work: bool) -> Array | None:
+        """The point (3,) of look_at, in the work frame or the base frame; None until it is set."""
+        if self._point is None or is_in_work:
+            return self._point
+        point: Array = frames.T_base_work.transform(self._point[None])[0]
+        return point
 
     def stop(self) -> None:
         """The owning source is rejected until it releases."""

@@ -55,7 +55,7 @@ class BoardHost:
             steps -= 1
         return messages
 
-    def say(self, message, sequence=None):
+    def send(self, message, sequence=None):
         """Under the next sequence number, or a given one."""
         if sequence is None:
             sequence = self.sequence = (self.sequence + 1) & 0xFFFF
@@ -64,7 +64,7 @@ class BoardHost:
 
     def ask(self, message, sequence=None):
         """The result of a command."""
-        sequence = self.say(message, sequence)
+        sequence = self.send(message, sequence)
         (ack,) = [m for m in self.run(0.04) if isinstance(m, Ack)]
         assert ack.sequence == sequence
         return ack.result

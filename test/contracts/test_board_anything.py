@@ -75,7 +75,7 @@ def test_no_pulse_is_out_of_range_and_no_servo_is_outrun(make_driver, seed):
     before, moved = driver.board.pulses, 0
     for _ in range(400):
         message = anything(rng)
-        driver.say(message)
+        driver.send(message)
         # Released servos are seen to be so before another ARM puts them elsewhere.
         is_release = isinstance(message, Disarm | Clear)
         driver.run(0.06 if is_release else rng.choice([0.005, 0.02, 0.06]))
@@ -87,18 +87,18 @@ def test_no_pulse_is_out_of_range_and_no_servo_is_outrun(make_driver, seed):
                 moved += now != last
         before = after
     assert moved > 50
-    driver.say(Clear())
+    driver.send(Clear())
     assert driver.state().joints
 
 
-def told(driver, seed):
+def answers_of(driver, seed):
     """What the board says to a hundred messages, and the mode that each leaves it in."""
     rng = random.Random(seed)
     driver.run(0.4)
     found = []
     for _ in range(100):
         message = anything(rng)
-        driver.say(message)
+        driver.send(message)
         heard = driver.run(WITHIN)
         answers = [m.result for m in heard if isinstance(m, Ack)]
         faults = [m for m in heard if isinstance(m, Fault)]
@@ -109,6 +109,6 @@ def told(driver, seed):
 
 @pytest.mark.parametrize('seed', range(6))
 def test_computer_and_chip_answer_alike(make_both, seed):
-    computer, chip = (told(driver, seed) for driver in make_both(arm_interval_us=20_000))
+    computer, chip = (answers_of(driver, seed) for driver in make_both(arm_interval_us=20_000))
     for ours, theirs in zip(computer, chip, strict=True):
         assert ours[1:] == theirs[1:], f'after {ours[0]}'

@@ -9,7 +9,7 @@ FAR = (4800, 1200, 4800, 1200, 4800, 1200)
 
 
 def test_the_stop_button_holds_the_pulses_and_latches(armed):
-    armed.say(Setpoint(1000, FAR))
+    armed.send(Setpoint(1000, FAR))
     armed.run(0.05)
     armed.board.is_stop_open = True
     armed.run(0.03)
@@ -48,7 +48,7 @@ def test_a_contact_that_has_just_closed_may_open_again(armed):
     armed.run(0.1)
     armed.board.is_stop_open = False
     armed.run(0.01)
-    armed.say(Clear())
+    armed.send(Clear())
     armed.run(0.01)
     assert armed.state().mode is Mode.STOPPED
 

@@ -85,7 +85,7 @@ def test_a_cycle_that_cannot_be_followed_is_refused_before_anything_moves(make_d
     driver = make_driver()
     driver.arm(HOME)
     driver.ask(axis)
-    driver.say(Play(Program.CYCLE, True))
+    driver.send(Play(Program.CYCLE, True))
     messages = driver.run(4.0)
     assert [m.code for m in messages if isinstance(m, Fault)] == [code]
     states = [m for m in messages if isinstance(m, State)]
@@ -105,7 +105,7 @@ def test_where_in_the_cycle_it_is_out_of_reach_is_told_in_ms(make_driver, axis):
 
     lost = next(k for k in range(4000) if counts(k) is None)
     driver.ask(axis)
-    driver.say(Play(Program.CYCLE, True))
+    driver.send(Play(Program.CYCLE, True))
     messages = driver.run(0.02 * lost + 0.5)
     (fault,) = [m for m in messages if isinstance(m, Fault)]
     assert fault.code is FaultCode.OUT_OF_REACH

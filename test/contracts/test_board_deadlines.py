@@ -30,11 +30,11 @@ def test_the_first_setpoint_has_a_deadline_of_two_seconds(make_driver, on_link_l
 
 
 def test_the_first_setpoint_brings_its_own_deadline(armed):
-    armed.say(Setpoint(100, MOVED))
+    armed.send(Setpoint(100, MOVED))
     armed.run(0.14)
     assert (armed.state().mode, armed.counts()) == (Mode.HOLDING, MOVED)
     armed.ask(Arm(PARK))
-    armed.say(Setpoint(2000, PARK))
+    armed.send(Setpoint(2000, PARK))
     armed.run(1.9)
     assert armed.state().mode is Mode.ARMED
 
@@ -45,7 +45,7 @@ def test_a_machine_that_was_cleared_holds_until_a_host_drives_or_arms_it(
 ):
     driver = make_driver(on_link_loss=on_link_loss)
     driver.arm()
-    driver.say(Setpoint(2000, MOVED))
+    driver.send(Setpoint(2000, MOVED))
     driver.run(0.1)
     driver.ask(Stop())
     driver.run(3.0)
@@ -64,7 +64,7 @@ def test_a_host_that_was_heard_since_the_clear_may_be_lost_again(make_driver, la
     driver.arm()
     driver.ask(Stop())
     driver.ask(Clear())
-    driver.say(last)
+    driver.send(last)
     driver.run(2.1)
     assert (driver.state().mode, driver.state().flags) == (Mode.DISARMED, Flag.DEADLINE_PASSED)
 
@@ -72,7 +72,7 @@ def test_a_host_that_was_heard_since_the_clear_may_be_lost_again(make_driver, la
 def test_stopped_it_holds_for_as_long_as_it_is_left_alone(make_driver):
     driver = make_driver(on_link_loss='release')
     driver.arm()
-    driver.say(Setpoint(100, MOVED))
+    driver.send(Setpoint(100, MOVED))
     driver.run(0.06)
     driver.ask(Stop())
     driver.run(4.0)
@@ -80,7 +80,7 @@ def test_stopped_it_holds_for_as_long_as_it_is_left_alone(make_driver):
 
 
 def test_when_the_deadline_passes_it_holds_where_it_is(armed):
-    armed.say(Setpoint(60, FAR))
+    armed.send(Setpoint(60, FAR))
     armed.run(0.1)
     there = armed.counts()
     assert there != FAR
@@ -91,9 +91,9 @@ def test_when_the_deadline_passes_it_holds_where_it_is(armed):
 
 
 def test_a_new_setpoint_ends_holding(armed):
-    armed.say(Setpoint(20, MOVED))
+    armed.send(Setpoint(20, MOVED))
     armed.run(0.2)
-    armed.say(Setpoint(200, PARK))
+    armed.send(Setpoint(200, PARK))
     armed.run(0.1)
     assert armed.state().mode is Mode.ARMED
     assert armed.counts() == PARK
@@ -102,7 +102,7 @@ def test_a_new_setpoint_ends_holding(armed):
 def test_released_on_link_loss_where_the_machine_says_so(make_driver):
     driver = make_driver(on_link_loss='release')
     driver.arm()
-    driver.say(Setpoint(100, MOVED))
+    driver.send(Setpoint(100, MOVED))
     driver.run(0.09)
     assert None not in driver.board.pulses
     driver.run(0.05)
@@ -113,8 +113,8 @@ def test_released_on_link_loss_where_the_machine_says_so(make_driver):
 
 
 def test_a_refused_setpoint_does_not_prolong_the_deadline(armed):
-    armed.say(Setpoint(100, MOVED))
+    armed.send(Setpoint(100, MOVED))
     for _ in range(6):
         armed.run(0.02)
-        armed.say(Setpoint(100, (0,) * 6))
+        armed.send(Setpoint(100, (0,) * 6))
     assert armed.state().mode is Mode.HOLDING

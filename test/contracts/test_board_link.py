@@ -1,5 +1,6 @@
 """What every board does on the line: announces itself, answers, survives garbage."""
 
+import dataclasses
 import random
 
 import numpy as np
@@ -45,7 +46,7 @@ def test_silent_while_it_boots_then_announces_itself_disarmed(driver):
 
 def test_bytes_during_the_boot_are_lost(driver):
     driver.run(0.1)
-    driver.say(Arm(PARK))
+    driver.send(Arm(PARK))
     assert not [m for m in driver.run(1.0) if isinstance(m, Ack)]
     assert driver.state().mode is Mode.DISARMED
 
@@ -54,7 +55,7 @@ def test_says_hello_again_only_while_the_host_is_silent(driver):
     assert 3 <= len(driver.hellos(1.3)) <= 5
     spoken = []
     for _ in range(10):
-        driver.say(Disarm())
+        driver.send(Disarm())
         spoken += driver.hellos(0.2)
     assert spoken == []
     assert driver.hellos(1.0)
@@ -64,13 +65,13 @@ def test_what_only_a_board_says_is_no_word_of_a_host(driver):
     driver.run(1.0)
     greetings = []
     for _ in range(10):
-        driver.say(Ack(1, Result.OK))
+        driver.send(Ack(1, Result.OK))
         greetings += driver.hellos(0.2)
     assert len(greetings) >= 6
 
 
 def test_state_comes_fifty_times_a_second_and_echoes_the_last_sequence(armed):
-    armed.say(Setpoint(200, MOVED), 1000)
+    armed.send(Setpoint(200, MOVED), 1000)
     armed.run(0.005)
     states = [m for m in armed.run(1.0) if isinstance(m, State)]
     assert len(states) == 50
@@ -81,24 +82,24 @@ def test_state_comes_fifty_times_a_second_and_echoes_the_last_sequence(armed):
 
 
 def test_a_repeated_command_is_answered_again_but_not_done_again(armed):
-    armed.say(Stop())
+    armed.send(Stop())
     armed.run(0.1)
-    cleared = armed.say(Clear())
+    cleared = armed.send(Clear())
     armed.run(0.1)
     assert armed.ask(Clear(), cleared) is Result.OK
-    armed.say(Stop())
+    armed.send(Stop())
     armed.run(0.1)
     assert armed.ask(Clear(), cleared) is Result.STALE
     assert armed.state().mode is Mode.STOPPED
 
 
 def test_a_stop_is_obeyed_when_its_sequence_has_come_round_since_the_last_one(armed):
-    stopped = armed.say(Stop())
+    stopped = armed.send(Stop())
     armed.run(0.1)
     armed.press_start()
     assert armed.state().mode is Mode.ARMED
     for step in (20_000, 40_000, 60_000):
-        armed.say(Setpoint(200, PARK), (stopped + step) & 0xFFFF)
+        armed.send(Setpoint(200, PARK), (stopped + step) & 0xFFFF)
         armed.run(0.02)
     assert armed.ask(Stop(), stopped) is Result.OK
     assert armed.state().mode is Mode.STOPPED
@@ -106,7 +107,7 @@ def test_a_stop_is_obeyed_when_its_sequence_has_come_round_since_the_last_one(ar
 
 def test_a_late_arm_after_disarm_moves_nothing(driver):
     driver.run(0.4)
-    driver.say(Disarm(), 10)
+    driver.send(Disarm(), 10)
     driver.run(0.1)
     assert driver.ask(Arm(PARK), 9) is Result.STALE
     assert driver.board.pulses == (None,) * 6
@@ -119,21 +120,21 @@ def test_a_late_stop_stops(armed):
 
 @pytest.mark.parametrize('step', [0, -1, -100, 0x8000])
 def test_a_setpoint_that_is_not_newer_is_refused(armed, step):
-    armed.say(Setpoint(200, MOVED))
+    armed.send(Setpoint(200, MOVED))
     armed.run(0.1)
-    armed.say(Setpoint(200, PARK), (armed.sequence + step) & 0xFFFF)
+    armed.send(Setpoint(200, PARK), (armed.sequence + step) & 0xFFFF)
     assert [fault.code for fault in armed.faults()] == [FaultCode.STALE]
     assert armed.counts() == MOVED
 
 
 def test_sequence_numbers_wrap(armed):
     armed.sequence = 20_000
-    armed.say(Setpoint(200, PARK))
+    armed.send(Setpoint(200, PARK))
     armed.sequence = 45_000
-    armed.say(Setpoint(200, PARK))
+    armed.send(Setpoint(200, PARK))
     armed.sequence = 65_534
     for k in range(4):
-        armed.say(Setpoint(200, tuple(count + k for count in PARK)))
+        armed.send(Setpoint(200, tuple(count + k for count in PARK)))
         armed.run(0.02)
     assert armed.counts() == tuple(count + 3 for count in PARK)
     assert armed.state().refused == 0
@@ -162,7 +163,7 @@ def test_unknown_and_malformed_frames_are_refused_and_counted(armed):
     ],
 )
 def test_what_only_a_board_says_is_refused_from_a_host_though_it_is_whole(armed, code, message):
-    armed.say(message)
+    armed.send(message)
     (fault,) = armed.faults()
     assert fault == Fault(FaultCode.UNKNOWN_TYPE, NO_JOINT, code)
     assert (armed.state().refused, armed.state().bad_frames) == (1, 0)
@@ -176,7 +177,7 @@ def test_a_frame_without_a_head_is_damaged_though_its_crc_is_right(armed, body):
 
 
 def test_frames_of_a_board_are_counted_up(armed):
-    armed.say(Stop())
+    armed.send(Stop())
     wire = b''
     for _ in range(40):
         armed.board.step(0.005)
@@ -197,14 +198,14 @@ def test_garbage_moves_nothing_and_the_next_frame_works(armed):
     state = armed.state()
     assert tuple(joint.count for joint in state.joints) == PARK
     assert state.bad_frames > 1000
-    armed.say(Setpoint(200, MOVED))
+    armed.send(Setpoint(200, MOVED))
     armed.run(0.1)
     assert armed.counts() == MOVED
 
 
 def test_a_flood_of_refusals_does_not_fill_the_line(armed):
     for _ in range(500):
-        armed.say(Setpoint(200, (0,) * 6))
+        armed.send(Setpoint(200, (0,) * 6))
     messages = armed.run(0.04)
     states = sum(isinstance(m, State) for m in messages)
     assert sum(isinstance(m, Fault) for m in messages) <= states + 1
@@ -222,7 +223,15 @@ def test_a_restarted_board_is_silent_disarmed_and_says_why(armed):
 
 def test_after_a_restart_any_sequence_is_taken(armed):
     armed.sequence = 40_000
-    armed.say(Setpoint(200, PARK))
+    armed.send(Setpoint(200, PARK))
     armed.reset()
     armed.sequence = 5
     assert armed.arm() is Result.OK
+
+
+def test_a_board_that_gets_another_program_announces_it(driver):
+    driver.run(0.4)
+    driver.board.settings = dataclasses.replace(driver.board.settings, version=2)
+    assert {hello.version for hello in driver.hellos(0.6)} <= {1}
+    driver.reset()
+    assert {hello.version for hello in driver.hellos(0.6)} == {2}

@@ -52,7 +52,7 @@ def test_a_reset_while_a_cycle_is_written_leaves_the_old_one(make_driver, second
     assert lift(driver) == pytest.approx(old, abs=2)
 
 
-def told(board, message, sequence):
+def result_of(board, message, sequence):
     """The result of a command."""
     board.take_output()
     board.feed(encode(message, sequence))
@@ -64,9 +64,9 @@ def first_pulse_of_cycle(memory):
     """Where the first servo stands a quarter of the period into the cycle in a memory."""
     board = Board(settings_of('robocake'), memory=memory)
     board.step(0.01)
-    told(board, Arm(HOME), 1)
+    result_of(board, Arm(HOME), 1)
     board.step(1.5)
-    if told(board, Play(Program.CYCLE, True), 2) is not Result.OK:
+    if result_of(board, Play(Program.CYCLE, True), 2) is not Result.OK:
         return None
     board.step(2.04 + 0.5 + 2.5)
     assert board.mode is Mode.PLAYING
@@ -81,7 +81,7 @@ def test_at_every_byte_that_is_written_there_is_the_old_cycle_or_the_new_one():
     for amplitude in (0.001, 0.002, 0.003):
         for axis in range(6):
             sequence += 1
-            told(board, CycleAxis(axis, amplitude if axis == 2 else 0.0, 500, 0.0), sequence)
+            result_of(board, CycleAxis(axis, amplitude if axis == 2 else 0.0, 500, 0.0), sequence)
         kept = []
         for _ in range(80):
             kept.append(board.memory)

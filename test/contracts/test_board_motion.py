@@ -12,7 +12,7 @@ FAR = (4800, 1200, 4000, 3000, 2900, 3100)
 
 def test_arming_energises_servo_by_servo_at_park(driver):
     driver.run(0.4)
-    driver.say(Arm(PARK))
+    driver.send(Arm(PARK))
     lit = []
     for _ in range(200):
         driver.run(0.005)
@@ -28,16 +28,16 @@ def test_arming_energises_servo_by_servo_at_park(driver):
 def test_setpoints_are_refused_while_it_arms_and_before(driver):
     driver.run(0.4)
     for mode in (Mode.DISARMED, Mode.ARMING):
-        driver.say(Setpoint(200, MOVED))
+        driver.send(Setpoint(200, MOVED))
         (fault,) = driver.faults()
         assert (fault.code, fault.value) == (FaultCode.NOT_ARMED, mode)
-        driver.say(Arm(PARK))
+        driver.send(Arm(PARK))
     driver.run(1.0)
     assert driver.counts() == PARK
 
 
 def test_arming_again_moves_nothing(armed):
-    armed.say(Setpoint(200, MOVED))
+    armed.send(Setpoint(200, MOVED))
     armed.run(0.1)
     assert armed.ask(Arm(PARK)) is Result.OK
     armed.run(1.0)
@@ -46,7 +46,7 @@ def test_arming_again_moves_nothing(armed):
 
 
 def test_all_servos_slew_by_one_factor(armed):
-    armed.say(Setpoint(1000, FAR))
+    armed.send(Setpoint(1000, FAR))
     armed.run(0.02)
     way = np.array(FAR) - np.array(PARK)
     for state in (m for m in armed.run(0.1) if isinstance(m, State)):
@@ -60,7 +60,7 @@ def test_all_servos_slew_by_one_factor(armed):
 
 
 def test_no_servo_is_told_to_move_faster_than_it_can(armed):
-    armed.say(Setpoint(1000, FAR))
+    armed.send(Setpoint(1000, FAR))
     last = np.array(PARK, float)
     for _ in range(20):
         armed.run(0.02)
@@ -71,7 +71,7 @@ def test_no_servo_is_told_to_move_faster_than_it_can(armed):
 
 @pytest.mark.parametrize('count', [0, 1099, 4901, 65535])
 def test_one_count_out_of_range_refuses_the_whole_frame(armed, count):
-    armed.say(Setpoint(200, (*MOVED[:2], count, *MOVED[3:])))
+    armed.send(Setpoint(200, (*MOVED[:2], count, *MOVED[3:])))
     (fault,) = armed.faults()
     assert fault == Fault(FaultCode.OUT_OF_RANGE, 2, count)
     assert armed.counts() == PARK
@@ -80,7 +80,7 @@ def test_one_count_out_of_range_refuses_the_whole_frame(armed, count):
 
 def test_both_ends_of_the_range_may_be_gone_to(armed):
     ends = (1100, 4900, 1100, 4900, 1100, 4900)
-    armed.say(Setpoint(1000, ends))
+    armed.send(Setpoint(1000, ends))
     assert armed.faults() == []
     armed.run(0.5)
     assert armed.counts() == ends
@@ -88,7 +88,7 @@ def test_both_ends_of_the_range_may_be_gone_to(armed):
 
 @pytest.mark.parametrize('joints', [1, 5, 7, 8])
 def test_another_number_of_joints_is_refused(armed, joints):
-    armed.say(Setpoint(200, (3000,) * joints))
+    armed.send(Setpoint(200, (3000,) * joints))
     (fault,) = armed.faults()
     assert (fault.code, fault.value) == (FaultCode.WRONG_JOINTS, joints)
     armed.ask(Disarm())
@@ -97,7 +97,7 @@ def test_another_number_of_joints_is_refused(armed, joints):
 
 @pytest.mark.parametrize('deadline_ms', [0, 2001, 65535])
 def test_a_deadline_beyond_reason_is_refused(armed, deadline_ms):
-    armed.say(Setpoint(deadline_ms, MOVED))
+    armed.send(Setpoint(deadline_ms, MOVED))
     assert [fault.code for fault in armed.faults()] == [FaultCode.BAD_DEADLINE]
     assert armed.counts() == PARK
 

@@ -89,7 +89,7 @@ def test_a_machine_that_a_host_has_armed_is_the_hosts_until_its_deadline_passes(
     loaded.arm(START)
     loaded.press_start()
     assert loaded.state().mode is Mode.ARMED
-    loaded.say(Setpoint(300, START))
+    loaded.send(Setpoint(300, START))
     loaded.press_start()
     assert loaded.state().mode is Mode.ARMED
     loaded.run(0.3)
@@ -103,7 +103,7 @@ def test_a_setpoint_makes_the_machine_the_hosts(starting):
     starting.press_start()
     starting.run(1.5)
     assert starting.state().mode is Mode.ARMED
-    starting.say(Setpoint(2000, starting.counts()))
+    starting.send(Setpoint(2000, starting.counts()))
     starting.press_start()
     assert starting.state().mode is Mode.ARMED
 

@@ -113,7 +113,7 @@ def test_a_machine_that_a_host_drives_is_the_hosts(flashed):
     flashed.ask(Arm(PARK))
     flashed.run(0.3)
     for _ in range(10):
-        flashed.say(Setpoint(200, PARK))
+        flashed.send(Setpoint(200, PARK))
         flashed.run(0.05)
         flashed.board.is_start_closed = True
         flashed.run(0.05)

@@ -24,7 +24,7 @@ STEP_MV = 10  # of the chip's converter, behind the divider
 
 
 def test_stop_halts_at_once_and_latches(armed):
-    armed.say(Setpoint(1000, FAR))
+    armed.send(Setpoint(1000, FAR))
     armed.run(0.06)
     moving = np.array(armed.board.pulses)
     assert armed.ask(Stop()) is Result.OK
@@ -33,7 +33,7 @@ def test_stop_halts_at_once_and_latches(armed):
     assert np.all(np.abs(stopped - moving) <= 252)
     armed.run(0.5)
     assert armed.board.pulses == stopped
-    armed.say(Setpoint(1000, FAR))
+    armed.send(Setpoint(1000, FAR))
     assert [fault.code for fault in armed.faults()] == [FaultCode.NOT_ARMED]
     assert armed.ask(Arm(PARK)) is Result.STOPPED
     armed.run(0.1)
@@ -41,7 +41,7 @@ def test_stop_halts_at_once_and_latches(armed):
 
 
 def test_clear_moves_nothing_and_lets_a_new_setpoint_through(armed):
-    armed.say(Setpoint(1000, FAR))
+    armed.send(Setpoint(1000, FAR))
     armed.run(0.06)
     armed.ask(Stop())
     before = armed.board.pulses
@@ -49,14 +49,14 @@ def test_clear_moves_nothing_and_lets_a_new_setpoint_through(armed):
     armed.run(1.5)
     assert armed.board.pulses == before
     assert armed.state().mode is Mode.ARMED
-    armed.say(Setpoint(1000, PARK))
+    armed.send(Setpoint(1000, PARK))
     armed.run(0.5)
     assert armed.counts() == PARK
 
 
 def test_stop_while_arming_leaves_the_rest_off_and_clear_releases(driver):
     driver.run(0.4)
-    driver.say(Arm(PARK))
+    driver.send(Arm(PARK))
     driver.run(0.2)
     driver.ask(Stop())
     driver.run(1.0)

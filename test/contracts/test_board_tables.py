@@ -76,7 +76,7 @@ def test_after_a_program_a_board_that_nobody_drives_does_what_its_machine_says(
 ):
     driver = make_driver(on_link_loss=on_link_loss)
     driver.arm()
-    driver.say(Setpoint(2000, PARK))
+    driver.send(Setpoint(2000, PARK))
     assert driver.upload([PARK, MOVED, PARK], 100) is Result.OK
     assert driver.ask(Play(Program.TABLE, False)) is Result.OK
     modes, counts = driver.record(4.0)
@@ -103,7 +103,7 @@ def test_a_table_that_did_not_arrive_whole_is_not_played(armed):
 
 def test_a_row_that_is_repeated_because_its_answer_was_lost_counts_once(armed):
     armed.ask(TableBegin(2, 50))
-    sequence = armed.say(TableRow(0, PARK))
+    sequence = armed.send(TableRow(0, PARK))
     armed.run(0.04)
     assert armed.ask(TableRow(0, PARK), sequence) is Result.OK
     assert armed.ask(TableRow(1, PARK)) is Result.OK
@@ -113,6 +113,21 @@ def test_a_row_that_is_repeated_because_its_answer_was_lost_counts_once(armed):
 def test_a_table_larger_than_the_memory_is_refused(armed):
     assert armed.ask(TableBegin(449, 50)) is Result.TOO_LARGE
     assert armed.ask(TableBegin(448, 50)) is Result.OK
+
+
+def test_the_joints_take_half_a_second_to_the_first_row_slow_fast_slow(armed):
+    there = tuple(count + 100 for count in PARK)
+    assert armed.upload([there, there]) is Result.OK
+    assert armed.ask(Play(Program.TABLE, True)) is Result.OK
+    _, counts = armed.record(1.0)
+    moved = counts[:, 0] - PARK[0]
+    start = np.flatnonzero(moved)[0] - 1
+    shares = np.arange(26) / 25
+    expected = 100 * shares**2 * (3 - 2 * shares)
+    seen = moved[max(start, 0) : max(start, 0) + 26]
+    shifts = [np.abs(np.roll(expected, k)[3:-3] - seen[3:-3]).max() for k in (-2, -1, 0, 1)]
+    assert min(shifts) < 1.0
+    assert moved[-1] == 100
 
 
 @pytest.mark.parametrize(('joints', 'rows'), [(6, 448), (8, 336)])
@@ -189,7 +204,7 @@ def test_a_stop_ends_a_program_at_once(loaded):
 def test_setpoints_are_refused_while_it_plays_and_arm_takes_over(loaded):
     loaded.ask(Play(Program.TABLE, True))
     loaded.run(2.5)
-    loaded.say(Setpoint(200, PARK))
+    loaded.send(Setpoint(200, PARK))
     (fault,) = loaded.faults()
     assert (fault.code, fault.value) == (FaultCode.NOT_ARMED, Mode.PLAYING)
     assert loaded.ask(TableBegin(2, 50)) is Result.NO_PROGRAM

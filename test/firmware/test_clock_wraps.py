@@ -84,10 +84,10 @@ def test_a_deadline_is_kept_over_every_wrap(before):
     host.arm()
     start = host.chip.seconds
     while host.chip.seconds < start + 1.5:
-        host.say(Setpoint(100, PARK))
+        host.send(Setpoint(100, PARK))
         messages = host.run(0.08)
         assert {m.mode for m in messages if isinstance(m, State)} == {Mode.ARMED}
-    host.say(Setpoint(100, PARK))
+    host.send(Setpoint(100, PARK))
     held = [m.mode for m in host.run(0.2) if isinstance(m, State)].index(Mode.HOLDING)
     assert held in (5, 6)
 
@@ -95,7 +95,7 @@ def test_a_deadline_is_kept_over_every_wrap(before):
 def test_a_low_battery_has_half_a_second_over_every_wrap(before):
     host = before(30)
     host.arm()
-    host.say(Setpoint(2000, PARK))
+    host.send(Setpoint(2000, PARK))
     host.board.battery_mv = 5900
     start = host.chip.seconds
     while FaultCode.UNDERVOLTAGE not in [m.code for m in host.run(0.02) if isinstance(m, Fault)]:

@@ -22,7 +22,7 @@ LONGEST_FRAME = 0.0025
 def answer_time(host, command):
     """Seconds from the command to its ACK, which must be OK."""
     host.run(0.05)
-    sequence, start = host.say(command), host.chip.seconds
+    sequence, start = host.send(command), host.chip.seconds
     while True:
         for message in host.run(0.0005):
             if isinstance(message, Ack) and message.sequence == sequence:
@@ -35,7 +35,7 @@ def test_the_longest_table_is_taken_and_played_within_milliseconds(armed):
     rows = [tuple(c + k % 40 for c in PARK) for k in range(448)]
     times = [answer_time(armed, TableBegin(len(rows), 50))]
     for index, row in enumerate(rows):
-        armed.say(TableRow(index, row))
+        armed.send(TableRow(index, row))
         armed.run(0.003)
     times.append(answer_time(armed, TableEnd(table_crc(rows))))
     times.append(answer_time(armed, Arm(PARK)))

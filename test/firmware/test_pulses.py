@@ -18,7 +18,7 @@ def test_sixty_seconds_of_traffic_move_no_edge_by_more_than_half_a_microsecond(a
     rng = random.Random(3)
     widths, periods, last = [], [], None
     for k in range(6000):
-        armed.say(Setpoint(200, PARK))
+        armed.send(Setpoint(200, PARK))
         if k % 5 == 0:
             armed.board.feed(rng.randbytes(rng.randrange(30)))
         armed.run(rng.uniform(0.005, 0.015))
@@ -45,7 +45,7 @@ def test_a_setpoint_at_any_phase_makes_only_whole_pulses_of_one_setpoint(armed):
     frame_counts = 2 * 40 * len(encode(Setpoint(200, PARK), 5))
     for k, phase in enumerate(phases()):
         armed.run_to_phase((phase - frame_counts) % 40_000)
-        armed.say(Setpoint(1000, choices[k % 2]))
+        armed.send(Setpoint(1000, choices[k % 2]))
         armed.run(0.025)
         sent = armed.pulse_counts()
         assert set(sent) <= set(choices), f'at phase {phase}'
@@ -55,7 +55,7 @@ def test_a_setpoint_at_any_phase_makes_only_whole_pulses_of_one_setpoint(armed):
 @pytest.mark.parametrize('phase', [0, 500, 1499, 2900, 3001, 20_000, 37_999, 38_001, 39_999])
 def test_switching_off_cuts_no_pulse_short(armed, phase):
     armed.run_to_phase(phase)
-    armed.say(Disarm())
+    armed.send(Disarm())
     armed.run(0.1)
     assert set(armed.pulse_counts()) == {PARK}
     assert armed.board.pulses == (None,) * 6
@@ -69,11 +69,11 @@ def test_no_pulse_comes_at_power_up_or_after_any_reset(host):
 
 
 def test_a_stop_frame_holds_the_pulses_within_one_period(armed):
-    armed.say(Setpoint(1000, (4800,) * 6))
+    armed.send(Setpoint(1000, (4800,) * 6))
     armed.run(0.05)
     armed.pulses()
     asked = armed.chip.cycle
-    armed.say(Stop())
+    armed.send(Stop())
     armed.run(0.3)
     rises, widths = armed.pulses()
     counts = np.rint(widths / COUNT)  # the simulation is exact to a few cycles

@@ -16,7 +16,7 @@ FAR = (4800, 1200, 4800, 1200, 4800, 1200)
 @pytest.mark.parametrize('rate', [400, 800])
 def test_no_setpoint_is_lost_at_250000_baud(armed, rate):
     for k in range(3 * rate):
-        armed.say(Setpoint(200, tuple(count + k % 100 for count in PARK)))
+        armed.send(Setpoint(200, tuple(count + k % 100 for count in PARK)))
         armed.run(1 / rate)
     state = armed.state()
     assert state.echo == armed.sequence
@@ -27,7 +27,7 @@ def test_no_setpoint_is_lost_at_250000_baud(armed, rate):
 
 @pytest.mark.parametrize('deadline_ms', [20, 200])
 def test_link_loss_is_held_within_the_deadline_and_one_period(armed, deadline_ms):
-    armed.say(Setpoint(deadline_ms, FAR))
+    armed.send(Setpoint(deadline_ms, FAR))
     silent_from = armed.chip.cycle
     while armed.last_state.mode is not Mode.HOLDING:
         armed.run(0.001)
@@ -52,7 +52,7 @@ def test_uptime_counts_milliseconds(host):
 
 
 def test_echo_age_is_exact_and_saturates(armed):
-    armed.say(Setpoint(2000, PARK))
+    armed.send(Setpoint(2000, PARK))
     ages = [m.echo_age_us for m in armed.run(0.08) if isinstance(m, State)][1:]
     assert {b - a for a, b in pairwise(ages)} == {20_000}
     armed.run(0.1)

@@ -1,5 +1,7 @@
-"""A client that enables a machine, in simulated time: no graph, but what its bridge would say."""
+"""A client in simulated time: no graph, but what its bridge and its trajectory would publish."""
 
+import subprocess
+import sys
 from types import SimpleNamespace
 from unittest.mock import MagicMock
 
@@ -9,9 +11,9 @@ pytest.importorskip('rclpy')
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from hexarm import client
-from hexarm.client import DRIVEN_WITHIN, Client, NotReady
-from manipulator.errors import Refused
+from hexarm import graph_client
+from hexarm.client import DRIVEN_WITHIN, Client, Pursued
+from manipulator.errors import Refused, Stopped, TimedOut
 
 SAID_EVERY = 0.5
 
@@ -48,7 +50,7 @@ def enabling(monkeypatch):
 
     def make(bridge):
         clock = SimpleNamespace(now=0.0)
-        monkeypatch.setattr(client, 'time', SimpleNamespace(monotonic=lambda: clock.now))
+        monkeypatch.setattr(graph_client, 'time', SimpleNamespace(monotonic=lambda: clock.now))
         made.append(Enabling(bridge, clock))
         return made[-1]
 
@@ -77,11 +79,82 @@ def test_enabling_ends_with_the_reason_where_the_machine_is_stopped_meanwhile(en
 
 
 def test_a_machine_that_is_enabled_but_not_driven_is_not_waited_for_for_ever(enabling):
-    with pytest.raises(NotReady, match='timed out after 15 s, waiting for enabling'):
+    with pytest.raises(TimedOut, match='timed out after 15 s, waiting for enabling'):
         enabling(lambda seconds: ('enabled', '', 'disabled')).enable()
 
 
 def test_a_board_that_is_not_there_is_named(enabling):
     gone = ('disconnected', '/dev/ttyUSB7 does not exist', '')
-    with pytest.raises(NotReady, match=r'waiting for the board .*/dev/ttyUSB7 does not exist'):
+    with pytest.raises(TimedOut, match=r'waiting for the board .*/dev/ttyUSB7 does not exist'):
         enabling(lambda seconds: gone).enable()
+
+
+class GoingHome(Client):
+    """Receives one of `statuses` (goal_stamp, result) at each wait; its request is answered."""
+
+    def __init__(self, *statuses):
+        super().__init__('simulated')
+        self.statuses = list(statuses)
+        self.node.create_client = MagicMock()
+
+    def spin(self, seconds):
+        stamp, result = self.statuses.pop(0)
+        self._on_motion_status(status(result, goal_stamp=stamp, result=result))
+
+    def answer_of(self, *_):
+        return SimpleNamespace(success=True, message='going home, goal_stamp 7.000000000')
+
+
+def test_home_does_not_take_the_result_of_an_older_goal_for_its_own():
+    home = '7.000000000'
+    with GoingHome(('5.0', 'reached'), (home, 'moving'), (home, 'reached')) as user:
+        user.home()
+        assert not user.statuses
+
+
+def test_home_that_is_stopped_raises_the_reason():
+    home = '7.000000000'
+    with GoingHome((home, 'moving'), (home, 'stopped')) as user, pytest.raises(Stopped):
+        user.home()
+
+
+def goal(stamp, result, reason=''):
+    return status(f'{result}: {reason}', goal_stamp=stamp, result=result, reason=reason)
+
+
+@pytest.mark.parametrize('result', ['moving', 'reached', 'stopped'])
+def test_a_goal_whose_place_another_has_taken_is_stopped(result):
+    pursued = Pursued('1.0')
+    pursued.note(goal('1.0', 'moving'))
+    pursued.note(goal('2.0', result))
+    assert (pursued.result, pursued.text) == ('stopped', 'another goal took its place')
+
+
+def test_a_refusal_or_the_planning_of_another_goal_does_not_end_one():
+    pursued = Pursued('1.0')
+    for other in (goal('0.5', 'reached'), goal('1.0', 'moving'), goal('2.0', 'planning')):
+        pursued.note(other)
+    pursued.note(goal('2.0', 'refused', 'out of reach'))
+    assert pursued.result == 'moving'
+    pursued.note(goal('1.0', 'reached'))
+    pursued.note(goal('3.0', 'moving'))
+    assert pursued.result == 'reached'
+
+
+def test_the_text_of_a_refusal_is_its_reason():
+    pursued = Pursued('1.0')
+    pursued.note(goal('1.0', 'refused', 'leg 5: rod too short'))
+    assert pursued.text == 'leg 5: rod too short'
+
+
+def test_a_client_that_cannot_leave_the_graph_does_not_keep_its_process():
+    """Fast DDS now and then waits for itself, with the interpreter's lock."""
+    program = (
+        'import ctypes\n'
+        'from hexarm import graph_client\n'
+        'graph_client.LEAVES_WITHIN = 0.5\n'
+        'with graph_client.GraphClient("simulated") as client:\n'
+        '    client.node.destroy_node = lambda: ctypes.PyDLL(None).sleep(600)\n'
+    )
+    done = subprocess.run([sys.executable, '-c', program], check=False, timeout=120)
+    assert done.returncode == 1

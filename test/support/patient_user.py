@@ -2,8 +2,8 @@
 
 import contextlib
 
-from hexarm.client import Client, NotReady, Stopped
-from manipulator.errors import Refused
+from hexarm.client import Client
+from manipulator.errors import Refused, Stopped, TimedOut
 
 PATIENCE = 60.0
 TRIES = 10
@@ -29,7 +29,7 @@ class PatientUser(Client):
             self.patience = 0.0
             try:
                 return super().answer_of(client, request, what)
-            except NotReady as error:
+            except TimedOut as error:
                 last = error
             finally:
                 self.patience = PATIENCE
@@ -41,11 +41,11 @@ class PatientUser(Client):
         return process.returncode, process.communicate()[0]
 
     def wait_while_driven(self, what, is_so):
-        """As `wait`, for `persist`: NotReady at once where the machine is lost meanwhile."""
+        """As `wait`, for `persist`: TimedOut at once where the machine is lost meanwhile."""
         before = self.losses
         self.wait(what, lambda: is_so() or self._has_lost(before))
         if not is_so():
-            raise NotReady(f'the machine was lost, waiting for {what} ({self.summary})')
+            raise TimedOut(f'the machine was lost, waiting for {what} ({self.summary})')
 
     def wait_driven(self, what, is_so):
         """As `wait`; a machine that is lost meanwhile is made ready again."""
@@ -60,9 +60,9 @@ class PatientUser(Client):
             before = self.losses
             try:
                 return ask()
-            except (Refused, Stopped, NotReady, AssertionError) as error:
+            except (Refused, Stopped, TimedOut, AssertionError) as error:
                 self.spin(SOON)  # a motion is reported as stopped before its reason is
-                if not self._has_lost(before) and not isinstance(error, NotReady):
+                if not self._has_lost(before) and not isinstance(error, TimedOut):
                     raise
             self.make_ready()
         return ask()
@@ -70,7 +70,7 @@ class PatientUser(Client):
     def make_ready(self):
         """Enabled and able to move, whatever a stall, or the last test, left."""
         for _ in range(TRIES - 1):
-            with contextlib.suppress(Refused, NotReady):
+            with contextlib.suppress(Refused, TimedOut):
                 return self._make_ready()
         return self._make_ready()
 
@@ -82,7 +82,7 @@ class PatientUser(Client):
             self.enable()
         self.wait('goals', lambda: self._takes_goals() or self._is_off())
         if self._is_off():
-            raise NotReady(f'the machine was lost, being enabled ({self.summary})')
+            raise TimedOut(f'the machine was lost, being enabled ({self.summary})')
 
     def _takes_goals(self):
         return self.motion('mode') not in ('', 'disabled')

@@ -23,9 +23,9 @@ from bridge.fake.faults import Faults
 from bridge.fake.plant import Plant
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.client import ENABLING, Client, NotReady
+from hexarm.client import ENABLING, Client
 from hexarm.graph import Graph, machine_graph
-from manipulator.errors import ManipulatorError, Refused
+from manipulator.errors import ManipulatorError, Refused, TimedOut
 from manipulator.states import MotionMode
 from tapped_line import Tap, TappedLine
 
@@ -194,10 +194,10 @@ class Rig:
     def enable(self) -> None:
         """Repeats a request where the bridge has ended, or lost its board on a busy computer."""
         for _ in range(TRIES):
-            with contextlib.suppress(NotReady, Refused):
+            with contextlib.suppress(TimedOut, Refused):
                 self.user.enable()
                 return
-        raise NotReady(f'not enabled in {TRIES} tries: {self.user.summary}')
+        raise TimedOut(f'not enabled in {TRIES} tries: {self.user.summary}')
 
     def circle(self, seconds: float) -> None:
         """Has the platform circle about home for a while; again, where this computer stalls."""
@@ -220,7 +220,7 @@ class Rig:
                     return
             except ManipulatorError as error:
                 last = error
-        raise NotReady(f'no circle in {TRIES} tries ({last}): {self.user.summary}')
+        raise TimedOut(f'no circle in {TRIES} tries ({last}): {self.user.summary}')
 
     def stop_time(self, name: str, number: int) -> float:
         """Seconds from a signal to a process until the servo targets are at rest."""
@@ -229,7 +229,7 @@ class Rig:
         return self.recorder.standstill(signalled, FROZEN) - signalled
 
     def set_parameters(self, node: str, values: Mapping[str, Sequence[float]]) -> None:
-        """Of a node; NotReady where it refuses one."""
+        """Of a node; TimedOut where it refuses one."""
         kind = ParameterType.PARAMETER_DOUBLE_ARRAY
         request = SetParameters.Request(
             parameters=[
@@ -244,7 +244,7 @@ class Rig:
         self.user.node.destroy_client(client)
         refused = [r.reason for r in future.result().results if not r.successful]
         if refused:
-            raise NotReady(f'{node}: {refused[0]}')
+            raise TimedOut(f'{node}: {refused[0]}')
 
     def _end_all(self) -> None:
         for name in self._graphs:

@@ -10,8 +10,8 @@ from world.world import World
 def make_world():
     """A world of a machine, enabled: `make_world('robocake')`."""
 
-    def make(name='robocake'):
-        world = World(name)
+    def make(name='robocake', hysteresis=None):
+        world = World(name, hysteresis=hysteresis)
         world.enable()
         return world
 

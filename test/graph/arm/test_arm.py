@@ -10,11 +10,14 @@ import textwrap
 
 import numpy as np
 import pytest
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
 from std_msgs.msg import Bool, Float64
 
 from hexarm.machines import load
 from manipulator.nodes.messages import joints_of
 from manipulator.nodes.qos import COMMAND, EVERY_WORD
+from manipulator.pose import Pose
 from manipulator.trajectory.path import arc
 
 pytestmark = pytest.mark.graph
@@ -30,6 +33,34 @@ def test_goal_is_reached_and_the_encoders_report_so(arm, listen):
     def is_there():
         error = received.poses[-1].twist_to(goal) if received.messages else np.ones(6)
         return np.abs(error[:3]).max() < 5e-4 and np.abs(error[3:]).max() < np.radians(0.05)
+
+    arm.wait('the joints', is_there)
+
+
+def test_a_goal_that_is_a_point_holds_the_orientation_where_the_parameter_says_so(arm, listen):
+    client = arm.node.create_client(SetParameters, 'trajectory/set_parameters')
+    arm.wait('the service', client.service_is_ready)
+
+    def choose(name):
+        value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=name)
+        parameter = Parameter(name='goal_orientation', value=value)
+        answer = arm.answer_of(client, SetParameters.Request(parameters=[parameter]), 'the change')
+        return answer.results[0]
+
+    refused = choose('straight')
+    assert not refused.successful
+    assert 'is not one of given, hold_orientation, parallel, look_at' in refused.reason
+    arm.reach_home()
+    assert choose('hold_orientation').successful
+    try:
+        arm.reach(Pose(HOME.position + np.array([0.05, 0.0, 0.05]), np.eye(3)))
+    finally:
+        assert choose('given').successful
+    received = listen()
+
+    def is_there():
+        error = received.poses[-1].twist_to(HOME) if received.messages else np.ones(6)
+        return abs(error[0] + 0.05) < 5e-4 and np.abs(error[3:]).max() < np.radians(0.05)
 
     arm.wait('the joints', is_there)
 

@@ -203,9 +203,10 @@ def test_listener_that_no_goal_can_reach_keeps_nobody_waiting(user):
     user.wait('its end', lambda: user.spin(0.1) or user.node.count_subscribers('goal_pose') == 1)
 
 
-def run_example(user, name, *words):
-    example = [sys.executable, f'examples/{name}.py', *words]
-    assert user.end_of(subprocess.Popen(example, cwd=ROOT))[0] == 0
+def run_program(user, line):
+    program = f'from hexarm import Robot\nwith Robot("/hexapod") as robot: {line}'
+    process = subprocess.Popen([sys.executable, '-c', program], cwd=ROOT)
+    assert user.end_of(process)[0] == 0
 
 
 def test_recorder_of_commands_is_not_taken_for_the_machine(user, hexarm, tmp_path):
@@ -213,9 +214,9 @@ def test_recorder_of_commands_is_not_taken_for_the_machine(user, hexarm, tmp_pat
     user.make_ready()
     recorder = hexarm('record', 'hexapod', '--commands', '-o', str(path))
     user.wait('the recorder', lambda: user.node.count_subscribers('goal_pose') > 1)
-    for z in ('0.043', '0.045', '0.047'):
-        user.persist(lambda z=z: run_example(user, 'publish_pose', '0', '0', z))
-    run_example(user, 'stop', '--emergency')
+    for z in (0.043, 0.045, 0.047):
+        user.persist(lambda z=z: run_program(user, f'robot.move_to((0, 0, {z}))'))
+    run_program(user, 'robot.emergency_stop()')
     recorder.send_signal(signal.SIGINT)
     ends_with(recorder, 0)
     user.trigger('serial_bridge/clear_fault')

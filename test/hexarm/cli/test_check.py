@@ -320,6 +320,9 @@ def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
     head, warning, home = capsys.readouterr().out.splitlines()
     assert head == f'{path}: no problems, 1 warning'
     assert warning.startswith('warning: servos.joints: crank_1, crank_2')
-    assert home == 'joints at home: 120.0  120.0  120.0  120.0  120.0  120.0°'
+    assert home == f'joints at home: {"  ".join(["2.094473"] * 6)} rad'
+    assert main(['check', str(path), '--units', 'mm']) == 0
+    home = capsys.readouterr().out.splitlines()[-1]
+    assert home == f'joints at home: {"  ".join(["120.0045"] * 6)} °'
     assert main(['check', 'stewart_6_6']) == 0
-    assert '190.0  190.0 mm' in capsys.readouterr().out
+    assert '0.190000  0.190000 m' in capsys.readouterr().out

@@ -3,8 +3,7 @@
 import pytest
 
 from hexarm.cli.demo import drive
-from hexarm.client import NotReady, Stopped
-from manipulator.errors import Refused
+from manipulator.errors import Refused, Stopped, TimedOut
 from manipulator.pose import Pose
 
 GOAL = Pose.from_xyz_rpy((0.0, 0.0, 0.049))
@@ -37,7 +36,7 @@ def test_a_machine_that_stopped_or_was_not_ready_is_asked_again(capsys):
 
 
 def test_a_refusal_that_was_to_be_expected_is_not_asked_for_again():
-    client = StallingClient(NotReady('no answer'), Refused('out of reach'))
+    client = StallingClient(TimedOut('no answer'), Refused('out of reach'))
     with pytest.raises(Refused, match='out of reach'):
         drive(client, GOAL, is_possible=False)
     assert client.goals == [GOAL] * 2

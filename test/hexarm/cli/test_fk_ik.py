@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hexarm.cli.main import main
+from hexarm.cli.statuses import OUT_OF_REACH
 from hexarm.machines import load
 from manipulator.pose import Pose
 
@@ -54,6 +55,31 @@ def test_table_of_modes_reports_which_the_machine_can_be_in(capsys):
     assert 'margin' in header
     assert len([row for row in rows if row.endswith('reachable')]) == 1
     assert last == f'{len(rows)} modes, 1 reachable within all limits'
+
+
+def test_units_are_those_of_what_is_typed_and_printed(ask, capsys):
+    metres = ask('ik', 'ur5', '--xyz', '-0.3', '0.2', '0.3', '--rpy', '0.1', '0', '0')
+    words = ['--xyz', '-300', '200', '300', '--rpy', str(np.degrees(0.1)), '0', '0']
+    millimetres = ask('ik', 'ur5', *words, '--units', 'mm')
+    np.testing.assert_allclose(
+        millimetres['joints']['positions'], metres['joints']['positions'], atol=1e-9
+    )
+    assert main(['ik', 'ur5', *words, '--units', 'mm']) == 0
+    name, number, unit = capsys.readouterr().out.splitlines()[0].split()
+    assert (name, unit) == ('joint_1', '°')
+    assert float(number) == pytest.approx(np.degrees(metres['joints']['positions'][0]), abs=1e-3)
+    assert main(['fk', 'stewart_6_6', *['190'] * 6, '--units', 'mm']) == 0
+    in_mm = capsys.readouterr().out.splitlines()[0].split()
+    assert main(['fk', 'stewart_6_6', *['0.19'] * 6]) == 0
+    in_m = capsys.readouterr().out.splitlines()[0].split()
+    assert (in_mm[-1], in_m[-1]) == ('mm', 'm')
+    assert float(in_mm[-2]) == pytest.approx(1e3 * float(in_m[-2]), abs=1e-3)
+
+
+def test_out_of_reach_has_one_exit_status(capsys):
+    for command in ('ik', 'reach'):
+        assert main([command, 'robocake', '--xyz', '0.04', '0', '0.045']) == OUT_OF_REACH
+        assert main([command, 'robocake', '--xyz', 'nan', '0', '0.045']) == 2
 
 
 def test_serial_arms_have_one_mode(ask):
@@ -108,7 +134,7 @@ def test_joints_that_no_machine_has_are_refused_with_status_2(capsys, words):
 
 
 def test_ik_asks_whether_millimetres_or_degrees_were_meant(capsys):
-    assert main(['ik', 'ur5', '--xyz', '300', '0', '400']) == 2
+    assert main(['ik', 'ur5', '--xyz', '300', '0', '400']) == OUT_OF_REACH
     assert 'are these millimetres?' in capsys.readouterr().err
     assert main(['ik', 'ur5', '--xyz', '0.3', '0', '0.4', '--rpy', '0', '90', '0']) == 2
     assert 'pitch: 90 rad is more than a turn; are these degrees?' in capsys.readouterr().err

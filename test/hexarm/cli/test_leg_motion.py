@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from hexarm.cli.main import main
+from hexarm.cli.statuses import OUT_OF_REACH
 
 PAPER = ['--legs', '0.15', '--to', '0.02', '0.02', '0.2']
 
@@ -30,6 +31,9 @@ def test_figures_of_the_experiment(capsys, machine, height, axis, vector, degree
     assert np.degrees(reported['deviation']['angle']) == pytest.approx(degrees, abs=1e-4)
     assert np.ptp(np.diff(reported['lengths'], axis=0), axis=0).max() < 1e-12
     assert reported['beyond_a_limit'] is None
+    alpha, beta, gamma = np.degrees(reported['euler_zxz']).T
+    assert np.abs([alpha, gamma]).max() < 0.35
+    assert beta.min() == pytest.approx(-degrees, abs=1e-4)
 
 
 def test_table_has_eleven_steps_and_the_deviation(capsys):
@@ -60,7 +64,7 @@ def test_without_legs_the_motion_starts_at_home(capsys):
     ],
 )
 def test_what_cannot_be_simulated_is_refused_with_a_reason(capsys, words, reason):
-    assert main(['leg-motion', *words]) == 2
+    assert main(['leg-motion', *words]) == (OUT_OF_REACH if reason.startswith('leg 1') else 2)
     assert reason in capsys.readouterr().err
 
 

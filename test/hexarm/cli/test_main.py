@@ -55,6 +55,14 @@ def test_command_without_ros_reports_what_it_needs(tmp_path):
     assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.mark.parametrize('words', [('hexapod', '--port', '/dev/nothing'), ('ur5', '--port', '/x')])
+def test_a_port_that_does_not_exist_is_named_once_and_before_anything_starts(words, capsys):
+    assert main(['up', *words]) == 1
+    said = capsys.readouterr().err
+    assert f'port {words[-1]} does not exist' in said
+    assert said.count('\n') == 1
+
+
 @pytest.mark.parametrize('command', ['accuracy', 'workspace'])
 def test_picture_of_an_unknown_ending_is_refused_before_anything_is_worked_out(command, capsys):
     with pytest.raises(SystemExit) as refusal:

@@ -7,8 +7,7 @@ import pytest
 pytest.importorskip('rclpy')
 
 from hexarm.cli.up import Interrupted, park
-from hexarm.client import Stopped
-from manipulator.errors import Refused
+from manipulator.errors import Refused, Stopped
 
 
 class User:

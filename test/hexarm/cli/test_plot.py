@@ -57,7 +57,11 @@ def conversation():
         yield t + 0.002, 'joint_states', JointState(name=known, position=positions)
     yield 3.0, 'goal_pose', stamped(Pose.from_xyz_rpy((9.0, 0.0, 0.0), (0.0, 0.0, -1.2)))
     for t in (3.01, 3.02):
-        refused = {'result': 'refused', 'reason': 'leg 3: rod too short', 'goal_stamp': '1'}
+        refused = {
+            'result': 'refused',
+            'reason': 'leg 3: rod too short',
+            'goal_stamp': f'{START * 1e-9 + 3.0:.9f}',
+        }
         yield t, 'motion_status', status(**refused)
     yield 5.0, 'emergency_stop', Bool(data=True)
     yield 5.1, 'machine_state', status(message='stopped', reason='somebody pressed it')
@@ -71,9 +75,9 @@ def type_of(message):
     return f'{package}/msg/{type(message).__name__}'
 
 
-def write(path, spaces=('hexapod',), is_finished=True):
+def write(path, spaces=('hexapod',), is_finished=True, said=conversation):
     bag = Bag(path)
-    for t, name, message in sorted(conversation(), key=lambda row: row[0]):
+    for t, name, message in sorted(said(), key=lambda row: row[0]):
         for space in spaces:
             topic = name if name.startswith('/') else f'/{space}/{name}'
             if topic not in bag.counts:
@@ -119,6 +123,24 @@ def test_refusals_of_goals_and_of_nodes_are_counted_once(recording, tmp_path, ca
         ('ik', 'refused', 'leg 1 at 6'),
         ('ik', 'refused', 'leg 1 at 8'),
     ]
+
+
+def test_what_was_refused_before_the_recording_is_not_counted(tmp_path, capsys):
+    """A late subscriber receives the last status, and nodes count from their own beginning."""
+    stamp = f'{START * 1e-9 - 60.0:.9f}'
+    old = status(result='refused', reason='leg 1: an hour ago', goal_stamp=stamp)
+    node = status('hexapod/ik', setpoints_refused='7', last_refusal='an hour ago')
+
+    def said():
+        yield 0.001, 'motion_status', old
+        yield 0.5, '/diagnostics', DiagnosticArray(status=[node])
+        yield from (row for row in conversation() if row[1] != '/diagnostics')
+
+    path = write(tmp_path / 'later.mcap', said=said)
+    assert plotted(capsys, path, '--csv', tmp_path)['refused'] == 1
+    reasons = [row['reason'] for row in table(tmp_path / 'events.csv')]
+    assert 'leg 3: rod too short' in reasons
+    assert not any('an hour ago' in reason for reason in reasons)
 
 
 def test_tables_hold_what_was_reported_in_radians_and_metres(recording, tmp_path, capsys):

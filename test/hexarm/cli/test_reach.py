@@ -51,7 +51,8 @@ def test_people_read_the_limits_and_the_nearest_pose(capsys, machine):
     assert main(['reach', machine, '--xyz', '0', '0', '3']) == OUT_OF_REACH
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith('out of reach: ')
-    assert lines[-1].startswith('nearest reachable   x ')
+    assert lines[-3] == 'nearest reachable'
+    assert lines[-2].startswith('x, y, z ')
 
 
 def test_millimetres_are_asked_about_and_written_without_powers_of_ten(capsys):

@@ -13,7 +13,7 @@ from geometry_msgs.msg import PointStamped, TwistStamped
 from sensor_msgs.msg import JointState
 
 from hexarm.machines import load
-from manipulator.errors import InvalidInput
+from manipulator.errors import InvalidInput, Refused
 from manipulator.message_filter import StaleMessage, StampFilter
 from manipulator.nodes.messages import (
     goal_of,
@@ -24,6 +24,7 @@ from manipulator.nodes.messages import (
     pose_of,
     twist_of,
 )
+from manipulator.nodes.parameters import choice
 from manipulator.pose import Pose
 
 BAD = (math.nan, math.inf, -math.inf)
@@ -164,3 +165,23 @@ def test_a_stamp_from_anywhere_is_refused_or_believed_and_the_next_good_one_work
         except StaleMessage:
             refused += 1
     assert refused <= 3
+
+
+def test_a_goal_of_zeros_for_its_quaternion_is_a_point_where_no_orientation_is_asked_for():
+    message = pose_message(Pose.from_xyz_rpy((0.1, 0.2, 0.3), (0.1, 0.2, 0.3)), Time())
+    q = message.pose.orientation
+    q.x = q.y = q.z = q.w = 0.0
+    with pytest.raises(InvalidInput, match='quaternion has length 0'):
+        pose_of(message)
+    assert pose_of(message, is_oriented=False).position.tolist() == [0.1, 0.2, 0.3]
+    q.w = math.nan
+    with pytest.raises(InvalidInput, match='qw is nan'):
+        pose_of(message, is_oriented=False)
+
+
+@pytest.mark.parametrize('name', ['goal_motion', 'goal_orientation'])
+@pytest.mark.parametrize('value', ['', 'straight', 3, HUGE])
+def test_an_unknown_choice_is_refused_with_the_known_ones(name, value):
+    with pytest.raises(Refused, match=f'parameter {name}: .* is not one of ') as raised:
+        choice(name, value)
+    assert len(str(raised.value)) < 300

@@ -9,12 +9,13 @@ import pytest
 pytest.importorskip('nav_msgs')
 
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import PoseStamped, Quaternion
 from nav_msgs.msg import Path
 from rclpy.serialization import deserialize_message, serialize_message
 
 from manipulator import rotation as so3
 from manipulator.errors import InvalidInput
+from manipulator.nodes.parameters import GoalParameters
 from manipulator.nodes.path_goals import (
     MOST_BYTES,
     MOST_POSES,
@@ -26,6 +27,7 @@ from manipulator.nodes.path_goals import (
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.subscriptions import decoded
 from manipulator.pose import Pose
+from manipulator.trajectory.orientation import OrientationRule
 
 STAMP = Time(sec=1_700_000_000, nanosec=123_456_789)
 
@@ -98,6 +100,15 @@ def test_too_few_or_too_many_poses_are_refused_by_their_number(count):
         path_of(message)
 
 
+def test_quaternions_of_zeros_are_accepted_only_for_points():
+    message = path_message(poses(3), STAMP)
+    message.poses[1].pose.orientation = Quaternion(x=0.0, y=0.0, z=0.0, w=0.0)
+    with pytest.raises(InvalidInput, match='pose 2: quaternion has length 0'):
+        path_of(message)
+    points, _ = path_of(message, are_oriented=False)
+    np.testing.assert_array_equal(points.position, poses(3).position)
+
+
 class Driver:
     """In place of a controller: keeps what is asked for."""
 
@@ -105,6 +116,9 @@ class Driver:
         motion = SimpleNamespace(linear=SimpleNamespace(speed=0.02))
         self.supervisor = SimpleNamespace(machine=SimpleNamespace(motion=motion))
         self.asked, self.refused = [], []
+
+    def orientation_rule(self, orientation, is_of_platform):
+        return OrientationRule(orientation)
 
     def follow(self, path, refuse, now):
         self.asked.append(path)
@@ -117,7 +131,7 @@ class Driver:
 def driver(graph):
     """One whose node receives paths; `send` publishes one."""
     node, user, made = graph.node('trajectory'), graph.node('user'), Driver()
-    PathGoals(node, made)
+    PathGoals(node, made, GoalParameters(node))
     publisher = user.create_publisher(Path, 'goal_path', COMMAND)
 
     def send(message):

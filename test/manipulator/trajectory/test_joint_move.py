@@ -1,5 +1,6 @@
 """Joint moves by definition: straight in the joints, within every limit, at the pose they say."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.joint_move import plan_joint_move
 from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.planner import Start, plan_goal
+from manipulator.trajectory.planner import Start, compared, plan_goal
 from manipulator.trajectory.worker import Effort
 
 DT = 0.01
@@ -102,6 +103,25 @@ def test_an_executor_executes_a_joint_move_on_its_joints(name):
         )
         assert len(joints) < 2000
     np.testing.assert_allclose(joints[-1], plan.joints_at(plan.duration), atol=1e-7)
+
+
+@pytest.mark.parametrize('name', ['stewart_6_6', 'robocake', 'arm_6r'])
+def test_a_plan_is_compared_with_the_other_motion_and_with_the_joints_rated_speed(name):
+    machine = load(name)
+    k = machine.kinematics
+    begin, pose = k.inverse(k.home), k.home.moved(TARGETS[name])
+    start = Start(MotionState.at_rest(k.home), begin, DT)
+    found = compared(machine, start, Goal(pose, motion=Motion.JOINT), Effort())
+    assert found.durations[Motion.JOINT] == found.plan.duration
+    line = plan_goal(machine, start, Goal(pose), Effort())
+    assert found.durations[Motion.LINE] == line.duration
+    longest = np.max(np.abs(k.inverse(pose, begin) - begin) / machine.motion.joint.speed)
+    assert found.rated == pytest.approx(longest)
+    assert found.rated < found.plan.duration
+    assert re.fullmatch(
+        r'line [\d.]+ s, joint [\d.]+ s; the joints at their speed limits alone: [\d.]+ s',
+        str(found),
+    )
 
 
 def test_a_goal_out_of_reach_is_refused_for_itself():

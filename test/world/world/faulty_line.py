@@ -32,7 +32,7 @@ class FaultyLine:
 
     def send_to_host(self, output):
         """As the cable does, for the board."""
-        self._cable.send_to_host(self._board.said(output, self._world.now))
+        self._cable.send_to_host(self._board.to_host(output, self._world.now))
 
     def _begin(self, per_minute):
         self._faults = Faults(self._seed, per_minute)
@@ -40,7 +40,7 @@ class FaultyLine:
         self._board = BoardFaults(board, self._faults, self._replug)
 
     def _hear(self, received):
-        self._world.board.on_bytes(self._board.heard(received, self._world.now))
+        self._world.board.on_bytes(self._board.to_board(received, self._world.now))
 
     def _advance(self):
         self._board.advance(self._world.now)

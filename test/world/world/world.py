@@ -25,16 +25,20 @@ MEASUREMENTS = 5
 
 
 class World:
-    """A machine by its name or the path of its file; time passes in `run` and `wait`."""
+    """A machine by its name or the path of its file; time passes in `run` and `wait`.
 
-    def __init__(self, name, boot_s=0.2):
+    hysteresis: play of each servo, rad or m; None: the machine file's.
+    """
+
+    def __init__(self, name, boot_s=0.2, hysteresis=None):
         self.machine = machines.load(name)
         self._config = config = BoardConfig.from_machine(machines.read(name))
         self.calibration = Calibration.from_config(config.servos)
         self.timeline = Timeline()
         self.bridge = None
         self.user = Process(self.timeline)
-        fake = FakeMachine.from_config(config, boot_s, hysteresis=config.hysteresis)
+        play = config.hysteresis if hysteresis is None else hysteresis
+        fake = FakeMachine.from_config(config, boot_s, hysteresis=play)
         self.board = BoardProcess(self.timeline, fake)
         self.cable = self.board.cable = Cable(self.timeline, self.board)
         nobody = self.user

@@ -17,23 +17,24 @@ def test_nearest_point_keeps_every_bound_and_pulls_only_against_what_it_touches(
         np.testing.assert_allclose(point - target, weights @ normals, atol=1e-8)
 
 
+def test_as_many_bounds_as_fit_are_met_in_a_corner():
+    """Also where a bound is there twice, or follows from others."""
+    normals = np.vstack([np.eye(6), np.eye(6), np.full((1, 6), 6**-0.5)])
+    point, weights = nearest_point(np.full(6, -1.0), normals, np.zeros(13))
+    np.testing.assert_allclose(point, 0.0, atol=1e-12)
+    np.testing.assert_allclose(weights @ normals, 1.0, atol=1e-9)
+
+
 def test_a_target_inside_is_its_own_nearest_point():
-    point, weights = nearest_point(np.array([0.1, 0.2]), np.eye(2), np.ones(2))
-    assert point == pytest.approx([0.1, 0.2])
+    target = np.arange(6) / 10
+    point, weights = nearest_point(target, np.eye(6), np.ones(6))
+    np.testing.assert_array_equal(point, target)
     assert not weights.any()
+    assert nearest_point(target, np.empty((0, 6)), np.empty(0))[0] == pytest.approx(target)
 
 
 def test_bounds_that_exclude_each_other_have_no_multipliers():
-    normals = np.array([[1.0, 0.0], [-1.0, 0.0]])
-    _, weights = nearest_point(np.zeros(2), normals, np.array([-1.0, -1.0]))
-    assert np.isnan(weights).all()
-
-
-def test_a_search_that_does_not_end_has_no_multipliers(monkeypatch):
-    def endless(*_):
-        raise RuntimeError('too many iterations')
-
-    monkeypatch.setattr('scipy.optimize.nnls', endless)
-    point, weights = nearest_point(np.array([0.1, 0.2]), np.eye(2), np.ones(2))
-    assert point == pytest.approx([0.1, 0.2])
+    normals = np.vstack([np.eye(6)[:1], -np.eye(6)[:1]])
+    point, weights = nearest_point(np.full(6, 0.3), normals, np.array([-1.0, -1.0]))
+    assert point == pytest.approx(np.full(6, 0.3))
     assert np.isnan(weights).all()

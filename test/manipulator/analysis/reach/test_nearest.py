@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -5,6 +7,11 @@ from hexapod_control.workspace import sample
 from manipulator.analysis.free_paths import admits, is_connected
 from manipulator.analysis.nearest import nearest_reachable
 from manipulator.analysis.readings import displaced, distance
+from manipulator.errors import InvalidInput
+from manipulator.framed_machine import in_frames
+from manipulator.frames import Frames
+from manipulator.limits.constraints import Constraints
+from manipulator.limits.machine_limits import JointRange
 from manipulator.pose import Pose
 from sampling import enough
 
@@ -56,6 +63,32 @@ def test_beyond_the_end_of_an_axis_by_symmetry_the_platform_is_only_raised(roboc
     found = nearest_reachable(robocake, Pose.from_xyz_rpy([0, 0, 0.075]))
     assert found.pose.position[2] == pytest.approx(0.04119 + 17.910e-3, abs=2e-6)
     assert np.abs(found.pose.position[:2]).max() < 1e-6
+
+
+def test_the_nearest_pose_is_that_of_the_pivot_in_the_work_frame(robocake):
+    """A pivot above the platform: another place is nearest; turned work axes: the same one."""
+    work = Pose.from_xyz_rpy([0.1, -0.2, 0.3], [0.2, 0.1, -0.7])
+    raised = Frames(Pose.identity()).with_pivot([0.01, 0.0, 0.05])
+    both = Frames(work).with_pivot([0.01, 0.0, 0.05])
+    generator, length = np.random.default_rng(5), robocake.kinematics.characteristic_length
+    wanted = targets(robocake, 3, 6)
+    for target in (wanted[k] for k in range(3)):
+        machine, turned = in_frames(robocake, raised), in_frames(robocake, both)
+        found = nearest_reachable(machine, target)
+        machine.constraints.check(found.pose, machine.kinematics.inverse(found.pose))
+        steps = generator.standard_normal((2000, 6)) * 1e-3 * length
+        trials = displaced(machine, found.pose, steps)
+        nearer = distance(machine, trials, target) < found.distance - TOLERANCE
+        assert not admits(machine, trials[nearer]).any()
+        again = nearest_reachable(turned, work.inverse() @ target)
+        assert again.distance == pytest.approx(found.distance, abs=TOLERANCE)
+
+
+def test_limits_that_are_not_one_platforms_are_refused(robocake):
+    free = JointRange(np.full(6, -9.0), np.full(6, 9.0), robocake.kinematics.joint_names)
+    limits = Constraints((*robocake.constraints.limits, free))
+    with pytest.raises(InvalidInput, match='limits of one platform'):
+        nearest_reachable(replace(robocake, constraints=limits), Pose.from_xyz_rpy([0, 0, 0.075]))
 
 
 def test_an_arm_stretches_towards_a_point_far_away(arm):

@@ -1,5 +1,7 @@
 """A goal is reached when the joints are there, by unit and range; else it says what is off."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -60,14 +62,21 @@ def test_an_arm_with_two_degrees_of_play_is_stopped_with_joint_and_distance():
 
 
 def test_an_arm_within_the_tolerance_reaches_its_goal():
-    arm = Machine('arm_6r_stepper', np.radians([0, 0.3, 0, 0, 0, 0]))
+    arm = Machine('arm_6r_stepper', np.radians([0, 0.02, 0, 0, 0, 0]))
     results, _ = arm.go(arm.kinematics.home.moved([0.1, 0, 0.05, 0, 0, 0]))
     assert results == ['moving', 'reached']
 
 
+def test_an_arm_whose_joints_are_near_but_whose_tool_is_not_is_stopped_with_the_distance():
+    arm = Machine('arm_6r_stepper', np.radians([0, 0.3, 0, 0, 0, 0]))
+    results, status = arm.go(arm.kinematics.home.moved([0.1, 0, 0.05, 0, 0, 0]))
+    assert results == ['moving', 'stopped']
+    assert re.match(r'the goal is missed by [\d.]+ mm and 0.3° \(tolerance 0.4 mm', status.reason)
+
+
 def test_the_tolerance_can_be_asked_for():
     machine = load('arm_6r_stepper')
-    wide = Tolerances.of(machine, goal=np.radians(3.0))
+    wide = Tolerances.of(machine, goal=np.radians(3.0), distance=0.05)
     arm = Machine('arm_6r_stepper', np.radians([0, 2.0, 0, 0, 0, 0]), wide)
     assert arm.go(arm.kinematics.home.moved([0.1, 0, 0, 0, 0, 0]))[1].result == 'reached'
 

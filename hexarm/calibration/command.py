@@ -9,7 +9,7 @@ PARTS = (servos, poses, geometry)
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand and its parts."""
-    parser = commands.add_parser('calibrate', help='set a machine file right by the machine')
+    parser = commands.add_parser('calibrate')
     parts = parser.add_subparsers(metavar='PART', title='parts', required=True)
     for part in PARTS:
         part.add_parser(parts)

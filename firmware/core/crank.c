@@ -1,0 +1,3 @@
+#include "crank.h"
+
+#include "../../kernel/crank.c"

@@ -1,0 +1,133 @@
+"""`hexarm go|home|park|pose|joints NAMESPACE`: a machine that runs, moved and measured."""
+
+import argparse
+from collections.abc import Callable
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from hexarm.cli.answers import (
+    Answer,
+    add_units,
+    answering,
+    for_programs,
+    units_of,
+    with_negatives,
+)
+from hexarm.cli.statuses import STATUSES
+from hexarm.namespaces import namespace_of
+from hexarm.robot_values import moved_to
+from manipulator.errors import ConfigError, InvalidInput, Refused, TimedOut, Unreachable
+from manipulator.pose import Pose
+
+if TYPE_CHECKING:
+    from hexarm.robot import Robot
+
+Act = Callable[['Robot', argparse.Namespace], Answer]
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommands."""
+    parser = _added(commands, 'go', go, epilog=STATUSES)
+    with_negatives(parser)
+    parser.add_argument(
+        '--xyz', nargs=3, type=float, metavar=('X', 'Y', 'Z'),
+        help='m (or mm); without it the position stays',
+    )  # fmt: skip
+    parser.add_argument(
+        '--rpy', nargs=3, type=float, metavar=('R', 'P', 'Y'),
+        help='roll, pitch, yaw about x, y, z in rad (or °); without it the orientation stays',
+    )  # fmt: skip
+    parser.add_argument(
+        '--speed', type=float, metavar='V', help='m/s (or mm/s), at most; along a line'
+    )
+    for name, act in (('home', home), ('park', park), ('pose', pose), ('joints', joints)):
+        _added(commands, name, act)
+
+
+def _added(
+    commands: 'argparse._SubParsersAction[argparse.ArgumentParser]',
+    name: str,
+    act: Act,
+    epilog: str | None = None,
+) -> argparse.ArgumentParser:
+    parser = commands.add_parser(name, epilog=epilog)
+    parser.add_argument(
+        'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
+    )
+    parser.add_argument('--json', action='store_true', help='answer for programs')
+    add_units(parser)
+    parser.set_defaults(run=running(act))
+    return parser
+
+
+def running(act: Act) -> Callable[[argparse.Namespace], int]:
+    """A subcommand's `run`, with the machine of its namespace; Ctrl-C brakes it."""
+
+    def answer(arguments: argparse.Namespace) -> Answer:
+        from hexarm.robot import Robot  # noqa: PLC0415 (needs ROS)
+
+        with Robot(arguments.namespace) as robot:
+            return act(robot, arguments)
+
+    return answering(answer)
+
+
+def go(robot: 'Robot', arguments: argparse.Namespace) -> Answer:
+    """Moves to a pose and measures it; Unreachable where the machine cannot take it."""
+    if arguments.xyz is None and arguments.rpy is None:
+        raise InvalidInput('go where? --xyz X Y Z, --rpy R P Y, or both')
+    units = units_of(arguments)
+    named: dict[str, float] = {}
+    if arguments.xyz is not None:
+        named |= dict(zip('xyz', (v / units.per_metre for v in arguments.xyz), strict=True))
+    if arguments.rpy is not None:
+        turns = (v / units.per_radian for v in arguments.rpy)
+        named |= dict(zip(('roll', 'pitch', 'yaw'), turns, strict=True))
+    goal = moved_to(robot.target, named)
+    try:
+        robot.move_to(goal, speed=arguments.speed and arguments.speed / units.per_metre)
+    except Refused as error:
+        if is_out_of_reach(robot, goal):
+            raise Unreachable(str(error)) from error
+        raise
+    return pose(robot, arguments)
+
+
+def is_out_of_reach(robot: 'Robot', goal: Pose) -> bool:
+    """Whether the machine file says so; False where it is not on this computer."""
+    with suppress(ConfigError, TimedOut):
+        return not robot.reach(goal).is_reachable
+    return False
+
+
+def home(robot: 'Robot', arguments: argparse.Namespace) -> Answer:
+    """Moves home and measures the pose."""
+    robot.home()
+    return pose(robot, arguments)
+
+
+def park(robot: 'Robot', arguments: argparse.Namespace) -> Answer:
+    """Moves to park and measures the pose."""
+    robot.park()
+    return pose(robot, arguments)
+
+
+def pose(robot: 'Robot', arguments: argparse.Namespace) -> Answer:
+    """The measured pose."""
+    measured = robot.pose
+    answer = {'namespace': robot.namespace, 'pose': for_programs(measured)}
+    return answer, units_of(arguments).pose(measured)
+
+
+def joints(robot: 'Robot', arguments: argparse.Namespace) -> Answer:
+    """The measured joints."""
+    units, measured = units_of(arguments), robot.joints
+    kinds = robot.limits.units
+    lines = [
+        f'{name:<12} {units.quantities([position], kind):>16}'
+        for name, position in measured.items()
+        for kind in [kinds.get(name, '')]
+    ]
+    names, positions = list(measured), list(measured.values())
+    answer = {'namespace': robot.namespace, 'joints': {'names': names, 'positions': positions}}
+    return answer, lines

@@ -1,0 +1,271 @@
+"""`Robot`: one machine of the graph, from a Python program (docs/client.md).
+
+Metres, radians, seconds. Poses are those of the platform, or of the tool, in the base frame.
+"""
+
+import asyncio
+from collections.abc import Iterable
+
+from hexarm.machines import load
+from hexarm.namespaces import NAMESPACE
+from hexarm.robot_client import PATIENCE, Progress, RobotClient
+from hexarm.robot_values import Limits, PoseLike, checked, moved_to, pose_from, poses_from
+from manipulator.analysis.reach import Reach, reach
+from manipulator.errors import InvalidInput
+from manipulator.formatting import shown
+from manipulator.machine import Machine
+from manipulator.nodes.messages import BASE_FRAME, pose_of
+from manipulator.pose import Pose
+from manipulator.states import MotionResult
+
+PLANNED_WITHIN = 60.0
+"""Seconds that the planning of a path may take, by default."""
+
+
+class Robot:
+    """A machine that runs in `namespace` (`hexarm up`); a context manager.
+
+    It belongs to one thread, and receives messages only while one of its methods or properties
+    runs. Methods that move wait until the machine is there (`wait=False`: see `wait`). They raise
+    Refused, Stopped or TimedOut with the reason. Whatever else ends a wait (Ctrl-C, a timeout)
+    brakes the machine, which then holds; so does leaving the block while it moves.
+    """
+
+    def __init__(self, namespace: str = '/hexapod', *, machine: str | None = None) -> None:
+        """`machine`: its file, where that has another name here than on its own computer.
+
+        NoMachine names the machines that are there.
+        """
+        if NAMESPACE.fullmatch(namespace) is None:
+            raise InvalidInput(f'{shown(namespace)} is not a ROS name: letters, digits, _ and /')
+        self.namespace = f'/{namespace.strip("/")}'
+        self._file = machine
+        self._machine: Machine | None = None
+        self._client = RobotClient(self.namespace, self._check)
+        try:
+            self._start()
+            self._client.await_machine()
+        except BaseException:
+            self._leave()
+            raise
+
+    @staticmethod
+    def simulated(machine: str = 'robocake', namespace: str | None = None) -> 'Robot':
+        """A machine on the fake board, with a graph of its own, which ends with this Robot.
+
+        Unless ROS_DOMAIN_ID is set, it has a ROS domain of its own, on this computer only.
+        """
+        from hexarm.simulated import SimulatedRobot  # noqa: PLC0415 (a subclass of this one)
+
+        return SimulatedRobot(machine, namespace)
+
+    def __enter__(self) -> 'Robot':
+        """The robot itself."""
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        """As `close`."""
+        self.close()
+
+    def close(self) -> None:
+        """Leaves the graph; a motion under way is braked, the servos stay as they are."""
+        try:
+            if self._client.is_under_way:
+                self._client.brake()
+        finally:
+            self._leave()
+
+    # Servos
+
+    def enable(self) -> None:
+        """Servos on, one by one; returns when the machine takes goals."""
+        self._client.enable()
+
+    def disable(self) -> None:
+        """Servos off: they hold nothing any more. `park` comes first, usually."""
+        self._client.disable()
+
+    def emergency_stop(self) -> None:
+        """The board holds at once, until `clear`; to end a motion in the usual way: `stop`."""
+        self._client.emergency_stop()
+
+    def clear(self) -> None:
+        """Ends an emergency stop or a fault, once somebody has looked; nothing moves."""
+        self._client.trigger('serial_bridge/clear_fault')
+
+    # Motion
+
+    def move(
+        self,
+        *,
+        x: float | None = None,
+        y: float | None = None,
+        z: float | None = None,
+        roll: float | None = None,
+        pitch: float | None = None,
+        yaw: float | None = None,
+        speed: float | None = None,
+        wait: bool = True,
+        timeout: float = PATIENCE,
+        progress: Progress | None = None,
+    ) -> None:
+        """Moves to the named coordinates (m, rad); the others keep their commanded values."""
+        named = {'x': x, 'y': y, 'z': z, 'roll': roll, 'pitch': pitch, 'yaw': yaw}
+        goal = moved_to(self.target, named)
+        self.move_to(goal, speed=speed, wait=wait, timeout=timeout, progress=progress)
+
+    def move_to(
+        self,
+        pose: PoseLike,
+        *,
+        speed: float | None = None,
+        wait: bool = True,
+        timeout: float = PATIENCE,
+        progress: Progress | None = None,
+    ) -> None:
+        """Moves to a pose; with a `speed` (m/s, at most) along a line from rest."""
+        goal = pose_from(pose)
+        if speed is None:
+            self._client.begin(lambda: self._client.send_goal(goal), goal, progress)
+        else:
+            most = checked('speed', speed, above=0.0)
+            self._client.rest()
+            self._client.begin_path(poses_from([self._client.commanded(), goal]), most, progress)
+        if wait:
+            self.wait(timeout)
+
+    def follow(
+        self,
+        poses: Pose | Iterable[PoseLike],
+        *,
+        speed: float | None = None,
+        wait: bool = True,
+        timeout: float = PLANNED_WITHIN,
+        progress: Progress | None = None,
+    ) -> None:
+        """Moves to the first pose, then exactly through the others, at `speed` (m/s) at most."""
+        path = poses_from(poses)
+        most = None if speed is None else checked('speed', speed, above=0.0)
+        self._client.begin_path(path, most, progress)
+        if wait:
+            self.wait(timeout)
+
+    def home(self, *, wait: bool = True, timeout: float = PATIENCE) -> None:
+        """Moves to the home pose, along a line where one leads there, else by its joints."""
+        self._go('home', wait, timeout)
+
+    def park(self, *, wait: bool = True, timeout: float = PATIENCE) -> None:
+        """As `home`, to the joints at which the servos are switched on and off."""
+        self._go('park', wait, timeout)
+
+    def jog(
+        self,
+        *,
+        vx: float = 0.0,
+        vy: float = 0.0,
+        vz: float = 0.0,
+        wx: float = 0.0,
+        wy: float = 0.0,
+        wz: float = 0.0,
+        seconds: float = 1.0,
+        frame: str = BASE_FRAME,
+    ) -> None:
+        """Moves at a velocity (m/s, rad/s; axes of `frame`: base, tool, work) for some seconds.
+
+        The machine slows down before a limit, and brakes at the end.
+        """
+        named = {'vx': vx, 'vy': vy, 'vz': vz, 'wx': wx, 'wy': wy, 'wz': wz}
+        twist = [checked(name, value) for name, value in named.items()]
+        duration = checked('seconds', seconds, above=0.0)
+        self.wait()
+        self._client.jog(twist, frame, duration)
+
+    def stop(self) -> None:
+        """Brakes along the path and returns when the machine holds; then it may move again."""
+        self._client.rest()
+
+    # Waiting
+
+    def wait(self, timeout: float = PATIENCE) -> None:
+        """Waits for the end of the last motion; Refused or Stopped with the reason.
+
+        However long it takes: TimedOut after `timeout` seconds in which nothing moves.
+        """
+        self._client.finish(timeout)
+
+    def is_done(self) -> bool:
+        """Whether the last motion has ended, for programs with a loop of their own.
+
+        Takes some ten milliseconds; raises as `wait`.
+        """
+        self._client.poll()
+        return not self._client.is_under_way
+
+    async def done(self) -> None:
+        """As `wait`, for asyncio, without a timeout; cancelling it brakes the machine."""
+        try:
+            while not self.is_done():
+                await asyncio.sleep(0.01)
+        except asyncio.CancelledError:
+            self._client.brake()
+            raise
+
+    # Measurements
+
+    @property
+    def pose(self) -> Pose:
+        """The measured pose, received after this call."""
+        return pose_of(self._client.fresh('pose'))
+
+    @property
+    def target(self) -> Pose:
+        """The commanded pose: the end of this program's motion under way, else the setpoint."""
+        return self._client.destination()
+
+    @property
+    def joints(self) -> dict[str, float]:
+        """The measured joints by name (rad, m); of hobby servos what the board puts out."""
+        message = self._client.fresh('joint_states')
+        return dict(zip(message.name, message.position, strict=True))
+
+    @property
+    def state(self) -> str:
+        """The machine state: disarmed, arming, enabled, holding, stopped, fault, …"""
+        self._client.receive()
+        return str(self._client.machine_state.message)
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether it moves or plans to, for this program or for another."""
+        self._client.receive()
+        is_planning = self._client.motion('result') == MotionResult.PLANNING
+        return is_planning or not self._client.is_at_rest()
+
+    @property
+    def limits(self) -> Limits:
+        """Joint ranges and speeds, from the machine file."""
+        return Limits.of(self._model())
+
+    def reach(self, pose: PoseLike) -> Reach:
+        """Whether a pose can be reached, the reason if not, and how near each limit is."""
+        return reach(self._model(), pose_from(pose))
+
+    def _go(self, place: str, wait: bool, timeout: float) -> None:
+        self._client.begin(lambda: self._client.send_to(place))
+        if wait:
+            self.wait(timeout)
+
+    def _model(self) -> Machine:
+        if self._machine is None:
+            file = self._file or self._client.report_of('trajectory').hardware_id
+            self._machine = load(file)
+        return self._machine
+
+    def _start(self) -> None:
+        """Before the machine is waited for."""
+
+    def _check(self) -> None:
+        """At every wait; may raise to end it."""
+
+    def _leave(self) -> None:
+        self._client.__exit__()

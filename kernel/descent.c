@@ -1,0 +1,307 @@
+#include "descent.h"
+
+#include <string.h>
+
+#include "least_distance.h"
+#include "se3.h"
+
+#define DIFFERENCE REAL(1e-6) /* as part of the length */
+#define SETTLED REAL(1e-7)    /* a step that changes nothing, likewise */
+#define LEAST_CURVATURE REAL(0.2)
+enum { BOUNDS = 2 * VALUES, SHARES = 10, RESTORATIONS = 2 };
+
+struct place {
+    real position[3], rotation[9];
+};
+
+/* The limits about a place, in metres: normal[i] step + slack[i] >= 0; row[i] says which margin it
+   is. Those that stand still or have no value are left out. */
+struct model {
+    real goal[6]; /* the step to the target */
+    int count, row[BOUNDS];
+    real steepness[BOUNDS], slack[BOUNDS], normal[BOUNDS][6];
+};
+
+static struct place displaced(const struct descent *d, struct place from, const real step[6])
+{
+    real twist[6];
+    for (int k = 0; k < 6; k++)
+        twist[k] = k < 3 ? step[k] : step[k] / d->platform->length;
+    se3_move(twist, from.position, from.rotation);
+    return from;
+}
+
+static void put_offset(const struct descent *d, const struct place *from, const real position[3],
+                       const real rotation[9], real offset[6])
+{
+    se3_twist(from->position, from->rotation, position, rotation, offset);
+    for (int k = 3; k < 6; k++)
+        offset[k] *= d->platform->length;
+}
+
+static real length_of(const real v[6])
+{
+    real square = 0;
+    for (int k = 0; k < 6; k++)
+        square += v[k] * v[k];
+    return real_sqrt(square);
+}
+
+/* How far inside the ranges values are, from below, then from above; NaN where there is none. */
+static void put_margins(const struct descent *d, const struct place *place, real margins[BOUNDS])
+{
+    const struct crank_legs *legs = &d->platform->legs;
+    const real *r = place->rotation, *c = d->pivot;
+    real origin[3], joints[LEGS], values[VALUES];
+    for (int k = 0; k < 3; k++)
+        origin[k] = place->position[k] -
+                    (r[3 * k] * c[0] + r[3 * k + 1] * c[1] + r[3 * k + 2] * c[2]);
+    if (legs->crank[0] > 0)
+        crank_elbows(legs, origin, r, joints, NULL);
+    else
+        linear_inverse(legs, origin, r, joints);
+    limited_values(d->platform, origin, r, joints, values);
+    for (int i = 0; i < VALUES; i++) {
+        margins[i] = values[i] - d->low[i];
+        margins[VALUES + i] = d->high[i] - values[i];
+    }
+}
+
+static int is_finite(real x)
+{
+    return real_fabs(x) < INFINITY;
+}
+
+/* The slope of one margin in one direction, and how steep its steeper side is; of one side, where
+   the other has no value. */
+static real slope(real behind, real here, real ahead, real *steeper)
+{
+    real up = ahead - here, down = here - behind;
+    up = is_finite(up) ? up : down;
+    down = is_finite(down) ? down : up;
+    *steeper = fmax(real_fabs(up), real_fabs(down));
+    return is_finite(up) ? (up + down) / 2 : 0;
+}
+
+static void put_model(const struct descent *d, const struct place *place, struct model *model)
+{
+    real here[BOUNDS], sides[6][2][BOUNDS], size = DIFFERENCE * d->platform->length;
+    put_margins(d, place, here);
+    for (int k = 0; k < 6; k++)
+        for (int side = 0; side < 2; side++) {
+            real step[6] = {0};
+            step[k] = side ? size : -size;
+            struct place beside = displaced(d, *place, step);
+            put_margins(d, &beside, sides[k][side]);
+        }
+    model->count = 0;
+    for (int i = 0; i < BOUNDS; i++) {
+        real normal[6], steepness = 0, steeper;
+        for (int k = 0; k < 6; k++) {
+            normal[k] = slope(sides[k][0][i], here[i], sides[k][1][i], &steeper) / size;
+            steepness += is_finite(steeper) ? steeper * steeper / (size * size) : 0;
+        }
+        steepness = real_sqrt(steepness);
+        if (!is_finite(here[i]) || !(steepness > 0))
+            continue;
+        for (int k = 0; k < 6; k++)
+            model->normal[model->count][k] = normal[k] / steepness;
+        model->slack[model->count] = here[i] / steepness - d->clearance;
+        model->steepness[model->count] = steepness;
+        model->row[model->count++] = i;
+    }
+    put_offset(d, place, d->target_position, d->target_rotation, model->goal);
+}
+
+/* Cholesky's factor L of a symmetric matrix; 0 where it is not positive. */
+static int put_root(real matrix[6][6], real root[6][6])
+{
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j <= i; j++) {
+            real rest = matrix[i][j];
+            for (int k = 0; k < j; k++)
+                rest -= root[i][k] * root[j][k];
+            if (i == j && !(rest > 0))
+                return 0;
+            root[i][j] = i == j ? real_sqrt(rest) : rest / root[j][j];
+        }
+    return 1;
+}
+
+static void divide_by_root(real root[6][6], real v[6])
+{
+    for (int i = 0; i < 6; i++) {
+        for (int k = 0; k < i; k++)
+            v[i] -= root[i][k] * v[k];
+        v[i] /= root[i][i];
+    }
+}
+
+/* The best step within the limits, by a quadratic model, and the limits' multipliers: (2.1). */
+static int put_step(const struct model *model, real curvature[6][6], real step[6],
+                    real multipliers[BOUNDS])
+{
+    real root[6][6], normals[BOUNDS][6];
+    if (!put_root(curvature, root))
+        return 0;
+    memcpy(step, model->goal, sizeof model->goal);
+    memcpy(normals, model->normal, sizeof normals);
+    divide_by_root(root, step);
+    for (int i = 0; i < model->count; i++)
+        divide_by_root(root, normals[i]);
+    if (!least_distance(step, (const real(*)[6])normals, model->slack, model->count, multipliers))
+        return 0;
+    for (int i = 0; i < model->count; i++)
+        for (int k = 0; k < 6; k++)
+            step[k] += multipliers[i] * normals[i][k];
+    for (int i = 5; i >= 0; i--) {
+        for (int k = i + 1; k < 6; k++)
+            step[i] -= root[k][i] * step[k];
+        step[i] /= root[i][i];
+    }
+    return 1;
+}
+
+/* Puts a trial back inside the limits that the step touches, by Newton's method; returns whether
+   it keeps all then. */
+static int is_put_right(const struct descent *d, const struct model *model,
+                        const real multipliers[BOUNDS], struct place *trial)
+{
+    real margins[BOUNDS], normals[BOUNDS][6], slack[BOUNDS], weights[BOUNDS], step[6];
+    const real nothing[6] = {0};
+    for (int round = 0; round < RESTORATIONS; round++) {
+        int count = 0;
+        put_margins(d, trial, margins);
+        for (int i = 0; i < model->count; i++) {
+            real room = margins[model->row[i]] / model->steepness[i] - d->clearance;
+            if (!(multipliers[i] > 0) || !is_finite(room))
+                continue;
+            memcpy(normals[count], model->normal[i], sizeof normals[0]);
+            slack[count++] = room;
+        }
+        if (!least_distance(nothing, (const real(*)[6])normals, slack, count, weights))
+            break;
+        memset(step, 0, sizeof step);
+        for (int i = 0; i < count; i++)
+            for (int k = 0; k < 6; k++)
+                step[k] += weights[i] * normals[i][k];
+        *trial = displaced(d, *trial, step);
+    }
+    put_margins(d, trial, margins);
+    int is_inside = 1;
+    for (int i = 0; i < BOUNDS; i++)
+        is_inside &= margins[i] >= 0;
+    return is_inside;
+}
+
+/* The nearest to the target of parts of a step, from all of it down; 0 where none is nearer. */
+static int searched(const struct descent *d, const struct model *model, const real step[6],
+                    const real multipliers[BOUNDS], struct place *place)
+{
+    const struct place from = *place;
+    real best = length_of(model->goal) * (1 - REAL(1e-12)), share = 1;
+    int is_found = 0;
+    for (int i = 0; i < SHARES; i++, share /= 2) {
+        real part[6], offset[6];
+        for (int k = 0; k < 6; k++)
+            part[k] = share * step[k];
+        struct place trial = displaced(d, from, part);
+        int is_inside = is_put_right(d, model, multipliers, &trial);
+        put_offset(d, &trial, d->target_position, d->target_rotation, offset);
+        if (is_inside && length_of(offset) < best) {
+            best = length_of(offset);
+            *place = trial;
+            is_found = 1;
+        } else if (is_found) {
+            break;
+        }
+    }
+    return is_found;
+}
+
+/* The gradient of half the squared distance less the weighted limits of another place's model. */
+static void put_slope(const struct model *model, const real weight_of[BOUNDS], real gradient[6])
+{
+    for (int k = 0; k < 6; k++) {
+        gradient[k] = -model->goal[k];
+        for (int i = 0; i < model->count; i++)
+            gradient[k] -= weight_of[model->row[i]] * model->normal[i][k];
+    }
+}
+
+/* Powell's damped update, which stays positive: Nocedal & Wright, (18.14) to (18.16). */
+static void update(real curvature[6][6], const real step[6], real change[6])
+{
+    real along[6], before = 0, now = 0;
+    for (int i = 0; i < 6; i++) {
+        along[i] = 0;
+        for (int k = 0; k < 6; k++)
+            along[i] += curvature[i][k] * step[k];
+        before += step[i] * along[i];
+        now += step[i] * change[i];
+    }
+    if (now < LEAST_CURVATURE * before) {
+        real share = (1 - LEAST_CURVATURE) * before / (before - now);
+        for (int i = 0; i < 6; i++)
+            change[i] = share * change[i] + (1 - share) * along[i];
+        now = LEAST_CURVATURE * before;
+    }
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++)
+            curvature[i][k] += change[i] * change[k] / now - along[i] * along[k] / before;
+}
+
+static void reset(real curvature[6][6])
+{
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++)
+            curvature[i][k] = i == k;
+}
+
+/* Learns the curvature from a step: what the Lagrangian's gradient changed by. */
+static void learn(real curvature[6][6], const struct model *here, const struct model *there,
+                  const real multipliers[BOUNDS], const real taken[6])
+{
+    real weight_of[BOUNDS] = {0}, before[6], after[6];
+    for (int i = 0; i < here->count; i++)
+        weight_of[here->row[i]] = multipliers[i];
+    put_slope(here, weight_of, before);
+    put_slope(there, weight_of, after);
+    for (int k = 0; k < 6; k++)
+        after[k] -= before[k];
+    update(curvature, taken, after);
+}
+
+void descend(const struct descent *descent, int most_steps, real position[3], real rotation[9])
+{
+    struct place place;
+    struct model models[2], *here = &models[0], *there = &models[1];
+    real curvature[6][6], step[6], multipliers[BOUNDS], taken[6];
+    int is_fresh = 1;
+    memcpy(place.position, position, sizeof place.position);
+    memcpy(place.rotation, rotation, sizeof place.rotation);
+    reset(curvature);
+    put_model(descent, &place, here);
+    for (int count = 0; count < most_steps; count++) {
+        const struct place from = place;
+        if (!put_step(here, curvature, step, multipliers) ||
+            !searched(descent, here, step, multipliers, &place)) {
+            if (is_fresh)
+                break;
+            reset(curvature);
+            is_fresh = 1;
+            continue;
+        }
+        put_model(descent, &place, there);
+        put_offset(descent, &from, place.position, place.rotation, taken);
+        learn(curvature, here, there, multipliers, taken);
+        struct model *last = here;
+        here = there;
+        there = last;
+        if (is_fresh && length_of(taken) < SETTLED * descent->platform->length)
+            break;
+        is_fresh = 0;
+    }
+    memcpy(position, place.position, sizeof place.position);
+    memcpy(rotation, place.rotation, sizeof place.rotation);
+}

@@ -1,0 +1,71 @@
+"""What the motion of a reference leaves of the speed and acceleration limits, for a correction."""
+
+import numpy as np
+
+from manipulator.arrays import Array
+from manipulator.motion_limits import MotionLimits
+from manipulator.pose import Pose
+
+SPEED_SHARE = 0.4
+"""Of the speed that is left, what a correction may use: it can then brake as fast as that shrinks
+while a plan speeds up."""
+
+TINY = 1e-12
+
+
+class Reserve:
+    """Follows the reference's pose and joints (n,), tick by tick."""
+
+    def __init__(self, dt: float) -> None:
+        self._dt = dt
+        self._pose: Pose | None = None
+        self._joints: Array = np.zeros(0)
+        self._speed: Array = np.zeros(0)
+        self._acceleration: Array = np.zeros(0)
+
+    def note(self, pose: Pose, joints: Array) -> None:
+        """Takes the reference of this tick."""
+        speed = np.zeros(6 + len(joints))
+        if self._pose is not None:
+            moved = np.concatenate([self._pose.twist_to(pose), joints - self._joints])
+            speed = moved / self._dt
+        before = self._speed if len(self._speed) else speed
+        self._acceleration = (speed - before) / self._dt
+        self._pose, self._joints, self._speed = pose, joints, speed
+
+    def speed_share(
+        self, motion: MotionLimits, joints: Array, twist: Array, fastest: float
+    ) -> float:
+        """How fast a rest, of joints (n,) and of the pose (6,), may be covered: 1/s.
+
+        So that the acceleration that is left brakes it in time; at most `fastest`.
+        """
+        left = self._left(motion, 'speed', self._speed)
+        speed = SPEED_SHARE * _share(left, joints, twist)
+        left = self._left(motion, 'acceleration', self._acceleration)
+        braking = float(np.sqrt(0.5 * _share(left, joints, twist)))
+        return min(speed, braking, fastest)
+
+    def change_share(self, motion: MotionLimits, joints: Array, twist: Array) -> float:
+        """The part of a change of speed that the acceleration limits leave to this tick."""
+        left = self._left(motion, 'acceleration', self._acceleration)
+        return min(self._dt * _share(left, joints, twist), 1.0)
+
+    def _left(self, motion: MotionLimits, kind: str, used: Array) -> Array:
+        """Of linear, angular and each joint's limit, (2 + n,)."""
+        norms = np.linalg.norm(used[:3]), np.linalg.norm(used[3:6])
+        limits = np.concatenate(
+            [
+                [getattr(motion.linear, kind), getattr(motion.angular, kind)],
+                np.broadcast_to(getattr(motion.joint, kind), len(used) - 6),
+            ]
+        )
+        left: Array = np.maximum(limits - np.concatenate([norms, np.abs(used[6:])]), 0.0)
+        return left
+
+
+def _share(left: Array, joints: Array, twist: Array) -> float:
+    """The largest factor with which a change keeps what is left (2 + n,)."""
+    norms = np.linalg.norm(twist[:3]), np.linalg.norm(twist[3:])
+    sizes = np.concatenate([norms, np.abs(joints)])
+    return float((left / np.maximum(sizes, TINY)).min())

@@ -1,0 +1,60 @@
+"""`hexarm go`, `home`, `park`, `pose`, `joints` as processes beside a running graph."""
+
+import json
+
+import pytest
+
+pytestmark = pytest.mark.graph
+
+
+@pytest.fixture
+def says(hexarm, enabled):
+    """Runs `hexarm …` to its end: status and what it said; again where the machine was lost."""
+
+    def says(*words, status=0):
+        def once():
+            ended, text = enabled.end_of(hexarm(*words))
+            assert ended == status, text
+            return text
+
+        return enabled.persist(once)
+
+    return says
+
+
+def numbers(line, unit):
+    *_, name = line.split()
+    assert name == unit
+    return [float(word) for word in line.split()[-4:-1]]
+
+
+def test_a_machine_is_moved_and_measured_from_the_command_line(says):
+    said = says('go', 'hexapod', '--xyz', '0.002', '0', '0.045', '--rpy', '0', '0', '0.05')
+    position, turns = said.splitlines()
+    assert numbers(position, 'm') == pytest.approx([0.002, 0, 0.045], abs=5e-4)
+    assert numbers(turns, 'rad') == pytest.approx([0, 0, 0.05], abs=0.01)
+    position, turns = says('go', '--xyz', '0', '-2', '44', '--units', 'mm').splitlines()
+    assert numbers(position, 'mm') == pytest.approx([0, -2, 44], abs=0.5)
+    assert numbers(turns, '°')[2] == pytest.approx(2.86, abs=0.5)
+    measured = json.loads(says('pose', '/hexapod', '--json'))
+    assert measured['pose']['xyz'] == pytest.approx([0, -0.002, 0.044], abs=5e-4)
+    says('home')
+    joints = json.loads(says('joints', '--json'))['joints']
+    assert joints['names'] == [f'crank_{leg}' for leg in range(1, 7)]
+    assert joints['positions'] == pytest.approx([2.0945] * 6, abs=0.01)
+    assert 'x, y, z' in says('park')
+
+
+def test_state_and_reports_are_there_for_programs(says):
+    enabled = json.loads(says('enable', '--json'))
+    assert (enabled['namespace'], enabled['state']) == ('/hexapod', 'enabled')
+    monitored = json.loads(says('monitor', '--json'))
+    assert monitored['state'] == 'enabled'
+    assert monitored['nodes']['trajectory']['values']['result']
+
+
+def test_out_of_reach_is_status_3_and_what_is_not_understood_2(says):
+    assert 'rod too short' in says('go', '--xyz', '0.04', '0', '0.045', status=3)
+    refused = json.loads(says('go', '--rpy', '0', '0', '45', '--json', status=2))
+    assert 'are these degrees?' in refused['error']
+    assert 'go where?' in says('go', status=2)

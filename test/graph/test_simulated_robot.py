@@ -1,0 +1,68 @@
+"""`Robot.simulated` and the notebook: a graph that a program starts and ends by itself."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from hexarm import ManipulatorError, Refused, Robot
+
+pytestmark = pytest.mark.graph
+NOTEBOOK = Path(__file__).resolve().parents[2] / 'examples' / 'first_steps.ipynb'
+
+
+def persist(run):
+    """Again where a busy computer stopped the machine."""
+    for _ in range(4):
+        try:
+            return run()
+        except ManipulatorError:
+            continue
+    return run()
+
+
+def test_an_arm_is_simulated_and_nothing_of_it_is_left(processes_left, monkeypatch):
+    monkeypatch.delenv('ROS_DOMAIN_ID', raising=False)
+    before = dict(os.environ)
+
+    def drive():
+        with Robot.simulated('arm_6r', '/lesson') as robot:
+            assert dict(os.environ) == before
+            robot.enable()
+            robot.home()
+            z = robot.pose.position[2]
+            robot.move(z=z - 0.02, speed=0.05)
+            assert robot.pose.position[2] == pytest.approx(z - 0.02, abs=3e-3)
+            assert robot.limits.joints.keys() <= robot.joints.keys()  # and a gripper
+
+    persist(drive)
+    assert processes_left() == {}
+
+
+def test_a_graph_that_runs_already_is_not_doubled(processes_left):
+    with Robot.simulated(), pytest.raises(Refused, match='a graph runs in /hexapod already'):
+        Robot.simulated()
+    assert processes_left() == {}
+
+
+def test_an_unknown_machine_is_refused_before_anything_starts(processes_left):
+    with pytest.raises(ManipulatorError, match="did you mean 'robocake'"):
+        Robot.simulated('robocaek')
+    assert processes_left() == {}
+
+
+def test_every_cell_of_the_notebook_runs(processes_left, monkeypatch):
+    monkeypatch.setenv('MPLBACKEND', 'agg')
+    cells = [c for c in json.loads(NOTEBOOK.read_text())['cells'] if c['cell_type'] == 'code']
+
+    def run():
+        names = {}
+        try:
+            for cell in cells:
+                exec(''.join(cell['source']), names)
+        finally:
+            names['robot'].close()
+
+    persist(run)
+    assert processes_left() == {}

@@ -1,0 +1,104 @@
+"""The correction of commands by measured joints: late, coarse, stuck, and with play."""
+
+import numpy as np
+import pytest
+
+from hexarm.machines import load
+from manipulator.trajectory.correction import Correction
+from manipulator.trajectory.following_error import Tolerances
+from manipulator.trajectory.play import Play
+
+DT, DELAY = 0.01, 0.06
+COUNT = np.full(6, 1e-4)
+
+
+class Rig:
+    """Joints that follow commands `ticks` later, as `plant` has it; the plan stands still."""
+
+    def __init__(self, ticks, plant):
+        self.machine = load('arm_6r_stepper')
+        kinematics = self.machine.kinematics
+        self.pose, self.joints = kinematics.home, kinematics.inverse(kinematics.home)
+        following = Tolerances.of(self.machine).following
+        self.correction = Correction(COUNT, following, DELAY, DT)
+        self.ticks, self.plant, self.commands = ticks, plant, []
+
+    def run(self, seconds, is_active=True):
+        """The measured joints minus the reference's, at every tick (N, 6)."""
+        errors = []
+        for _ in range(round(seconds / DT)):
+            pose = self.correction.step(self.machine, self.pose, self.joints, is_active)
+            command = self.machine.kinematics.inverse(pose, self.joints)
+            self.commands.append(command)
+            late = self.commands[max(len(self.commands) - 1 - self.ticks, 0)]
+            measured = COUNT * np.round(self.plant(late) / COUNT)
+            self.correction.measure(measured)
+            errors.append(measured - self.joints)
+        return np.array(errors)
+
+
+@pytest.mark.parametrize('times', [0.2, 1.0, 2.0, 3.0])
+def test_an_offset_is_corrected_without_overshoot_up_to_three_times_the_delay(times):
+    offset = np.radians([1.0, -1.0, 0.5, -0.5, 0.2, 0.0])
+    errors = Rig(round(times * DELAY / DT), lambda q: q + offset).run(4.0)
+    assert np.abs(errors[-1]).max() <= 3e-4
+    assert (errors * np.sign(offset) >= -3e-4).all()
+
+
+def test_encoders_that_are_coarser_than_commands_do_not_make_it_hunt():
+    rig = Rig(6, lambda q: q + 0.4 * COUNT)
+    rig.run(1.0)
+    since = len(rig.commands)
+    rig.run(5.0)
+    assert np.ptp(rig.commands[since:], axis=0).max() < 1e-9
+
+
+def test_what_does_not_respond_is_corrected_by_a_quarter_of_the_following_tolerance_at_most():
+    rig = Rig(6, lambda q: np.zeros(6))
+    rig.run(10.0)
+    most = Tolerances.of(rig.machine).following / 4
+    assert (np.abs(np.array(rig.commands) - rig.joints) <= most + 1e-6).all()
+
+
+def test_it_changes_nothing_while_it_is_not_active():
+    rig = Rig(6, lambda q: q + 0.01)
+    rig.run(1.0)
+    rig.run(0.3, is_active=False)
+    since = len(rig.commands)
+    rig.run(2.0, is_active=False)
+    assert np.ptp(rig.commands[since:], axis=0).max() < 1e-12
+
+
+def test_a_direction_that_is_new_begins_with_the_opposite_offset_and_keeps_its_own():
+    play = Play(np.array([1e-3]), np.array([1.0]))
+    play.move(np.array([0.0]))
+    play.move(np.array([0.1]))
+    play.add(np.array([0.02]), np.array([False]))
+    play.move(np.array([0.05]))
+    assert play.offset == pytest.approx(-0.02)
+    play.add(np.array([-0.01]), np.array([False]))
+    play.confirm(np.array([True]))
+    play.move(np.array([0.1]))
+    assert play.offset == pytest.approx(0.03)
+    play.move(np.array([0.0]))
+    assert play.offset == pytest.approx(-0.03)
+
+
+def test_a_turn_within_the_dead_band_is_none():
+    play = Play(np.array([1e-3]), np.array([1.0]))
+    play.move(np.array([0.0]))
+    play.add(np.array([0.02]), np.array([False]))
+    for wobble in (0.0, 9e-4, 1e-4, 9e-4, 0.0):
+        play.move(np.array([wobble]))
+    assert play.offset == pytest.approx(0.02)
+
+
+def test_the_next_turn_of_each_joint_is_seen_ahead_with_the_play_that_it_takes_up():
+    play = Play(np.full(2, 1e-3), np.full(2, 1.0))
+    play.move(np.zeros(2))
+    play.add(np.full(2, 0.02), np.zeros(2, dtype=bool))
+    rows = np.stack([np.sin(np.linspace(0.0, np.pi, 31)), np.linspace(0.0, 1.0, 31)], axis=1)
+    turns, change = play.next_turns(rows)
+    assert 15 < turns[0] < 18
+    assert turns[1] == 31
+    assert change == pytest.approx([-0.04, -0.04])
