@@ -2,8 +2,6 @@
 
 from math import sqrt
 
-import numpy as np
-
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution
 from manipulator.machine import Machine
@@ -74,9 +72,3 @@ class ClosedLoop:
             self._is_facing = True
         if is_ready or self._waited > self._longest_wait:
             executor.begin_waiting()
-
-
-def dead_band_of(machine: Machine) -> Array:
-    """The resolution (n,) of a machine's joints, 0 where it is not known."""
-    count = len(machine.kinematics.joint_names)
-    return np.zeros(count) if machine.resolution is None else machine.resolution
