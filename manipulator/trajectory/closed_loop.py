@@ -13,7 +13,6 @@ from manipulator.trajectory.following_error import Tolerances
 LONGEST_WAIT = 3.0
 """Seconds that a path waits for the arrival at its first pose."""
 
-
 CREEP = 0.1
 """Scaling factor while the play of a joint that has turned is taken up."""
 
