@@ -4,11 +4,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from arm_control.chain import JOINTS, Chain, aligned
+from arm_control.chain import JOINTS, Chain, aligned, flat, in_parts
 from arm_control.closed_forms import BRANCHES
 from arm_control.geometry import JOINT_NAMES, JointLimits
 from arm_control.inverse_method import InverseMethod, fitting_method
-from arm_control.numerical import MOST_BRANCHES
+from arm_control.numerical import arm_branches
 from manipulator import _kernel
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
@@ -80,12 +80,9 @@ class SerialArm:
         NaN rows are branches that do not close. k is 8 where there is a closed form; without one
         it is 16, and a branch may be missing.
         """
-        position, rotation = pose.position, pose.rotation
         start = self.rest if near is None else self._checked(near, finite=False)
-        if start.shape[:-1] != position.shape[:-1]:
-            position, rotation, start = aligned(pose, start)
-        found = np.empty((*start.shape[:-1], MOST_BRANCHES, JOINTS))
-        if _kernel.arm_branches(self._numbers, position, rotation, start, found):
+        found, unknown = arm_branches(self._numbers, pose, start)
+        if unknown:
             self._checked(start)
         return found[..., :BRANCHES, :] if self.is_explicit else found
 
@@ -108,12 +105,14 @@ class SerialArm:
 
     def _nearest(self, pose: Pose, near: Array | None) -> tuple[Array, int]:
         """Joints (..., 6), and how many of them are NaN: as all are near what is not finite."""
-        position, rotation = pose.position, pose.rotation
         start = self.rest if near is None else self._checked(near, finite=False)
-        if start.shape[:-1] != position.shape[:-1]:
-            position, rotation, start = aligned(pose, start)
-        joints = np.empty(start.shape)
-        lost = _kernel.arm_inverse(self._numbers, position, rotation, start, joints)
+        if start.ndim == 1 and pose.position.ndim == 1:
+            joints = np.empty(JOINTS)
+            lost = _kernel.arm_inverse(self._numbers, pose.position, pose.rotation, start, joints)
+        else:
+            poses = aligned(pose, start)
+            joints = np.empty(poses[-1].shape)
+            lost = in_parts(_kernel.arm_inverse, self._numbers, *flat(poses), *flat((joints,)))
         if lost:
             self._checked(start)
         return joints, lost

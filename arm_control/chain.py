@@ -1,5 +1,6 @@
 """A serial chain of revolute joints as a product of exponentials (docs/arm-kinematics.md, 1)."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -84,3 +85,21 @@ def aligned(pose: Pose, joints: Array) -> tuple[Array, Array, Array]:
         stretched(rotation, (*lead, 3, 3)),
         stretched(joints, (*lead, JOINTS)),
     )
+
+
+def flat(arrays: tuple[Array, ...]) -> list[Array]:
+    """Positions, rotations and joints (..., 3; 3, 3; 6) in one row each."""
+    positions = arrays[0].shape[:-1]
+    return [array.reshape(-1, *array.shape[len(positions) :]) for array in arrays]
+
+
+PART = 512
+"""Poses of one call: 50 ms where an arm has no closed form, and then Ctrl-C is received."""
+
+
+def in_parts(function: Callable[..., int], numbers: Array, *arrays: Array) -> int:
+    """The sum of what the kernel returns for arrays of poses, joints or results (N, ...)."""
+    total = 0
+    for start in range(0, len(arrays[0]), PART):
+        total += function(numbers, *(array[start : start + PART] for array in arrays))
+    return total

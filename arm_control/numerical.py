@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from arm_control.chain import JOINTS, Chain, aligned
+from arm_control.chain import JOINTS, Chain, aligned, flat, in_parts
 from arm_control.closed_forms import NO_LOOP, ClosedForm, arm_numbers
 from manipulator import _kernel
 from manipulator.arrays import Array
@@ -60,7 +60,7 @@ class Numerical:
 
         A branch may be missed.
         """
-        return arm_branches(self.numbers, pose, near)
+        return arm_branches(self.numbers, pose, near)[0]
 
     def refusal(self, pose: Pose) -> str:
         """How near the best attempt came."""
@@ -102,7 +102,7 @@ class AlmostClosed:
 
     def branches(self, pose: Pose, near: Array) -> Array:
         """All of them and NaN (..., 16, 6); for a pose that has none, what `Numerical` finds."""
-        return arm_branches(self.numbers, pose, near)
+        return arm_branches(self.numbers, pose, near)[0]
 
     def refusal(self, pose: Pose) -> str:
         """Which triangle of the ideal arm does not close, or how near the real one comes."""
@@ -110,12 +110,19 @@ class AlmostClosed:
         return (self.ideal if is_out_of_reach else self.numerical).refusal(pose)
 
 
-def arm_branches(numbers: Array, pose: Pose, near: Array) -> Array:
-    """All branches (..., 16, 6) of an arm, by whole turns nearest to `near` within its ranges."""
-    position, rotation, start = aligned(pose, near)
-    found = np.empty((*start.shape[:-1], MOST_BRANCHES, JOINTS))
-    _kernel.arm_branches(numbers, position, rotation, start, found)
-    return found
+def arm_branches(numbers: Array, pose: Pose, near: Array) -> tuple[Array, int]:
+    """All branches (..., 16, 6) of an arm, by whole turns nearest to `near` within its ranges.
+
+    And how many of the joints to be near to are not finite.
+    """
+    start = np.ascontiguousarray(near, np.float64)
+    if start.ndim == 1 and pose.position.ndim == 1:
+        found = np.empty((MOST_BRANCHES, JOINTS))
+        return found, _kernel.arm_branches(numbers, pose.position, pose.rotation, start, found)
+    poses = aligned(pose, start)
+    found = np.empty((*poses[-1].shape[:-1], MOST_BRANCHES, JOINTS))
+    rows = found.reshape(-1, MOST_BRANCHES, JOINTS)
+    return found, in_parts(_kernel.arm_branches, numbers, *flat(poses), rows)
 
 
 TRIED = 12

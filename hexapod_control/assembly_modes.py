@@ -115,7 +115,7 @@ def _checked(
 
 
 def _null_space(columns: Array, leading: int) -> Array:
-    """A basis (n, count) of the functionals that vanish on all `columns` (n, m).
+    """A basis (n, count) of the functionals that vanish on all `columns` (n, m), consumed.
 
     Gauss's elimination with row pivots for the `leading` ones, P L U: with the rows [A; B] of L, A
     triangular, functionals are P [−A⁻ᵀBᵀ; 1] N, where N vanishes on what is left of the other
@@ -124,7 +124,8 @@ def _null_space(columns: Array, leading: int) -> Array:
     """
     from scipy.linalg import lu_factor, solve_triangular  # noqa: PLC0415 (50 MB: for who asks)
 
-    factors, swaps = lu_factor(columns[:, :leading], check_finite=False)
+    rest = columns[:, leading:].copy()
+    factors, swaps = lu_factor(columns[:, :leading], overwrite_a=True, check_finite=False)
     pivots = np.abs(np.diag(factors))
     if not pivots.min() > NO_PIVOT * pivots.max():
         raise NoSolution('the leg lengths do not fix finitely many poses')
@@ -135,7 +136,7 @@ def _null_space(columns: Array, leading: int) -> Array:
     lower = solve_triangular(
         above, below.T, trans=1, lower=True, unit_diagonal=True, check_finite=False
     )
-    rest = columns[order][:, leading:]
+    rest = rest[order]
     left, values, _ = np.linalg.svd(rest[leading:] - lower.T @ rest[:leading])
     free = left[:, int((values > NO_PIVOT * pivots.max()).sum()) :]
     null = np.empty((len(columns), free.shape[1]))
@@ -145,21 +146,24 @@ def _null_space(columns: Array, leading: int) -> Array:
 
 def _solutions(null_space: Array) -> tuple[Complex, bool]:
     """Every solution's quaternion (count, 4) of length 1, and whether none can be missing."""
-    index, factor = monomials.shift_table(DEGREE)
-    by_e = factor[..., None] * null_space[index]
+    shifts = list(zip(*monomials.shift_table(DEGREE), strict=True))
+    by_e = [factor[:, None] * null_space[index] for index, factor in shifts]
     directions, mixture = _DIRECTION
-    denominator = np.tensordot(directions, by_e, axes=1)
+    denominator = sum(h * z for h, z in zip(directions, by_e, strict=True))
     if null_space.shape[1] == 0:
         raise NoSolution('the leg lengths do not fix finitely many poses')
     columns, triangle = np.linalg.qr(denominator)
     values = np.linalg.svd(triangle, compute_uv=False)
     if values[-1] < 1e-9 * values[0]:
         raise NoSolution('the leg lengths do not fix finitely many poses')
-    right = columns.conj().T @ np.tensordot(mixture, by_e, axes=1)
+    right = columns.conj().T @ sum(r * z for r, z in zip(mixture, by_e, strict=True))
     _, vectors = np.linalg.eig(np.linalg.solve(triangle, right))
     # an eigenvector is the evaluation at a solution: read e off it
-    seen = factor[..., None] * (null_space @ vectors)[index]
-    e = np.einsum('mk,jmk->kj', (denominator @ vectors).conj(), seen)
+    evaluations, seen = null_space @ vectors, (denominator @ vectors).conj()
+    e = np.stack(
+        [(seen * (factor[:, None] * evaluations[index])).sum(axis=0) for index, factor in shifts],
+        axis=1,
+    )
     return e / np.linalg.norm(e, axis=1)[:, None], bool(values[-1] > 1e-6 * values[0])
 
 

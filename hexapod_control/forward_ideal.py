@@ -136,18 +136,22 @@ class Multiples:
         """(columns, count): the rows added up in `count` fixed groups, with fixed signs, as
         columns; in each of them hardly more than the space of all rows is missed.
         """
-        place, weight = _groups(self, count)
-        total = np.bincount(place, coefficients[self.source] * weight, self.columns * count)
-        return np.asarray(total.reshape(self.columns, count))
+        place, source, weight = _groups(self, count)
+        values = coefficients[source]
+        values *= weight
+        return np.asarray(np.bincount(place, values, self.columns * count).reshape(count, -1).T)
 
 
 @functools.lru_cache(maxsize=1)
-def _groups(multiples: Multiples, count: int) -> tuple[Indices, Array]:
+def _groups(multiples: Multiples, count: int) -> tuple[Indices, Indices, Array]:
+    """Of every coefficient its place, its source and its weight in `Multiples.mixed`."""
     random = np.random.default_rng(4)
     group = random.permutation(np.resize(np.arange(count), multiples.rows))
     sign = random.choice([-1.0, 1.0], multiples.rows)
-    place = multiples.column * count + group[multiples.row]
-    return place, frozen(multiples.weight * sign[multiples.row])
+    place = group[multiples.row] * multiples.columns + multiples.column
+    weight = multiples.weight * sign[multiples.row]
+    order = np.argsort(place)
+    return place[order], multiples.source[order], frozen(weight[order])
 
 
 HIGHEST = 6

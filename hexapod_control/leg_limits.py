@@ -10,7 +10,8 @@ import numpy as np
 
 from hexapod_control.geometry import LEGS
 from hexapod_control.linear import LinearPlatform
-from hexapod_control.parallel_platform import (
+from hexapod_control.parallel_platform import ParallelPlatform
+from hexapod_control.platform_limits import (
     HEIGHT,
     JOINT,
     LEANING,
@@ -19,7 +20,7 @@ from hexapod_control.parallel_platform import (
     SURPLUS,
     SWING,
     TILT,
-    ParallelPlatform,
+    PlatformLimits,
 )
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.arrays import Array, frozen
@@ -36,7 +37,7 @@ LEG_NAMES = tuple(f'leg {leg}' for leg in range(1, LEGS + 1))
 class PlatformLimit:
     """A `Limit` on some of a platform's `limited_values`, within [low, high] each."""
 
-    group: ParallelPlatform
+    group: PlatformLimits
     columns: slice
     quantity: str
     unit: str
@@ -79,14 +80,14 @@ def base_joint_swing(kinematics: ParallelPlatform, largest: float) -> PlatformLi
 def singularity_margin(kinematics: ParallelPlatform, minimum: float) -> PlatformLimit:
     """The kinematics' σmin at least `minimum` (dimensionless)."""
     low, high = frozen([minimum]), frozen([np.inf])
-    return PlatformLimit(kinematics, SIGMA, 'singularity margin', '', ('',), low, high)
+    return PlatformLimit(kinematics.limits, SIGMA, 'singularity margin', '', ('',), low, high)
 
 
 def _each_leg(
     kinematics: ParallelPlatform, columns: slice, quantity: str, unit: str, low: float, high: float
 ) -> PlatformLimit:
     bounds = (frozen(np.full(LEGS, end)) for end in (low, high))
-    return PlatformLimit(kinematics, columns, quantity, unit, LEG_NAMES, *bounds)
+    return PlatformLimit(kinematics.limits, columns, quantity, unit, LEG_NAMES, *bounds)
 
 
 @dataclass(frozen=True)
@@ -129,10 +130,10 @@ class RotaryLimits:
                     np.full(LEGS, high),
                     LEG_NAMES,
                     'crank angle',
-                    group=kinematics,
+                    group=kinematics.limits,
                     columns=JOINT,
                 ),
-                BodyHeight(self.minimum_height_mm * 1e-3, group=kinematics, columns=HEIGHT),
+                BodyHeight(self.minimum_height_mm * 1e-3, group=kinematics.limits, columns=HEIGHT),
                 crank_joint_tilt(kinematics, float(np.radians(self.crank_joint_tilt_deg))),
                 platform_joint_swing(kinematics, float(np.radians(self.platform_joint_swing_deg))),
                 singularity_margin(kinematics, self.singularity_margin),
@@ -166,7 +167,7 @@ class LinearLimits:
         return Constraints(
             (
                 JointRange(
-                    low, high, LEG_NAMES, 'leg length', 'm', group=kinematics, columns=JOINT
+                    low, high, LEG_NAMES, 'leg length', 'm', group=kinematics.limits, columns=JOINT
                 ),
                 base_joint_swing(kinematics, cone),
                 platform_joint_swing(kinematics, cone),

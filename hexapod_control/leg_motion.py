@@ -31,19 +31,31 @@ def from_zxz(angles: ArrayLike) -> Array:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-def to_zxz(rotation: ArrayLike) -> Array:
-    """α, β, γ of rotation matrices (..., 3, 3) with β in [0, π], in radians: (..., 3).
+def to_zxz(rotations: ArrayLike, start: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
+    """α, β, γ in radians of successive rotation matrices (n, 3, 3): (n, 3), continuous.
 
-    Only α + γ (or α − γ) is fixed where sin β = 0: for sin β < 1e-6, γ is 0.
+    Of the solutions of section 4, (α, β, γ), (α + π, −β, γ + π) and whole turns more, each sample
+    gets the nearest to the last sample's, the first the nearest to `start`: the paper solves from
+    the last solution. Where sin β < 1e-6 only α ± γ is fixed; there α stays.
     """
-    m = np.asarray(rotation, dtype=np.float64)
-    sine = np.hypot(m[..., 0, 2], m[..., 1, 2])
-    level = sine < LEAST_SINE
-    alpha = np.where(
-        level, np.arctan2(m[..., 1, 0], m[..., 0, 0]), np.arctan2(m[..., 0, 2], -m[..., 1, 2])
-    )
-    gamma = np.where(level, 0.0, np.arctan2(m[..., 2, 0], m[..., 2, 1]))
-    return np.stack([alpha, np.arctan2(sine, m[..., 2, 2]), gamma], axis=-1)
+    angles, last = [], np.asarray(start, dtype=np.float64)
+    for m in np.asarray(rotations, dtype=np.float64):
+        candidates = np.array(_zxz_solutions(m, float(last[0])))
+        candidates -= 2 * np.pi * np.round((candidates - last) / (2 * np.pi))
+        last = candidates[np.argmin(np.abs(candidates - last).sum(axis=1))]
+        angles.append(last)
+    return np.array(angles)
+
+
+def _zxz_solutions(m: Array, alpha: float) -> list[tuple[float, float, float]]:
+    """Solutions within a turn, of a matrix (3, 3); of those of a level one that with `alpha`."""
+    sine = float(np.hypot(m[0, 2], m[1, 2]))
+    if sine < LEAST_SINE:
+        turn = float(np.arctan2(m[1, 0], m[0, 0]))
+        return [(alpha, 0.0, turn - alpha)] if m[2, 2] > 0 else [(alpha, np.pi, alpha - turn)]
+    first, last = float(np.arctan2(m[0, 2], -m[1, 2])), float(np.arctan2(m[2, 0], m[2, 1]))
+    beta = float(np.arctan2(sine, m[2, 2]))
+    return [(first, beta, last), (first + np.pi, -beta, last + np.pi)]
 
 
 Solver = Callable[[Array, Pose], Pose]
@@ -67,8 +79,8 @@ class LegMotion:
 
     @property
     def euler_zxz(self) -> Array:
-        """α, β, γ of Lapikov et al. 2014, section 4; γ is 0 where the platform is level."""
-        return to_zxz(self.poses.rotation)
+        """α, β, γ (n + 1, 3) in radians, continuous, from about zero on."""
+        return frozen(to_zxz(self.poses.rotation))
 
     @property
     def rotation_vectors(self) -> Array:

@@ -2,7 +2,6 @@
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -15,22 +14,17 @@ from hexapod_control.leg_jacobian import (
     smallest_singular_value,
     units_and_jacobian,
 )
+from hexapod_control.platform_limits import PlatformLimits
 from manipulator import _kernel
 from manipulator.arrays import Array, Mask, frozen, stretched
 from manipulator.continuity import first_jump
 from manipulator.errors import ConfigError, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
-from manipulator.limits.limit import Bounds, Search
 from manipulator.links import PLATFORM, Link
 from manipulator.pose import Pose
 from manipulator.skeleton import Stroke, outline
 
 SINGULAR = 1e-6
-
-SHORTFALL, SURPLUS, JOINT, TILT, SWING, LEANING = (slice(6 * k, 6 * k + 6) for k in range(6))
-HEIGHT, SIGMA = slice(36, 37), slice(37, 38)
-VALUES, RANGES = 38, 39
-"""Where values stand in `limited`, and the numbers in `limit_ranges`: kernel/limits.h."""
 
 SAME = 0.02
 """Difference of joints (rad or m) that is a measurement's, not another branch's."""
@@ -69,6 +63,7 @@ class ParallelPlatform(ABC):
     trusted_margin: float
     legs: Array = field(init=False)
     parameters: Array = field(init=False)
+    limits: PlatformLimits = field(init=False)
     home: Pose = field(init=False)
     warm: Array = field(init=False)
     cold: Array = field(init=False)
@@ -79,7 +74,7 @@ class ParallelPlatform(ABC):
         """Finds home, the sign of det J there, and to which side each joint's gain is.
 
         legs and parameters are the machine as the kernel takes it: crank_legs and platform of
-        kernel/crank.h and limits.h.
+        kernel/crank.h and platform.h.
         """
         home = Pose(np.array([0.0, 0.0, self.geometry.home_height]), np.eye(3))
         self._put('home', home)
@@ -104,6 +99,7 @@ class ParallelPlatform(ABC):
         parameters = frozen(np.concatenate([legs, length, home_rods.T.ravel(), home_gains]))
         self._put('parameters', parameters)
         self._put('legs', parameters[: len(legs)])
+        self._put('limits', PlatformLimits(parameters))
 
     @abstractmethod
     def _legs(self) -> Array:
@@ -238,56 +234,6 @@ class ParallelPlatform(ABC):
     def sigma_min(self, pose: Pose, joints: Array) -> Array:
         """The forward singularity margin (...), dimensionless; NaN for NaN joints."""
         return smallest_singular_value(self.leg_jacobian(pose, joints), self.characteristic_length)
-
-    def limited_values(self, pose: Pose, joints: Array) -> Array:
-        """See `LimitGroup`: all limited values (..., 38), in the order of kernel/limits.h."""
-        position, rotation, given = _together(pose, joints)
-        values = np.empty((*position.shape[:-1], VALUES))
-        _kernel.limited_values(self.parameters, position, rotation, given, values)
-        return values
-
-    def ranges(self, bounds: Sequence[Bounds]) -> Array:
-        """See `LimitGroup`."""
-        ranges = np.empty(RANGES)
-        _kernel.limit_ranges(self.parameters, *_lowest_and_highest(bounds), ranges)
-        return ranges
-
-    def descended(self, search: Search, bounds: Sequence[Bounds], start: Pose) -> Pose:
-        """See `LimitGroup`."""
-        target, position, rotation = search.target, np.empty(3), np.empty((3, 3))
-        _kernel.descended(
-            self.parameters, *_lowest_and_highest(bounds), search.pivot,
-            np.array([search.clearance, search.most_steps]), target.position, target.rotation,
-            start.position, start.rotation, position, rotation,
-        )  # fmt: skip
-        return Pose.unchecked(position, rotation)
-
-    def keeps(self, ranges: Array, pose: Pose, joints: Array) -> Mask:
-        """See `LimitGroup`."""
-        position, rotation, given = _together(pose, joints)
-        kept = np.empty(position.shape[:-1])
-        _kernel.keeps_limits(self.parameters, ranges, position, rotation, given, kept)
-        return np.asarray(kept != 0.0)
-
-
-def _lowest_and_highest(bounds: Sequence[Bounds]) -> tuple[Array, Array]:
-    """The strictest of all limited values (38,), ±∞ where there is none."""
-    low, high = np.full(VALUES, -np.inf), np.full(VALUES, np.inf)
-    for columns, least, most in bounds:
-        low[columns] = np.maximum(low[columns], least)
-        high[columns] = np.minimum(high[columns], most)
-    return low, high
-
-
-def _together(pose: Pose, joints: Array) -> tuple[Array, Array, Array]:
-    """Position, rotation and joints with the same leading axes, as the kernel takes them."""
-    position, rotation, shape = pose.position, pose.rotation, np.shape(joints)
-    if shape[:-1] != position.shape[:-1]:
-        leading = np.broadcast_shapes(shape[:-1], position.shape[:-1])
-        position = stretched(position, (*leading, 3))
-        rotation = stretched(rotation, (*leading, 3, 3))
-        shape = (*leading, LEGS)
-    return position, rotation, stretched(joints, (*shape[:-1], LEGS))
 
 
 def checked_joints(joints: Array) -> Array:

@@ -6,7 +6,8 @@ from itertools import product
 import numpy as np
 
 from hexapod_control.geometry import LEGS, RotaryGeometry
-from hexapod_control.parallel_platform import SHORTFALL, SURPLUS, VALUES, ParallelPlatform
+from hexapod_control.parallel_platform import ParallelPlatform
+from hexapod_control.platform_limits import SHORTFALL, SURPLUS, VALUES
 from manipulator._kernel import crank_elbows, crank_gains, crank_inverse
 from manipulator.arrays import Array, stretched
 from manipulator.errors import InvalidInput, Unreachable
@@ -106,7 +107,7 @@ class RotaryHexapod(ParallelPlatform):
         if near is not None and not np.isfinite(near).all():
             raise InvalidInput('the joints to stay near are not finite')
         is_open = np.isnan(joints).any(axis=-1)
-        values = self.limited_values(pose[is_open], joints[is_open]).reshape(-1, VALUES)
+        values = self.limits.limited_values(pose[is_open], joints[is_open]).reshape(-1, VALUES)
         lack, surplus = values[:, SHORTFALL], values[:, SURPLUS]
         row, leg = np.unravel_index(np.argmax(np.maximum(lack, surplus)), lack.shape)
         rod, is_short = self.geometry.rod_lengths[leg], lack[row, leg] > surplus[row, leg]

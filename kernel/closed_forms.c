@@ -271,7 +271,7 @@ static void gap_of_elbow(const struct chain *chain, const real tip[3], const rea
     real beyond = d - most > least - d ? d - most : least - d;
     real known = gap->distance - most > least - gap->distance ? gap->distance - most
                                                               : least - gap->distance;
-    if (!gap->is_at_shoulder || beyond < known)
+    if (!(gap->is_at_shoulder > 0) || beyond < known)
         *gap = (struct gap){1, d, least, most};
 }
 
@@ -289,7 +289,7 @@ void closed_gap(const struct closed_form *form, const struct frame *pose, struct
     if (!joint_1(&form->chain, form->centre, centre, free[0], q1))
         return;
     for (int front = 0; front < 2; front++) {
-        if (!form->has_parallel_axes) {
+        if (!(form->has_parallel_axes > 0)) {
             from_shoulder(&form->chain, q1[front], centre, target);
             gap_of_elbow(&form->chain, form->centre, target, gap);
         } else if (outer_wrist(&form->chain, &moved, q1[front], free, q5, q6))

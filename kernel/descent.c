@@ -47,7 +47,7 @@ static real length_of(const real v[6])
     return real_sqrt(square);
 }
 
-/* How far inside the ranges all values are, from below, then from above; NaN where there is none. */
+/* How far inside the ranges values are, from below, then from above; NaN where there is none. */
 static void put_margins(const struct descent *d, const struct place *place, real margins[BOUNDS])
 {
     const struct crank_legs *legs = &d->platform->legs;

@@ -140,7 +140,7 @@ static void eliminate(struct equations *equations)
 {
     real(*left)[EQUATIONS] = equations->left[0][0], (*right)[EQUATIONS] = equations->right[0];
     for (int k = 0; k < UNKNOWN; k++) {
-        real v[EQUATIONS], square = 0;
+        real v[EQUATIONS] = {0}, square = 0;
         for (int i = k; i < EQUATIONS; i++) {
             v[i] = right[k + 1][i];
             square += v[i] * v[i];

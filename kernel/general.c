@@ -28,7 +28,7 @@ static void inner_joints(const struct equations *equations, const real q[JOINTS]
 {
     const real(*left)[EQUATIONS] = (const real(*)[EQUATIONS])equations->left[0][0];
     const real(*right)[EQUATIONS] = (const real(*)[EQUATIONS])equations->right[0];
-    real at[3][3], x[UNKNOWN + 1];
+    real at[3][3], x[UNKNOWN + 1] = {0};
     for (int i = 0; i < 3; i++)
         trigonometry(q[2 + i], at[i]);
     for (int i = UNKNOWN - 1; i >= 0; i--) {

@@ -64,7 +64,7 @@ void turning(const struct decomposed *at, const real rates[JOINTS], real acceler
     for (int k = 0; k < 6; k++)
         acceleration[k] = 0;
     for (int i = 0; i < JOINTS; i++) {
-        real velocity[3], turn[3], both[3], linear[3], angular[3];
+        real velocity[3] = {0}, turn[3] = {0}, both[3] = {0}, linear[3], angular[3];
         for (int k = 0; k < 3; k++) {
             velocity[k] = at->jacobian[k][i] * rates[i];
             turn[k] = at->jacobian[3 + k][i] * rates[i];

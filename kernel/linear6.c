@@ -26,7 +26,7 @@ static void normal_equations(real a[6][6], real damping, const real b[6],
 
 void damped6(real matrix[6][6], real damping, const real right[6], real solution[6])
 {
-    real l[6][6], inverse[6];
+    real l[6][6], inverse[6] = {0};
     normal_equations(matrix, damping, right, l, solution);
     for (int i = 0; i < 6; i++) {
         for (int j = 0; j <= i; j++) {

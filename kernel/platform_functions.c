@@ -2,6 +2,7 @@
    leg by leg. */
 #include <string.h>
 
+#include "braking.h"
 #include "descent.h"
 #include "least_distance.h"
 #include "limits.h"
@@ -253,6 +254,28 @@ FUNCTION(descended, {WHOLE, NUMBERS(struct platform)}, {WHOLE, VALUES}, {WHOLE, 
          {WHOLE, 3}, {WHOLE, 2}, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, 3},
          {WRITTEN, 9})
 
+/* Platform, ranges, frame, bounds; the present pose, joints and rates; twists; their paths. Returns
+   the index of the first twist with no obstacle, or how many there are; paths beyond are 0. */
+static Py_ssize_t call_first_free_path(real *const *a, Py_ssize_t items)
+{
+    const struct jogged machine = {(const struct platform *)a[0], (const struct limit_ranges *)a[1],
+                                   (const struct jog_frame *)a[2], (const struct jog_bounds *)a[3]};
+    const struct jog_state from = {a[4], a[5], a[6], a[7]};
+    struct braking_path *paths = (struct braking_path *)a[9];
+    memset(paths, 0, (size_t)items * sizeof *paths);
+    Py_ssize_t i = 0;
+    for (; i < items; i++) {
+        paths[i] = braking_path(&machine, &from, a[8] + 6 * i);
+        if (paths[i].obstacle == NOTHING)
+            break;
+    }
+    return i;
+}
+FUNCTION(first_free_path, {WHOLE, NUMBERS(struct platform)}, {WHOLE, NUMBERS(struct limit_ranges)},
+         {WHOLE, NUMBERS(struct jog_frame)}, {WHOLE, NUMBERS(struct jog_bounds)}, {WHOLE, 3},
+         {WHOLE, 9}, {WHOLE, LEGS}, {WHOLE, LEGS}, {ITEMS, 6},
+         {WRITTEN, NUMBERS(struct braking_path)})
+
 PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(crank_inverse),
     METHOD(crank_elbows),
@@ -272,5 +295,6 @@ PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(twist_between),
     METHOD(least_distance),
     METHOD(descended),
+    METHOD(first_free_path),
     {NULL, NULL, 0, NULL},
 };

@@ -182,3 +182,17 @@ def descended(
     rotation: Array,
 ) -> int:
     """0; the last two are written: kernel/descent.h."""
+
+def first_free_path(
+    platform: Array,
+    ranges: Array,
+    frame: Array,
+    bounds: Array,
+    position: Array,
+    rotation: Array,
+    joints: Array,
+    rates: Array,
+    twists: Array,
+    paths: Array,
+) -> int:
+    """The first of the twists that can be braked, or how many there are: kernel/braking.h."""

@@ -14,7 +14,7 @@ from manipulator.arrays import Array, Mask
 from manipulator.frames import Frames
 from manipulator.kinematics import ForwardSolution, Kinematics
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.limit import Bounds, LimitGroup, LimitOf, Search
+from manipulator.limits.limit import Bounds, BrakingPaths, LimitGroup, LimitOf, Search
 from manipulator.links import Link
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -137,6 +137,12 @@ class FramedGroup:
         pivot = self.frames.T_platform_pivot.position
         of_pivot = replace(search, target=T_base_work @ search.target, pivot=pivot)
         return T_base_work.inverse() @ self.inner.descended(of_pivot, bounds, T_base_work @ start)
+
+    def first_free_path(self, ranges: Array, paths: BrakingPaths) -> tuple[int, Array]:
+        """See `LimitGroup`."""
+        work, pivot = self.frames.T_base_work, self.frames.T_platform_pivot.position
+        frame = np.concatenate([work.position, work.rotation.ravel(), pivot])
+        return self.inner.first_free_path(ranges, replace(paths, frame=frame))
 
 
 @dataclass(frozen=True, eq=False)

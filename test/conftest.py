@@ -10,9 +10,15 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from hexarm.board import build as firmware_build
+from sampling import IS_THOROUGH
 
-settings.register_profile(  # how long a computer takes is no verdict
-    'patient', deadline=None, suppress_health_check=[HealthCheck.too_slow]
+# How long a computer takes is no verdict. A run tries the same as the last one, but for thorough
+# runs, which look for what no run has tried yet.
+settings.register_profile(
+    'patient',
+    deadline=None,
+    derandomize=not IS_THOROUGH,
+    suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile('patient')
 

@@ -5,11 +5,12 @@
 #include <avr/io.h>
 #include <math.h>
 
+#include "arm_inverse.h"
 #include "kinematics.h"
 #include "resolved_rate.h"
 #include "target.h"
 
-enum { NOTHING = 1, INVERSE = 2, ARM_STEP = 3, SINE = 4, DONE = 0xFF };
+enum { NOTHING = 1, INVERSE = 2, ARM_STEP = 3, SINE = 4, ALGEBRAIC = 5, GEOMETRIC = 6, DONE = 0xFF };
 
 #define MARK(what) (GPIOR0 = (what))
 
@@ -38,6 +39,22 @@ static void arm_step(float q)
     anything = is_regular ? joints[5] : 0;
 }
 
+static void arm_inverse(float x)
+{
+    const PaperArm arm = {0.4f, 0.4f};
+    const float centre[3] = {x - 0.1f, 0.45f, 0.2f + x};
+    const float rotation[9] = {0.36f, 0.48f, 0.8f, -0.8f, 0.6f, 0.0f, -0.48f, -0.64f, 0.6f};
+    float joints[6];
+    MARK(ALGEBRAIC);
+    bool reaches = arm_inverse_algebraic(&arm, centre, rotation, joints);
+    MARK(ALGEBRAIC);
+    anything = reaches ? joints[5] : 0;
+    MARK(GEOMETRIC);
+    reaches = arm_inverse_geometric(&arm, centre, rotation, joints);
+    MARK(GEOMETRIC);
+    anything = reaches ? joints[5] : 0;
+}
+
 int main(void)
 {
     for (int k = 0; k < 20; k++) {
@@ -51,6 +68,7 @@ int main(void)
         anything = value;
         inverse(0.0003f * k, 0.004f * k);
         arm_step(0.02f * k);
+        arm_inverse(0.01f * k);
     }
     MARK(DONE);
     for (;;)

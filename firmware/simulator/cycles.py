@@ -11,7 +11,14 @@ from hexarm.board import build as firmware_build
 from hexarm.board.header import header_of
 
 MARKS, DONE = 255, 255
-NOTHING, INVERSE, ARM_STEP, SINE = 1, 2, 3, 4
+NOTHING, INVERSE, ARM_STEP, SINE, ALGEBRAIC, GEOMETRIC = 1, 2, 3, 4, 5, 6
+TIMES = {
+    'inverse_time': INVERSE,
+    'step_time': ARM_STEP,
+    'sine_time': SINE,
+    'algebraic_time': ALGEBRAIC,
+    'geometric_time': GEOMETRIC,
+}
 LONGEST_RUN = 5 * CLOCK_HZ
 ANY_BAUD = 250_000
 
@@ -39,7 +46,7 @@ def costs(machine: str = 'robocake') -> dict[int, Cost]:
     assert marks['level'][-1] == DONE, 'the bench did not come to its end'
     found = {}
     idle = 0.0
-    for mark in (NOTHING, INVERSE, ARM_STEP, SINE):
+    for mark in (NOTHING, INVERSE, ARM_STEP, SINE, ALGEBRAIC, GEOMETRIC):
         cycles = marks['cycle'][marks['level'] == mark].astype(np.int64)
         spent = cycles[1::2] - cycles[::2]
         idle = float(spent.mean()) if mark == NOTHING else idle
@@ -51,12 +58,13 @@ def main() -> None:
     """Prints the table; with --json, milliseconds by name."""
     found = costs()
     if sys.argv[1:] == ['--json']:
-        marks = {'inverse_time': INVERSE, 'step_time': ARM_STEP, 'sine_time': SINE}
-        print(json.dumps({name: found[mark].milliseconds for name, mark in marks.items()}))
+        print(json.dumps({name: found[mark].milliseconds for name, mark in TIMES.items()}))
         return
     rows = (
         ('inverse kinematics, six cranks', INVERSE, 'at 50 Hz there are 20 ms'),
         ('resolved-rate step of an arm', ARM_STEP, '< 20 ms on a C167 (Fadeev, Loginov)'),
+        ('inverse of that arm, algebraic', ALGEBRAIC, ''),
+        ('inverse of that arm, geometric', GEOMETRIC, ''),
         ('one sine', SINE, '2 ms on a C167'),
     )
     print('ATmega2560 at 16 MHz, simulated; single precision')

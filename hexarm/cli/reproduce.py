@@ -1,67 +1,75 @@
 """`hexarm reproduce`: everything that the three papers report, computed again, as a report."""
 
 import argparse
-from collections.abc import Iterator
 from pathlib import Path
 
-from hexarm.cli.progress import OnProgress, progress
-from hexarm.papers.finding import Finding, rendered, to_json
+from hexarm.cli.progress import progress
+from hexarm.papers.finding import Missing
+from hexarm.papers.report import rendered, to_json
+from hexarm.papers.reproduction import Reproduction, contradictions, reproduced
 from manipulator.errors import InvalidInput
 from manipulator.formatting import reason
 
-POINTS, DRAWS = 400_000, 4000
-FEW_POINTS, FEW_DRAWS = 20_000, 400
+OUTPUT = Path('reproduction', 'reproduction.md')
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
     parser = commands.add_parser(
-        'reproduce', help='the figures of the three papers, in some minutes'
+        'reproduce', help='the figures of the three papers, in a minute or two'
     )
     parser.add_argument(
-        '--output', type=Path, default=Path('docs/reproduction.md'), metavar='FILE.md',
-        help='the report; its figures and numbers go beside it (default docs/reproduction.md)',
+        '--output', type=Path, default=OUTPUT, metavar='FILE.md',
+        help=f'the report; its figures and numbers go beside it (default {OUTPUT})',
     )  # fmt: skip
-    parser.add_argument('--quick', action='store_true', help='fewer samples, within seconds')
+    parser.add_argument(
+        '--quick', action='store_true',
+        help='fewer samples, no noise in the moving model: some seconds',
+    )  # fmt: skip
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Writes the report, its figures and its numbers; prints contradictions."""
-    from hexarm.papers import crank_dynamics, pictures  # noqa: PLC0415 (needs mujoco)
-
+    """Writes the report, its figures and its numbers; prints what contradicts or is missing."""
     output: Path = arguments.output
     if output.suffix != '.md':
         raise InvalidInput(f'--output {output}: the name must end in .md')
-    folder = output.parent / 'figures'
-    with progress() as on_progress:
-        dynamics = crank_dynamics.reproduced()
-        on_progress('simulation and limits', 1.0)
-        found = [*computed(arguments.quick, on_progress, dynamics.findings)]
-        figures = [(f'figures/{name}', caption) for name, caption in pictures.NAMES.items()]
+    with progress() as on_stage:
+        this = reproduced(arguments.quick, on_stage)
         try:
-            folder.mkdir(parents=True, exist_ok=True)
-            pictures.draw(folder, dynamics.recording)
-            output.write_text(rendered(found, figures), encoding='utf-8')
-            output.with_suffix('.json').write_text(to_json(found), encoding='utf-8')
+            write(this, output)
         except OSError as error:
             raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
-        on_progress('report', 1.0)
-    for finding in found:
-        if finding.verdict == 'contradicts':
-            print(f'{finding.source}, {finding.topic}: {finding.paper}; ours {finding.ours}')
+        on_stage('report', 1.0)
+    for line in contradictions(this.findings):
+        print(line)
+    for part in this.missing:
+        print(f'missing: {part.source}, {part.topic}: {part.why}')
     print(output)
     return 0
 
 
-def computed(quick: bool, on_progress: OnProgress, simulated: list[Finding]) -> Iterator[Finding]:
-    """All findings in the report's order; those of the simulation are made before."""
-    from hexarm.papers import arm_modes, crank_kinematics, linear_platforms  # noqa: PLC0415
+def write(this: Reproduction, output: Path) -> None:
+    """The report and the same as JSON, with the figures in a folder beside them."""
+    folder = output.parent / 'figures'
+    folder.mkdir(parents=True, exist_ok=True)
+    captions = _drawn(this, folder)
+    figures = [(f'figures/{name}', caption) for name, caption in captions.items()]
+    output.write_text(rendered(this.report, figures), encoding='utf-8')
+    output.with_suffix('.json').write_text(to_json(this.report), encoding='utf-8')
 
-    draws, points = (FEW_DRAWS, FEW_POINTS) if quick else (DRAWS, POINTS)
-    yield from crank_kinematics.findings(draws, points, not quick, on_progress)
-    yield from simulated
-    yield from linear_platforms.findings()
-    on_progress('linear platforms', 1.0)
-    yield from arm_modes.findings()
-    on_progress('arm', 1.0)
+
+def _drawn(this: Reproduction, folder: Path) -> dict[str, str]:
+    """The figures by name, with their captions; what cannot be drawn goes to the missing."""
+    try:
+        from hexarm.papers import pictures  # noqa: PLC0415 (matplotlib is an extra)
+    except ModuleNotFoundError as error:
+        this.missing.append(Missing('figures', 'all', f'{error.name} is not installed'))
+        return {}
+    names = []
+    for item in pictures.draw(folder, this.recording):
+        if isinstance(item, Missing):
+            this.missing.append(item)
+        else:
+            names.append(item)
+    return {name: pictures.NAMES[name] for name in names}

@@ -1,72 +1,115 @@
-"""One figure of a paper beside ours, and the report that is made of such findings."""
+"""One quantity of a paper beside ours, and the verdict that its numbers give."""
 
-import json
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Literal
-
-from manipulator.errors import InvalidInput
 
 ROTARY = 'Prokopovich 2019'
 LINEAR = 'Lapikov et al. 2014'
-ARM = 'Fadeev, Loginov'
-HEAD = '| quantity | paper | ours | verdict | reason |'
-Verdict = Literal['agrees', 'partly', 'contradicts', 'not stated']
+ARM = 'Fadeev and Loginov'
+Side = Literal['equal', 'at most', 'at least']
+Verdict = Literal['agrees', 'partly', 'contradicts', 'meets', 'misses', 'not stated']
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What a paper states of a quantity: in its words, and in numbers that ours are judged by.
+
+    values are in the unit of our values, one for each of them; () where the paper gives none. Ours
+    may be off by `agrees`, and by `partly` for that verdict, on the wrong side of the paper's. A
+    requirement of the paper (a time that its controller needs) is met or missed.
+    """
+
+    text: str
+    values: tuple[float, ...] = ()
+    agrees: float = 0.0
+    partly: float = 0.0
+    side: Side = 'equal'
+    is_requirement: bool = False
+
+    def off(self, ours: tuple[float, ...]) -> float:
+        """By how much the worst of our values is on the wrong side of the paper's."""
+        return max(self._off(a, b) for a, b in zip(ours, self.values, strict=True))
+
+    def verdict(self, ours: tuple[float, ...]) -> Verdict:
+        """Of values in the paper's order; ValueError where their number differs."""
+        if not self.values:
+            return 'not stated'
+        off = self.off(ours)
+        if self.is_requirement:
+            return 'meets' if off <= self.agrees else 'misses'
+        if off <= self.agrees:
+            return 'agrees'
+        return 'partly' if off <= self.partly else 'contradicts'
+
+    def rule(self, unit: str) -> str:
+        """How the verdict is computed, for the report."""
+        if not self.values:
+            return ''
+        space = f' {unit}' if unit else ''
+        values = ', '.join(f'{_number(v)}' for v in self.values)
+        bound = f'{values}{space}' if self.side == 'equal' else f'{self.side} {values}{space}'
+        within = f' ± {_number(self.agrees)}' if self.agrees else ''
+        partly = f'; partly ± {_number(self.partly)}' if self.partly > self.agrees else ''
+        return bound + within + partly
+
+    def _off(self, ours: float, paper: float) -> float:
+        if self.side == 'equal':
+            return abs(ours - paper)
+        return max(0.0, ours - paper if self.side == 'at most' else paper - ours)
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What `source` says of `topic`, and what we found: `ours` as it is shown, `value` to compare.
+    """What `source` claims of `topic`, and what we found: `ours` as shown, `values` to compare.
 
-    A fresh run must give `value` again to within `tolerance`, both in the unit of `ours`.
+    A fresh run must give each of `values` again to within `tolerance`; both are in `unit`.
     """
 
     key: str
     source: str
     topic: str
-    paper: str
+    claim: Claim
     ours: str
-    value: float
+    values: tuple[float, ...]
+    unit: str
     tolerance: float
-    verdict: Verdict
     reason: str
 
-
-def rendered(findings: Iterable[Finding], figures: Iterable[tuple[str, str]]) -> str:
-    """The report as Markdown; figures are (file beside the report, caption)."""
-    lines = [
-        '# Reproduction of the papers',
-        '',
-        '`hexarm reproduce` generates this page; a test repeats the computation and compares. '
-        'Each row shows the result of a paper and ours, with the reason for a difference. Masses '
-        'and drives are those of `config/robocake.yaml`, many of them estimates '
-        '([physics.md](physics.md)).',
-        '',
-    ]
-    groups: dict[str, list[Finding]] = {}
-    for finding in findings:
-        groups.setdefault(finding.source, []).append(finding)
-    for source, members in groups.items():
-        lines += [f'## {source}', '', HEAD, '|' + '---|' * 5]
-        lines += [
-            f'| {f.topic} | {f.paper} | {f.ours} | {f.verdict} | {f.reason} |' for f in members
-        ]
-        lines.append('')
-    lines.append('## Figures')
-    for path, caption in figures:
-        lines += ['', f'![{caption}]({path})', '', f'*{caption}*']
-    return '\n'.join(lines) + '\n'
+    @property
+    def verdict(self) -> Verdict:
+        """By the claim, from the values."""
+        return self.claim.verdict(self.values)
 
 
-def to_json(findings: Iterable[Finding]) -> str:
-    """The findings for programs, one a line."""
-    rows = (json.dumps(asdict(f), ensure_ascii=False) for f in findings)
-    return '[\n' + ',\n'.join(rows) + '\n]\n'
+@dataclass(frozen=True)
+class Missing:
+    """A part of the report that this installation cannot compute, and why."""
+
+    source: str
+    topic: str
+    why: str
 
 
-def from_json(text: str) -> list[Finding]:
-    """What `to_json` wrote; InvalidInput for anything else."""
-    try:
-        return [Finding(**row) for row in json.loads(text)]
-    except (ValueError, TypeError) as error:
-        raise InvalidInput(f'these are no findings: {error}') from error
+@dataclass(frozen=True)
+class Table:
+    """Rows of numbers under names with units; a fresh run gives each to within a relative part."""
+
+    key: str
+    title: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[float, ...], ...]
+    tolerance: float
+
+
+def unstated(text: str = 'not given') -> Claim:
+    """For what the paper gives no number."""
+    return Claim(text)
+
+
+def minus(text: str) -> str:
+    """With the typographic minus sign."""
+    return text.replace('-', '−')
+
+
+def _number(value: float) -> str:
+    return minus(f'{value:.6g}')

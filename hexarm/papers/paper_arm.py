@@ -60,6 +60,28 @@ def projections(q: Array) -> Array:
     return np.stack([a_x, a_z, n_z], axis=-1)
 
 
+def nine_projections(three: Array, near: Array) -> Array:
+    """a, n, s as rows (3, 3) from a_x, a_z, n_z (3,): of the four solutions the nearest to `near`.
+
+    "The others are easily computed": a_y = ±√(1 − a_x² − a_z²), n is square to a, s = a × n. So
+    the three do not give the orientation alone. NoSolution for values that no rotation has.
+    """
+    a_x, a_z, n_z = (float(v) for v in three)
+    level = 1.0 - a_z**2
+    rest = level - n_z**2
+    if a_x**2 > level or rest < 0.0 or level <= 0.0:
+        raise NoSolution(f'no rotation has a_x {a_x:g}, a_z {a_z:g}, n_z {n_z:g}')
+    solutions = []
+    for sign in (1.0, -1.0):
+        a = np.array([a_x, sign * np.sqrt(level - a_x**2), a_z])
+        along, across = a[:2] / np.sqrt(level), np.array([-a[1], a[0]]) / np.sqrt(level)
+        lean, side = -a_z * n_z / np.sqrt(level), np.sqrt(rest / level)
+        for other in (side, -side):
+            n = np.array([*(lean * along + other * across), n_z])
+            solutions.append(np.stack([a, n, np.cross(a, n)]))
+    return min(solutions, key=lambda found: float(np.abs(found - near).sum()))
+
+
 def projection_rates(q: Array) -> Array:
     """The coefficients of q1' … q6' in a_x', a_z', n_z': rows α, β, γ of (..., 3, 6)."""
     s, c, s23, c23 = _sines_and_cosines(q)

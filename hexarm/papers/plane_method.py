@@ -16,6 +16,7 @@ from manipulator.pose import Pose
 
 TOLERANCE = 1e-13
 """Of a step, relative: the last one where it is as small."""
+LEAST_SQUARES_TOLERANCE = 1e-15
 MOST_LEFT = 1e-12
 """Of an equation, in units of UV²."""
 FROM_CORNER = np.array([0, 1, 1, 2, 2, 0])  # joint k lies on the side from this corner
@@ -81,11 +82,29 @@ class PlaneMethod:
                 f'the plane method found no pose: an equation misses by '
                 f'{worst:.3g} of the squared side'
             )
-        corners = found.x.reshape(3, 3)
-        reached = np.linalg.norm(self._joints(corners) - self.base_points, axis=1)
-        return PlaneSolution(
-            self._pose(corners), int(found.nfev), float(np.abs(reached - lengths).max())
+        return self._solution(found.x.reshape(3, 3), lengths, int(found.nfev))
+
+    def nearest(self, lengths: Array, start: Pose) -> PlaneSolution:
+        """The pose that fits the nine equations best in the sense of least squares, from `start`.
+
+        For lengths (6,) metres that belong to no pose; where the legs do not determine the pose,
+        one of the many, by the descent.
+        """
+        from scipy.optimize import least_squares  # noqa: PLC0415 (50 MB: for who asks)
+
+        found = least_squares(
+            lambda x: self._equations(x, lengths)[0],
+            self._corners(start).ravel(),
+            lambda x: self._equations(x, lengths)[1],
+            method='dogbox',
+            **dict.fromkeys(('xtol', 'ftol', 'gtol'), LEAST_SQUARES_TOLERANCE),
         )
+        return self._solution(found.x.reshape(3, 3), lengths, int(found.nfev))
+
+    def _solution(self, corners: Array, lengths: Array, evaluations: int) -> PlaneSolution:
+        reached = np.linalg.norm(self._joints(corners) - self.base_points, axis=1)
+        worst = float(np.abs(reached - lengths).max())
+        return PlaneSolution(self._pose(corners), evaluations, worst)
 
     def _corners(self, pose: Pose) -> Array:
         """U, V, W (3, 3) of a pose: corners at 0°, 120°, 240° of a circle of radius UV/√3."""

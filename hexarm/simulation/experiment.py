@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hexarm.simulation.simulation import Reading, Simulation
+from manipulator.analysis.accuracy import JointErrors
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput
 from manipulator.kinematics import Kinematics
@@ -13,6 +14,8 @@ from manipulator.pose import Pose
 from manipulator.trajectory.cycle import Cycle
 
 SHOWN_STEPS = 4
+NOISE_STEPS = 40
+"""Steps for which a servo keeps an error: 20 ms, the time between two of its pulses."""
 Shift = Callable[[Pose, Array], Array]
 """What is added to the joints (N, n) of poses (N), before drives get them."""
 
@@ -72,6 +75,22 @@ def run(
 def unshifted(pose: Pose, joints: Array) -> Array:
     """Targets as the kinematics has them."""
     return np.zeros(joints.shape)
+
+
+def noisy(shift: Shift, errors: JointErrors, generator: np.random.Generator) -> Shift:
+    """The same shift with errors of the servos, drawn anew for every pulse."""
+
+    def noisy_shift(pose: Pose, joints: Array) -> Array:
+        pulses = errors.drawn(-(-len(joints) // NOISE_STEPS), generator)
+        return shift(pose, joints) + np.repeat(pulses, NOISE_STEPS, axis=0)[: len(joints)]
+
+    return noisy_shift
+
+
+def position_rms(quiet: Recording, other: Recording) -> float:
+    """√E|Δp|² in metres between two recordings of one cycle."""
+    apart = quiet.poses.position - other.poses.position
+    return float(np.sqrt(np.mean(np.sum(apart**2, axis=-1))))
 
 
 def _swelling(cycle: Cycle, times: Array, period: float) -> Pose:

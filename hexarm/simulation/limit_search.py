@@ -24,8 +24,12 @@ from manipulator.trajectory.plan import MotionState
 
 PAPER_AMPLITUDE = (6e-3, 6e-3, 3e-3, 0.1, 0.1, 0.08)
 """x, y, z in m; about x (ψ), y (θ), z (φ) in rad."""
-CHECKED = 400
+CHECKED, CHECKED_A_TURN = 400, 100
 QUARTER = 0.25
+
+
+FREQUENCY = 0.884
+"""Hertz at which the paper's amplitudes, in phase, reach 50 mm/s."""
 
 
 def in_phase(home: Pose, amplitude: Array, frequency: float) -> Cycle:
@@ -34,8 +38,11 @@ def in_phase(home: Pose, amplitude: Array, frequency: float) -> Cycle:
 
 
 def poses_of(cycle: Cycle) -> Pose:
-    """A period of the cycle, evenly in time."""
-    return cycle.at(np.linspace(0.0, cycle.checked_duration, CHECKED)).pose
+    """A period of the cycle, evenly in time, and so often that its fastest sine is seen."""
+    period = cycle.checked_duration
+    turns = float((cycle.frequency * (cycle.amplitude != 0)).max(initial=0.0)) * period
+    count = max(CHECKED, int(np.ceil(CHECKED_A_TURN * turns)))
+    return cycle.at(np.linspace(0.0, period, count)).pose
 
 
 def inside(machine: Machine, poses: Pose) -> Mask:

@@ -1,6 +1,7 @@
 """From a machine file to its MuJoCo model: one function a kind of machine."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from hexapod_control.geometry import LEGS
@@ -64,12 +65,17 @@ def mechanism(
     drives = drives_of(dynamics, machine_file)
     if torque is not None:
         drives = drives.stronger(torque)
-    make = _MODELS[type(dynamics)]
+    make = _MODELS[type(dynamics)](machine_file.limits)
     return make(name, kinematics, dynamics, drives)
 
 
-_MODELS: dict[type[Dynamics], Callable[..., Mechanism]] = {
-    RotaryDynamicsConfig: rotary_model,
-    LinearDynamicsConfig: linear_model,
-    ArmDynamicsConfig: arm_model,
+def _crank_platform(limits: dict[str, Any]) -> Callable[..., Mechanism]:
+    return partial(rotary_model, minimum_height=1e-3 * limits['minimum_height_mm'])
+
+
+_MODELS: dict[type[Dynamics], Callable[[dict[str, Any]], Callable[..., Mechanism]]] = {
+    RotaryDynamicsConfig: _crank_platform,
+    LinearDynamicsConfig: lambda limits: linear_model,
+    ArmDynamicsConfig: lambda limits: arm_model,
 }
+"""What makes the model of a kind of machine, from the limits of its machine file."""

@@ -113,8 +113,7 @@ def add_hexagon(
     ring = np.stack([outer * np.cos(corners), outer * np.sin(corners)], axis=1)
     vertices = np.vstack([np.column_stack([ring, np.full(LEGS, z)]) for z in heights])
     add(child(root, 'asset'), 'mesh', name=name, vertex=vertices)
-    middle = (0.0, 0.0, sum(heights) / 2)
-    add(body, 'geom', type='mesh', mesh=name, pos=middle, mass='0', rgba=rgba)
+    add(body, 'geom', type='mesh', mesh=name, mass='0', rgba=rgba)
 
 
 def add_closure(root: ET.Element, leg: int) -> tuple[str, str]:

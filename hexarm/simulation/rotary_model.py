@@ -38,14 +38,25 @@ from hexarm.simulation.rigid_body import (
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 
+BODY_DEPTH, LEAST_DEPTH = 0.03, 0.01
+"""How far the body reaches below the crank axes, and its least thickness, metres."""
+
 
 def rotary_model(
-    name: str, kinematics: RotaryHexapod, config: RotaryDynamicsConfig, drives: Drives
+    name: str,
+    kinematics: RotaryHexapod,
+    config: RotaryDynamicsConfig,
+    drives: Drives,
+    minimum_height: float,
 ) -> Mechanism:
-    """The model at home, with the drives of the cranks."""
+    """The model at home, with the drives of the cranks.
+
+    The body's lid is where a level platform at minimum_height (m), its limit, rests on it.
+    """
     geometry, joints = kinematics.geometry, kinematics.joint_names
     root = document(name)
-    _add_body(root, kinematics, config)
+    lid = minimum_height - 0.5e-3 * config.platform.thickness_mm
+    _add_body(root, kinematics, config, lid)
     add_platform(
         root, config.platform, config.payload, geometry.platform_points, geometry.home_height
     )
@@ -68,14 +79,17 @@ def _universals(kinematics: RotaryHexapod) -> tuple[UniversalJoint, ...]:
     return tuple(UniversalJoint(n, u) for n, u in zip(normals, rods, strict=True))
 
 
-def _add_body(root: ET.Element, kinematics: RotaryHexapod, config: RotaryDynamicsConfig) -> None:
-    """The fixed body, a hexagonal prism below the platform, and a servo behind each crank."""
+def _add_body(
+    root: ET.Element, kinematics: RotaryHexapod, config: RotaryDynamicsConfig, lid: float
+) -> None:
+    """The fixed body, a hexagonal prism up to the lid (m), and a servo behind each crank."""
     geometry, world = kinematics.geometry, child(root, 'worldbody')
     reach = np.linalg.norm(geometry.crank_centres[:, :2], axis=1).min()
     body = add(world, 'body', name='body')
     servo = config.servo
     length, radius = 1e-3 * servo.length_mm, 1e-3 * servo.radius_mm
-    add_hexagon(root, body, 'body', reach - length, (-0.03, 0.01), METAL)
+    bottom = min(-BODY_DEPTH, lid - LEAST_DEPTH)
+    add_hexagon(root, body, 'body', reach - length, (bottom, lid), METAL)
     for leg in range(LEGS):
         centre, normal = geometry.crank_centres[leg], geometry.normals[leg]
         inward = normal if normal @ centre < 0 else -normal

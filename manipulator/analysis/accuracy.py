@@ -3,32 +3,41 @@
 The spread is computed to first order and by chance.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from manipulator.arrays import Array, frozen
+from manipulator.errors import InvalidInput
 from manipulator.kinematics import Kinematics
 from manipulator.pose import Pose
 
 
 @dataclass(frozen=True, eq=False)
 class JointErrors:
-    """Independent errors of n joints, rad or m; each array is (n,), 0 for none.
+    """Errors of n joints, rad or m; noise, dead_band and hysteresis are (n,), 0 for none.
 
     noise: uniform within ±noise. dead_band: the servo rests anywhere within it, uniform within
     ±dead_band/2. hysteresis: the play in its gear is taken up on one side, ±hysteresis/2 with
-    equal chances.
+    equal chances. These are independent from joint to joint. shared (k, n): k signals, uniform
+    within ±1, of which each reaches every joint with a weight of its own, rad or m: one row is a
+    noise common to all, several make any correlation.
     """
 
     noise: Array
     dead_band: Array
     hysteresis: Array
+    shared: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
-        """Freezes the arrays."""
+        """Freezes the arrays; raises InvalidInput for weights of another number of joints."""
         for name in ('noise', 'dead_band', 'hysteresis'):
             object.__setattr__(self, name, frozen(getattr(self, name)))
+        count = len(self.noise)
+        shared = self.shared if self.shared.size else np.zeros((0, count))
+        if shared.ndim != 2 or shared.shape[1] != count:
+            raise InvalidInput(f'shared errors of shape {shared.shape}, needs (signals, {count})')
+        object.__setattr__(self, 'shared', frozen(shared))
 
     @classmethod
     def of(
@@ -37,16 +46,24 @@ class JointErrors:
         """The same for all joints."""
         return cls(*(np.full(joints, size) for size in (noise, dead_band, hysteresis)))
 
+    @classmethod
+    def common(cls, weights: Array) -> 'JointErrors':
+        """One signal that reaches every joint with its weight (n,), rad or m."""
+        zero = np.zeros(len(weights))
+        return cls(zero, zero, zero, np.array([weights]))
+
     def on(self, chosen: tuple[int, ...]) -> 'JointErrors':
         """The same errors, on some joints (counted from 0) alone."""
         kept = np.isin(np.arange(len(self.noise)), chosen)
-        return JointErrors(self.noise * kept, self.dead_band * kept, self.hysteresis * kept)
+        parts = (self.noise, self.dead_band, self.hysteresis, self.shared)
+        return JointErrors(*(part * kept for part in parts))
 
     @property
-    def variance(self) -> Array:
-        """Of each joint (n,): a²/3 for uniform ±a, b² for ±b."""
+    def covariance(self) -> Array:
+        """Of the joints (n, n): a²/3 for uniform ±a, b² for ±b, wᵀw/3 for shared signals."""
         uniform = self.noise**2 + (self.dead_band / 2) ** 2
-        result: Array = uniform / 3 + (self.hysteresis / 2) ** 2
+        own = np.diag(uniform / 3 + (self.hysteresis / 2) ** 2)
+        result: Array = own + self.shared.T @ self.shared / 3
         return result
 
     def drawn(self, count: int, generator: np.random.Generator) -> Array:
@@ -54,7 +71,8 @@ class JointErrors:
         shape = (count, len(self.noise))
         noise = generator.uniform(-1.0, 1.0, shape) * self.noise
         rest = generator.uniform(-0.5, 0.5, shape) * self.dead_band
-        result: Array = noise + rest + generator.choice([-0.5, 0.5], shape) * self.hysteresis
+        own = noise + rest + generator.choice([-0.5, 0.5], shape) * self.hysteresis
+        result: Array = own + generator.uniform(-1.0, 1.0, (count, len(self.shared))) @ self.shared
         return result
 
 
@@ -90,9 +108,9 @@ class Spread:
 
 
 def linear_spread(kinematics: Kinematics, pose: Pose, errors: JointErrors) -> Spread:
-    """K diag(σ²) Kᵀ with the Jacobian K, at poses (...). NoSolution at a singular pose."""
+    """K Σ Kᵀ with the Jacobian K, at poses (...). NoSolution at a singular pose."""
     jacobian = kinematics.jacobian(pose, kinematics.inverse(pose))
-    return linear_law(jacobian, errors.variance)
+    return Spread(jacobian @ errors.covariance @ np.swapaxes(jacobian, -1, -2))
 
 
 def linear_law(slopes: Array, variance: Array) -> Spread:

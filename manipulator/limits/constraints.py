@@ -83,13 +83,17 @@ class Constraints:
             axis=-1,
         )
 
+    @property
+    def is_one_group(self) -> bool:
+        """Whether one group computes all of the values."""
+        return len(self.checks) == 1 and all(group is not None for group, _ in self.places)
+
     def descended(self, search: Search, start: Pose) -> Pose:
         """From an admitted pose down the distance to another, see `LimitGroup`.
 
         Raises InvalidInput where the limits are not all of one group.
         """
-        groups = {group for group, _ in self.places}
-        if len(groups) != 1 or None in groups:
+        if not self.is_one_group:
             raise InvalidInput('the nearest pose is searched within the limits of one platform')
         return self.checks[0][0].descended(search, self.bounds[0], start)
 

@@ -72,6 +72,13 @@ class LimitGroup(Protocol):
         """From an admitted pose to one at a local minimum of the distance, within the bounds."""
         ...
 
+    def first_free_path(self, ranges: Array, paths: 'BrakingPaths') -> tuple[int, Array]:
+        """The first of the paths that nothing holds back, their number if there is none.
+
+        And the paths (k, 20) up to it, `struct braking_path` of kernel/braking.h each.
+        """
+        ...
+
 
 @dataclass(frozen=True, eq=False)
 class Search:
@@ -85,6 +92,22 @@ class Search:
     clearance: float
     most_steps: int
     pivot: Array = field(default_factory=lambda: frozen(np.zeros(3)))
+
+
+@dataclass(frozen=True, eq=False)
+class BrakingPaths:
+    """One tick at each of the twists (k, 6), then braking to rest: what `first_free_path` judges.
+
+    From pose, joints (n,) and their rates (n,); bounds and frame are `jog_bounds` and `jog_frame`
+    of kernel/braking.h, the frame None where poses are the platform's own.
+    """
+
+    bounds: Array
+    pose: Pose
+    joints: Array
+    rates: Array
+    twists: Array
+    frame: Array | None = None
 
 
 @runtime_checkable

@@ -6,13 +6,15 @@ remains available when no other twist is allowed. It ends at the edge, where eve
 led there is open for the way back.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from manipulator.arrays import Array, Mask, frozen
+from manipulator.arrays import Array, frozen, stretched
+from manipulator.errors import InvalidInput
 from manipulator.limits.constraints import Constraints
+from manipulator.limits.limit import BrakingPaths
 from manipulator.pose import Pose
 from manipulator.teleop.jogger import JogMotion, ticks_for, towards
 
@@ -22,34 +24,44 @@ if TYPE_CHECKING:
 SCALES = 0.75 ** np.arange(17)
 """Parts of the target twist that are tried, from all of it down to 1 %."""
 ROUNDING = 1e-9
+A_LIMIT, A_SPEED = 1, 2
+"""What limits a braking path; else it is an acceleration: `obstacle` of kernel/braking.h."""
 
 
 @dataclass(frozen=True, eq=False)
 class PlatformJogger:
-    """`Jogger` of a machine whose joints follow from its pose."""
+    """`Jogger` of a machine whose joints follow from its pose; limits are those of one platform.
+
+    bounds (15,) are `jog_bounds` of kernel/braking.h, the tick left out.
+    """
 
     machine: 'Machine'
+    bounds: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Lays out what bounds the motion; InvalidInput where limits are not of one group."""
+        if not self.machine.constraints.is_one_group:
+            raise InvalidInput('a platform is jogged within the limits of one platform')
+        motion, count = self.machine.motion, len(self.machine.kinematics.joint_names)
+        joints = (stretched(a, (count,)) for a in (motion.joint.speed, motion.joint.acceleration))
+        ends = [0.0, motion.linear.acceleration, motion.angular.acceleration]
+        object.__setattr__(self, 'bounds', frozen(np.concatenate([ends, *joints])))
 
     def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
         """See `Jogger`; the largest of SCALES that can be driven and braked, else it brakes."""
-        constraints = self.machine.constraints
-        target = SCALES[:, None] * twist
-        aims = towards(motion.twist, target, self.machine.motion, dt)
-        held_by = ''
-        for first, last in ((0, 1), (1, len(SCALES))):
-            paths = self._paths(motion, aims[first:last], dt)
-            inside = constraints.admits(paths.poses, paths.joints)
-            if first == 0 and not paths.fit(inside)[0]:
+        constraints, held_by = self.machine.constraints, ''
+        for scales in (SCALES[:1], SCALES[1:]):
+            aims = towards(motion.twist, scales[:, None] * twist, self.machine.motion, dt)
+            free, paths = self._paths(constraints, motion, aims, dt)
+            if free == len(scales) == 1:
                 # Stretched limits let more through: they matter where a limit is broken.
-                constraints = constraints.stretched_to(motion.pose, motion.joints)
-                if constraints is not self.machine.constraints:
-                    inside = constraints.admits(paths.poses, paths.joints)
-            is_fit = paths.fit(inside)
-            if is_fit.any():
-                chosen = int(np.argmax(is_fit))
-                scale = float(SCALES[first + chosen])
-                return self._moved(motion, aims[first + chosen], dt, scale, held_by)
-            held_by = held_by or paths.obstacle(self.machine, constraints, inside[0])
+                wider = constraints.stretched_to(motion.pose, motion.joints)
+                if wider is not constraints:
+                    constraints = wider
+                    free, paths = self._paths(constraints, motion, aims, dt)
+            if free < len(scales):
+                return self._moved(motion, aims[free], dt, float(scales[free]), held_by)
+            held_by = held_by or self._obstacle(constraints, paths[0])
         ticks = _braking_ticks(motion.twist, self.machine, dt)
         return self._moved(motion, motion.twist * (1.0 - 1.0 / ticks), dt, 0.0, held_by)
 
@@ -64,59 +76,29 @@ class PlatformJogger:
         rates = frozen((joints - motion.joints) / dt)
         return JogMotion(pose, frozen(joints), frozen(twist), rates, scale, held_by)
 
-    def _paths(self, motion: JogMotion, twists: Array, dt: float) -> '_Ways':
-        """One tick at each of the twists (k, 6), then braking straight ahead to rest."""
-        ticks = _braking_ticks(twists, self.machine, dt)
-        steps = np.arange(int(ticks.max()) + 1)
-        parts = np.maximum(1.0 - steps / ticks[:, None], 0.0)
-        gone = np.cumsum(parts, axis=1)[..., None] * twists[:, None] * dt
-        poses = motion.pose.moved(gone)
-        joints = self.machine.kinematics.inverse_or_nan(poses, motion.joints)
-        return _Ways(poses, joints, *self._excess(motion, joints, dt))
+    def _paths(
+        self, constraints: Constraints, motion: JogMotion, twists: Array, dt: float
+    ) -> tuple[int, Array]:
+        """One tick at each of the twists (k, 6), then braking straight ahead to rest.
 
-    def _excess(self, motion: JogMotion, joints: Array, dt: float) -> tuple[Array, Array]:
-        """Speeds and accelerations of joints (k, ticks, n) from now on, over their limits."""
-        k, ticks, n = joints.shape
-        rates = np.empty((k, ticks + 1, n))  # with the present ones before
-        rates[:, 0] = motion.rates
-        np.subtract(joints[:, 0], motion.joints, out=rates[:, 1])
-        np.subtract(joints[:, 1:], joints[:, :-1], out=rates[:, 2:])
-        rates[:, 1:] /= dt
-        changes = (rates[:, 1:] - rates[:, :-1]) / dt
-        limits = self.machine.motion.joint
-        return np.abs(rates[:, 1:]) / limits.speed, np.abs(changes) / limits.acceleration
+        The first without an obstacle, k for none, and the obstacles of those before.
+        """
+        bounds = self.bounds.copy()
+        bounds[0] = dt
+        group, ranges = constraints.checks[0]
+        paths = BrakingPaths(bounds, motion.pose, motion.joints, motion.rates, twists)
+        return group.first_free_path(ranges, paths)
 
-
-@dataclass(frozen=True, eq=False)
-class _Ways:
-    """Poses (k, ticks) of k braking paths, and their joints (k, ticks, n).
-
-    speeds and accelerations are those of the joints, as parts of what is allowed.
-    """
-
-    poses: Pose
-    joints: Array
-    speeds: Array
-    accelerations: Array
-
-    def fit(self, inside: Mask) -> Mask:
-        """Which of the k paths keep the joints' limits and the constraints (`inside`)."""
-        slow_enough = (self.speeds <= 1.0).all(axis=-1) & (self.accelerations <= 1.0).all(axis=-1)
-        result: Mask = np.asarray((inside & slow_enough).all(axis=-1), dtype=np.bool_)
-        return result
-
-    def obstacle(self, machine: 'Machine', constraints: Constraints, inside: Mask) -> str:
-        """What limits the first of the paths, in words; inside: which ticks of it are."""
-        if not inside.all():
-            first = int(np.argmin(inside))
-            found = constraints.violations(self.poses[0][first], self.joints[0, first])[0]
-            return f'{found.quantity} of {found.owner}' if found.owner else found.quantity
-        names = machine.kinematics.joint_names
-        for what, excess in (('speed', self.speeds), ('acceleration', self.accelerations)):
-            worst = excess[0].max(axis=0)
-            if worst.max() > 1.0:
-                return f'{what} of {names[int(np.argmax(worst))]}'
-        return ''
+    def _obstacle(self, constraints: Constraints, path: Array) -> str:
+        """What limits a path, in words; path is a `braking_path` of kernel/braking.h."""
+        kind, joint = int(path[0]), int(path[1])
+        if kind == A_LIMIT:
+            pose = Pose(path[2:5], path[5:14].reshape(3, 3))
+            found = constraints.violations(pose, path[14:])
+            parts = (found[0].quantity, found[0].owner) if found else ('', '')
+            return ' of '.join(filter(None, parts))
+        what = 'speed' if kind == A_SPEED else 'acceleration'
+        return f'{what} of {self.machine.kinematics.joint_names[joint]}'
 
 
 def _braking_ticks(twist: Array, machine: 'Machine', dt: float) -> Array:

@@ -70,13 +70,14 @@ class TimeScaling:
     """The scaling factor, its target, and its bounded rate of change.
 
     is_paused: by the user. is_blind: the joints' positions are unknown. is_stopping: the active
-    plan is braked, and dropped at rest.
+    plan is braked, and dropped at rest. most: what the machine's accuracy allows at the moment.
     """
 
     def __init__(self, braking_rate: float, dt: float) -> None:
         """braking_rate: most change of the factor (1/s), see `MotionLimits.braking_rate`."""
         self.factor = 1.0
         self.is_paused = self.is_blind = self.is_stopping = False
+        self.most = 1.0
         self._override = 1.0
         self._fall = braking_rate * dt
         self._rise = min(SPEEDING_UP_RATE * dt, self._fall)
@@ -85,7 +86,7 @@ class TimeScaling:
     def target(self) -> float:
         """The factor to approach."""
         is_held = self.is_paused or self.is_blind or self.is_stopping
-        return 0.0 if is_held else self._override
+        return 0.0 if is_held else min(self._override, self.most)
 
     def override(self, rate: float) -> None:
         """Runs everything at `rate` times its speed; Refused outside [0, 1]."""

@@ -1,16 +1,26 @@
 """Plans of a machine whose joints are measured: they are corrected, and paths wait for arrival."""
 
+from math import sqrt
+
 import numpy as np
 
 from manipulator.arrays import Array
+from manipulator.errors import NoSolution
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.trajectory.correction import Correction
-from manipulator.trajectory.executor import Executor
+from manipulator.trajectory.executor import AHEAD, Executor
 from manipulator.trajectory.following_error import Tolerances
 
 LONGEST_WAIT = 3.0
 """Seconds that a path waits for the arrival at its first pose."""
+
+
+CREEP = 0.1
+"""Scaling factor while the play of a joint that has turned is taken up."""
+
+BRAKING = 0.8
+"""Of the braking rate: what is used to come down to it."""
 
 
 class ClosedLoop:
@@ -22,6 +32,7 @@ class ClosedLoop:
 
     def __init__(self, dead_band: Array, tolerances: Tolerances, delay: float, dt: float) -> None:
         self._correction = Correction(dead_band, tolerances.following, delay, dt)
+        self._tolerances = tolerances
         self._longest_wait = round(LONGEST_WAIT / dt)
         self._waited = 0
         self._is_facing = False
@@ -33,7 +44,23 @@ class ClosedLoop:
     def step(self, machine: Machine, executor: Executor, pose: Pose, is_active: bool) -> Pose:
         """The pose to command for the reference `pose`; is_active: see `Correction.step`."""
         executor.awaits_arrival = True
+        executor.slow_down(self._scaling(machine, executor, pose) if is_active else 1.0)
         return self._correction.step(machine, pose, executor.joints, is_active)
+
+    def _scaling(self, machine: Machine, executor: Executor, pose: Pose) -> float:
+        """The scaling factor with which a path comes to a turn of a joint at CREEP."""
+        correction = self._correction
+        if executor.is_waiting or not executor.may_slow_down or not correction.has_play:
+            return 1.0
+        try:
+            jacobian = machine.kinematics.jacobian(pose, executor.joints)
+        except NoSolution:
+            return 1.0
+        share = correction.share_to_turn(jacobian, executor.joints_ahead(), self._tolerances)
+        if share is None:
+            return 1.0
+        left = BRAKING * machine.motion.braking_rate * share * AHEAD
+        return min(sqrt(CREEP**2 + 2.0 * left), 1.0)
 
     def prepare(self, executor: Executor, is_there: bool) -> None:
         """Begins a waiting path once its first pose is reached and the joints' play taken up."""

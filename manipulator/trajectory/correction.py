@@ -19,6 +19,7 @@ from manipulator.limits.constraints import Constraints
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.teleop.jog_modes import GAIN_TIMES_DELAY, Feedback
+from manipulator.trajectory.following_error import Tolerances
 from manipulator.trajectory.play import Play
 from manipulator.trajectory.reserve import Reserve
 
@@ -36,6 +37,9 @@ APPROACH_TICKS = 5.0
 
 SETTLED = 1e-6
 """rad or m within which joints are at rest, and a correction has come to its end."""
+
+NOTABLE = 4.0
+"""Dead bands of an offset that is not due to counts alone."""
 
 CUTS = 8
 """Bisections of a correction that would break a limit."""
@@ -76,6 +80,26 @@ class Correction:
     def is_settled(self) -> bool:
         """Whether the command has come to the end of its correction."""
         return not self._is_moving.any()
+
+    def share_to_turn(self, jacobian: Array, rows: Array, tolerances: Tolerances) -> float | None:
+        """How much of joints (k, n) to come is left until play moves the tool beyond tolerance.
+
+        0 while it is being taken up; None where no such joint turns.
+        """
+        rest = jacobian @ (self._play.offset - self._offset)
+        if tolerances.violation(rest):
+            return 0.0
+        turns, play = self._play.next_turns(rows)
+        shifts = np.abs(jacobian * play)
+        is_notable = np.linalg.norm(shifts[:3], axis=0) > tolerances.distance
+        is_notable |= np.linalg.norm(shifts[3:], axis=0) > tolerances.turn
+        first = int(np.where(is_notable, turns, len(rows)).min())
+        return None if first == len(rows) else first / len(rows)
+
+    @property
+    def has_play(self) -> bool:
+        """Whether any joint's command is ahead of it."""
+        return bool((np.abs(self._play.offset) > NOTABLE * self._dead_band).any())
 
     @property
     def _is_moving(self) -> Mask:

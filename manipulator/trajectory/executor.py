@@ -92,8 +92,18 @@ class Executor:
             return self._jogging is None and self.status.result == MotionResult.REACHED
         return self._scaling.target > 0.0
 
+    @property
+    def may_slow_down(self) -> bool:
+        """Whether a path is executed that has no times of its own."""
+        plan = self._active.plan
+        return isinstance(plan, TimedPath) and not plan.is_stamped
+
+    def slow_down(self, most: float) -> None:
+        """Scales the active plan to `most` of its speed, from (0, 1], as fast as it may brake."""
+        self._scaling.most = most
+
     def joints_ahead(self) -> Array:
-        """The joints (k, n) with which the active plan goes on."""
+        """The joints (AHEAD_ROWS, n) with which the active plan goes on for AHEAD seconds."""
         active = self._active
         times = active.time + np.linspace(0.0, AHEAD, AHEAD_ROWS)
         rows = active.plan.joints_at(times)

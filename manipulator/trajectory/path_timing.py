@@ -34,13 +34,15 @@ MOST_TICKS = 100_000
 class TimedPath(PosePlan):
     """Squared speeds along the path at its nodes (m + 1,); between them s̈ is constant.
 
-    joints are those at the first pose: another branch of them cannot drive this plan.
+    joints are those at the first pose: another branch of them cannot drive this plan. is_stamped:
+    its poses have times of their own, so that it is never slowed down for the sake of accuracy.
     """
 
     path: Path
     nodes: Array
     squares: Array
     joints: Array
+    is_stamped: bool = False
 
     @cached_property
     def _times(self) -> Array:
@@ -134,7 +136,7 @@ def plan_path(
         limits = path_limits(machine, path, nodes_of(path, refinement, length), near)
         if request.stamps is not None:
             _check_stamped(path, limits)
-        timed = timed_path(path, limits, speed)
+        timed = replace(timed_path(path, limits, speed), is_stamped=request.stamps is not None)
         _check_length(timed, dt)
         peak = check_plan(timed, machine, near, dt, effort)
         if peak.fits:

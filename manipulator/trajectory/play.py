@@ -32,7 +32,7 @@ class Play:
 
     def move(self, joints: Array) -> None:
         """Notes the reference joints (n,) of this tick: they show the directions."""
-        before = joints if self._extreme is None else self._extreme
+        before = self._extreme_or(joints)
         furthest = np.where(
             self._direction == 0, np.maximum(before, joints), np.minimum(before, joints)
         )
@@ -49,6 +49,15 @@ class Play:
         ahead = np.where(first > 0.0, 0, 1)
         self._extreme = rows[0]
         self._turn_round(has_moved.any(axis=0) & (ahead != self._direction), self._other)
+
+    def next_turns(self, rows: Array) -> tuple[Array, Array]:
+        """At which of joints (k, n) to come each joint turns, k where none does; and its play."""
+        sign = np.where(self._direction == 0, 1.0, -1.0)
+        ahead = sign * rows
+        furthest = np.maximum.accumulate(np.maximum(ahead, sign * self._extreme_or(rows[0])))
+        has_turned = furthest - ahead > self._turn
+        first = np.where(has_turned.any(axis=0), np.argmax(has_turned, axis=0), len(rows))
+        return first, self._other - self.offset
 
     def add(self, change: Array, is_still: Mask) -> None:
         """Changes the offsets of the present directions by (n,), up to the largest.
@@ -67,6 +76,9 @@ class Play:
     def confirm(self, is_met: Mask) -> None:
         """Joints (n,) that have arrived: their offsets, where not zero, are known from now on."""
         self._is_known[self._direction, self._columns] |= is_met & (self.offset != 0.0)
+
+    def _extreme_or(self, joints: Array) -> Array:
+        return joints if self._extreme is None else self._extreme
 
     @property
     def _other(self) -> Array:

@@ -201,16 +201,20 @@ def reached_by_two(jog, joints, ticks):
 @given(seed=st.integers(0, 2**32 - 1))
 @example(seed=7833)  # wrist and elbow lost, a joint at its stop: the first deflection ends there
 @example(seed=1048575)
+@example(seed=1961)  # five joints at their stops: out of the corner in three deflections
 def test_some_deflection_of_the_stick_always_moves_the_arm(jog, seed):
+    """By more than 0.04 rad, within three deflections that each lead as far as any."""
     (joints,) = states(jog, seed, 1)
-    moved = []
-    for there in reached(jog, joints, 75):
-        moved.append((np.abs(there - joints).max(), there))
-        if moved[-1][0] > 0.04:
-            return
-    most, farthest = max(moved, key=lambda pair: pair[0])
-    assert most > 0.004
-    assert any(np.abs(q - joints).max() > 0.04 for q in reached(jog, farthest, 75))
+    here, farthest = joints, 0.0
+    for _ in range(3):
+        for there in reached(jog, here, 75):
+            away = np.abs(there - joints).max()
+            if away > 0.04:
+                return
+            if away > farthest:
+                here, farthest = there, away
+        assert farthest > 0.004
+    assert farthest > 0.04
 
 
 @pytest.mark.parametrize('elbow', [0.0, 1.0])

@@ -1,5 +1,6 @@
 """What every board does on the line: announces itself, answers, survives garbage."""
 
+import dataclasses
 import random
 
 import numpy as np
@@ -226,3 +227,11 @@ def test_after_a_restart_any_sequence_is_taken(armed):
     armed.reset()
     armed.sequence = 5
     assert armed.arm() is Result.OK
+
+
+def test_a_board_that_gets_another_program_announces_it(driver):
+    driver.run(0.4)
+    driver.board.settings = dataclasses.replace(driver.board.settings, version=2)
+    assert {hello.version for hello in driver.hellos(0.6)} <= {1}
+    driver.reset()
+    assert {hello.version for hello in driver.hellos(0.6)} == {2}

@@ -115,6 +115,21 @@ def test_a_table_larger_than_the_memory_is_refused(armed):
     assert armed.ask(TableBegin(448, 50)) is Result.OK
 
 
+def test_the_joints_take_half_a_second_to_the_first_row_slow_fast_slow(armed):
+    there = tuple(count + 100 for count in PARK)
+    assert armed.upload([there, there]) is Result.OK
+    assert armed.ask(Play(Program.TABLE, True)) is Result.OK
+    _, counts = armed.record(1.0)
+    moved = counts[:, 0] - PARK[0]
+    start = np.flatnonzero(moved)[0] - 1
+    shares = np.arange(26) / 25
+    expected = 100 * shares**2 * (3 - 2 * shares)
+    seen = moved[max(start, 0) : max(start, 0) + 26]
+    shifts = [np.abs(np.roll(expected, k)[3:-3] - seen[3:-3]).max() for k in (-2, -1, 0, 1)]
+    assert min(shifts) < 1.0
+    assert moved[-1] == 100
+
+
 @pytest.mark.parametrize(('joints', 'rows'), [(6, 448), (8, 336)])
 def test_the_largest_table_is_taken_to_its_last_count_and_played(make_driver, joints, rows):
     ranges, speeds = ((1100, 4900),) * joints, (12_600.0,) * joints

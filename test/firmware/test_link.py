@@ -61,6 +61,20 @@ def test_a_stop_that_comes_once_there_is_room_again_is_obeyed(board):
     assert board.mode is Mode.STOPPED
 
 
+@pytest.mark.parametrize('split', range(1, 7))
+def test_a_frame_that_lost_its_middle_is_an_overrun_although_its_end_had_room(board, split):
+    """Its first bytes filled the ring, its last ones come when the ring is empty again."""
+    frames = b''.join(encode(Clear(), 1 + k) for k in range(35))
+    cut, after = encode(Disarm(), 100), encode(Disarm(), 101)
+    filling = frames + bytes(RING - len(frames) - split)
+    board.feed_busy(filling + cut[:split] + cut[split : split + 1])
+    assert len(answers(board)) == 35
+    board.feed(cut[split + 1 :] + after)
+    assert answers(board) == [(101, Result.OK)]
+    found = state(board)
+    assert (found.overruns, found.bad_frames) == (1, 0)
+
+
 @pytest.mark.parametrize('seed', range(20))
 def test_every_frame_whose_bytes_had_room_is_obeyed_and_no_other(board, seed):
     """The ring is filled and emptied again and again, and never a frame made of two."""

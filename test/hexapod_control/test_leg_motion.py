@@ -53,13 +53,16 @@ def test_equal_lengths_give_the_6_6_and_the_6_3_different_heights():
     assert heights == pytest.approx([0.142893, 0.138171], abs=1e-6)
 
 
-def test_angles_of_the_motion_give_its_rotations():
-    run = motion(plates(50, 10))
-    level = np.hypot(run.poses.rotation[:, 0, 2], run.poses.rotation[:, 1, 2]) < 1e-6
-    assert level[0]
-    assert not level[50]
-    assert np.allclose(from_zxz(run.euler_zxz[~level]), run.poses.rotation[~level], atol=1e-9)
-    assert (run.euler_zxz[level, 2] == 0.0).all()
+@pytest.mark.parametrize(('platform_degrees', 'least'), [(0, -0.0321), (10, -0.0261)])
+def test_angles_of_the_motion_are_continuous_and_give_its_rotations(platform_degrees, least):
+    """As figs 7 and 9: α and γ near zero, β below it; steps of half a turn are no motion."""
+    run = motion(plates(50, platform_degrees))
+    degrees = np.degrees(run.euler_zxz)
+    assert np.allclose(from_zxz(run.euler_zxz), run.poses.rotation, atol=1e-6)
+    assert np.abs(np.diff(degrees, axis=0)).max() < 0.1
+    assert np.abs(degrees[:, [0, 2]]).max() < 0.35
+    assert degrees[:, 1].min() == pytest.approx(least, abs=1e-4)
+    assert degrees[:, 1].max() < 1e-6
     assert np.allclose(so3.exp(run.rotation_vectors), run.poses.rotation, atol=1e-12)
 
 

@@ -195,7 +195,6 @@ def norms(vectors):
 @settings(
     max_examples=enough(8, 40),
     deadline=None,
-    derandomize=True,
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )

@@ -12,6 +12,9 @@ def test_json_has_law_drawing_and_the_papers_figures(capsys):
     everything = rows['noise, all joints']
     assert everything['position_rms'] == pytest.approx(0.205e-3, rel=0.015)
     assert everything['paper_position_rms'] == pytest.approx(9.9e-6)
+    cancelled = rows.pop('one signal, all joints')
+    assert cancelled['position_rms'] < 1e-9
+    assert cancelled['drawn']['position_rms'] == pytest.approx(0.41e-6, rel=0.1)
     for row in rows.values():
         drawn = row['drawn']
         tolerance = drawn['relative_error']

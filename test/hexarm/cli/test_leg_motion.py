@@ -31,6 +31,9 @@ def test_figures_of_the_experiment(capsys, machine, height, axis, vector, degree
     assert np.degrees(reported['deviation']['angle']) == pytest.approx(degrees, abs=1e-4)
     assert np.ptp(np.diff(reported['lengths'], axis=0), axis=0).max() < 1e-12
     assert reported['beyond_a_limit'] is None
+    alpha, beta, gamma = np.degrees(reported['euler_zxz']).T
+    assert np.abs([alpha, gamma]).max() < 0.35
+    assert beta.min() == pytest.approx(-degrees, abs=1e-4)
 
 
 def test_table_has_eleven_steps_and_the_deviation(capsys):

@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -48,7 +49,12 @@ def test_pictures_are_saved(tmp_path, capsys):
     [
         (['--payload', '-5'], 'payload'),
         (['--torque', '0'], '--torque 0'),
-        (['--frequency', '0'], 'periods at 0 Hz'),
+        (['--frequency', '0'], '--frequency 0 Hz'),
+        (['--frequency', '1', '2'], 'has 2 numbers, needs one or six'),
+        (['--frequency', '1', '1', '1', '1', '1', '1.001'], 'common period'),
+        (['--noise', '-1'], '--noise -1'),
+        ([*QUICK, '--data', 'sensors.txt'], 'must end in .csv'),
+        ([*QUICK, '--data', '/does/not/exist.csv'], 'cannot write'),
         (['--periods', '1e9'], 'not within'),
         (['--amplitude', '0', '0', '0', '0', '0', '0'], 'periods of 0 s'),
         (['--amplitude', 'nan', '0', '0', '0', '0', '0'], 'finite'),
@@ -59,3 +65,52 @@ def test_pictures_are_saved(tmp_path, capsys):
 def test_refusals(capsys, words, reason):
     assert main(['simulate', 'robocake', *words]) == 2
     assert reason in capsys.readouterr().err
+
+
+def test_each_axis_has_its_own_frequency_and_phase(capsys):
+    """x as a cosine of 1 Hz, y as a sine of 2 Hz, over their common period of a second."""
+    motion = ['--amplitude', '0.004', '0.002', '0', '0', '0', '0', '--periods', '1']
+    turns = ['--frequency', '1', '2', '1', '1', '1', '1', '--phase', '1.5708', *['0'] * 5]
+    assert main(['simulate', 'robocake', *motion, *turns, '--json']) == 0
+    series = json.loads(capsys.readouterr().out)['series']
+    time = np.array(series['time'])
+    assert time[-1] == pytest.approx(1.0)
+    assert np.allclose(series['position_x'], 4e-3 * np.cos(2 * np.pi * time), atol=3e-4)
+    assert np.allclose(series['position_y'], 2e-3 * np.sin(4 * np.pi * time), atol=3e-4)
+    assert np.allclose(series['position_z'], 41.19e-3, atol=2e-4)
+
+
+def test_sensors_on_three_axes_agree_with_each_other(capsys):
+    """Speed is the change of position, acceleration that of speed; the force carries 150 g."""
+    assert main(['simulate', 'robocake', *QUICK, '--json']) == 0
+    columns = json.loads(capsys.readouterr().out)['series']
+    series = {name: np.array(values) for name, values in columns.items()}
+    dt = series['time'][1] - series['time'][0]
+    for axis in 'xyz':
+        speed, acceleration = series[f'speed_{axis}'], series[f'acceleration_{axis}']
+        assert np.gradient(series[f'position_{axis}'], dt)[2:-2] == pytest.approx(
+            speed[2:-2], abs=1e-3
+        )
+        assert np.gradient(speed, dt)[2:-2] == pytest.approx(acceleration[2:-2], abs=2e-2)
+    assert series['force_z'].mean() == pytest.approx(0.150 * 9.80665, rel=0.02)
+    assert len(series['joint_effort_crank_6']) == len(series['time'])
+
+
+def test_all_sensors_over_time_go_to_a_csv_file(tmp_path, capsys):
+    table = tmp_path / 'sensors.csv'
+    assert main(['simulate', 'robocake', *QUICK, '--data', str(table)]) == 0
+    header, *rows = table.read_text().splitlines()
+    assert header.startswith('time,position_x,position_y,position_z,rotation_x')
+    assert header.endswith('joint_effort_crank_6')
+    assert {row.count(',') for row in rows} == {header.count(',')}
+    assert str(table) in capsys.readouterr().out
+
+
+@pytest.mark.parametrize('law', ['independent', 'common'])
+def test_servo_noise_moves_the_platform(capsys, law):
+    """±0.01 rad: hundreds of micrometres if independent, a fraction of it from one signal."""
+    noise = ['--noise', '0.01', '--noise-law', law]
+    assert main(['simulate', 'robocake', *QUICK, *noise, '--json']) == 0
+    moved = json.loads(capsys.readouterr().out)['noise_position_rms']
+    assert (60e-6 if law == 'independent' else 2e-6) < moved
+    assert moved < (160e-6 if law == 'independent' else 40e-6)

@@ -1,9 +1,12 @@
 """MuJoCo's models of the shipped machines stand where our kinematics says."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hexapod_control.workspace import sample
+from hexarm.pictures.animation import shapes
 from hexarm.simulation.dynamics_config import PlateConfig
 from hexarm.simulation.model import dynamics_of, mechanism
 from hexarm.simulation.rigid_body import plate, rod
@@ -156,3 +159,16 @@ def test_moments_of_shapes():
     thin = rod(0.05, 1e-5, along[0], along[-1])
     assert thin.inertia == pytest.approx(slender, rel=1e-3, abs=1e-9)
     assert thin.centre == pytest.approx(along.mean(axis=0))
+
+
+@pytest.mark.parametrize(('minimum', 'bottom'), [(23.39, -30.0), (-50.0, -62.0)])
+def test_the_lid_of_a_crank_platform_is_where_its_limit_is(example, minimum, bottom):
+    """A level platform of 4 mm at its least height touches the lid; the body is below it."""
+    this = example('robocake')
+    limits = {**this.file.limits, 'minimum_height_mm': minimum}
+    model = mechanism('robocake', replace(this.file, limits=limits), this.kinematics)
+    home = this.kinematics.home
+    simulation = Simulation(model, home, this.kinematics.inverse(home))
+    corners = np.concatenate(shapes(simulation).outlines[:2])
+    assert 1e3 * corners[:, 2].max() == pytest.approx(minimum - 2.0, abs=1e-3)
+    assert 1e3 * corners[:, 2].min() == pytest.approx(bottom, abs=1e-3)

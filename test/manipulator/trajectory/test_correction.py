@@ -91,3 +91,14 @@ def test_a_turn_within_the_dead_band_is_none():
     for wobble in (0.0, 9e-4, 1e-4, 9e-4, 0.0):
         play.move(np.array([wobble]))
     assert play.offset == pytest.approx(0.02)
+
+
+def test_the_next_turn_of_each_joint_is_seen_ahead_with_the_play_that_it_takes_up():
+    play = Play(np.full(2, 1e-3), np.full(2, 1.0))
+    play.move(np.zeros(2))
+    play.add(np.full(2, 0.02), np.zeros(2, dtype=bool))
+    rows = np.stack([np.sin(np.linspace(0.0, np.pi, 31)), np.linspace(0.0, 1.0, 31)], axis=1)
+    turns, change = play.next_turns(rows)
+    assert 15 < turns[0] < 18
+    assert turns[1] == 31
+    assert change == pytest.approx([-0.04, -0.04])

@@ -1,11 +1,23 @@
 """At an edge of what a machine can do a jog slides to a stop, and from beyond it leads back."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hexarm.machines import load
+from manipulator.errors import InvalidInput
+from manipulator.framed_machine import in_frames
+from manipulator.frames import Frames
+from manipulator.limits.constraints import Constraints
+from manipulator.limits.machine_limits import JointRange
+from manipulator.pose import Pose
+from manipulator.teleop.jogger import JogMotion, ticks_for, within_speed
 from manipulator.trajectory.goal import Goal
 from sampling import enough
+
+DT = 0.01
+TURNED = Frames(Pose.from_xyz_rpy([0.1, -0.2, 0.3], [0.2, 0.1, -0.7])).with_pivot([0.01, 0, 0.05])
 
 
 @pytest.mark.parametrize('seed', range(enough(2, 3)))
@@ -86,3 +98,39 @@ def test_platform_beyond_a_limit_is_driven_back_but_not_further(platform, at_hom
     beyond = standing(platform, pose, joints)
     assert beyond.run(20, up)[-1].position[2] <= pose.position[2] + 1e-9
     assert beyond.run(50, -up)[-1].position[2] < pose.position[2] - 1e-4
+
+
+@pytest.mark.parametrize('frames', [Frames(), TURNED])
+def test_what_is_driven_could_be_braked_by_the_limits_own_words(frames):
+    """Every tick of braking straight ahead, by poses, joints and their differences."""
+    machine = in_frames(load('robocake'), frames)
+    kinematics, motion = machine.kinematics, machine.motion
+    jogger, rng = machine.make_jogger(machine), np.random.default_rng(7)
+    at = JogMotion.at_rest(kinematics.home, kinematics.inverse(kinematics.home))
+    driven = 0
+    for tick in range(300):
+        if tick % 60 == 0:
+            twist = rng.standard_normal(6) * ([motion.linear.speed] * 3 + [0.3] * 3)
+        before, at = at, jogger.step(at, within_speed(twist, motion)[0], DT)
+        driven += at.scale > 0.0
+        ticks = int(np.ceil(ticks_for(at.twist, motion, DT) - 1e-9))
+        joints, rates, gone = before.joints, before.rates, 0.0
+        for k in range(ticks + 1):
+            gone += 1.0 - k / max(ticks, 1)
+            pose = before.pose.moved(gone * DT * at.twist)
+            now = kinematics.inverse(pose, before.joints)
+            machine.constraints.check(pose, now)
+            assert np.abs(now - joints).max() <= motion.joint.speed.max() * DT * (1 + 1e-9)
+            change = ((now - joints) / DT - rates) / DT
+            if at.scale > 0.0:
+                assert (np.abs(change) <= motion.joint.acceleration * (1 + 1e-6)).all()
+            joints, rates = now, (now - joints) / DT
+    assert driven > 50
+
+
+def test_limits_that_are_not_one_platforms_cannot_be_jogged_in():
+    machine = load('robocake')
+    free = JointRange(np.full(6, -9.0), np.full(6, 9.0), machine.kinematics.joint_names)
+    limits = Constraints((*machine.constraints.limits, free))
+    with pytest.raises(InvalidInput, match='one platform'):
+        machine.make_jogger(replace(machine, constraints=limits))

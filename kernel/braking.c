@@ -1,0 +1,101 @@
+#include "braking.h"
+
+#include <string.h>
+
+#include "se3.h"
+#include "vector.h"
+
+/* One tick of braking from n takes to exactly n - 1, so that a path once checked stays the same. */
+#define ROUNDING REAL(1e-9)
+
+/* In how many ticks a twist comes to rest, at least 1. */
+static real braking_ticks(const struct jog_bounds *bounds, const real twist[6])
+{
+    real linear = real_sqrt(dot3(twist, twist)) / bounds->acceleration;
+    real angular = real_sqrt(dot3(twist + 3, twist + 3)) / bounds->angular_acceleration;
+    return ceil(fmax(fmax(linear, angular) / bounds->tick - ROUNDING, 1));
+}
+
+/* The platform's pose in the base frame, and its joints on the branch nearest to `near`. */
+static void put_joints(const struct jogged *machine, const struct braking_path *at,
+                       const real near[LEGS], real position[3], real rotation[9],
+                       real joints[LEGS])
+{
+    const struct jog_frame *frame = machine->frame;
+    real of_pivot[3], arm[3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            rotation[3 * i + k] = frame->rotation[3 * i] * at->rotation[k] +
+                                  frame->rotation[3 * i + 1] * at->rotation[3 + k] +
+                                  frame->rotation[3 * i + 2] * at->rotation[6 + k];
+    rotate3(frame->rotation, at->position, of_pivot);
+    rotate3(rotation, frame->pivot, arm);
+    for (int i = 0; i < 3; i++)
+        position[i] = frame->position[i] + of_pivot[i] - arm[i];
+    if (machine->platform->legs.crank[0] > 0)
+        crank_inverse(&machine->platform->legs, position, rotation, near, joints);
+    else
+        linear_inverse(&machine->platform->legs, position, rotation, joints);
+}
+
+/* The joint that is the furthest above a bound, if any: what it is, by its bound. */
+struct excess {
+    real most;
+    int joint;
+};
+
+static void note(struct excess *excess, real value, real bound, int joint)
+{
+    real part = real_fabs(value) / bound;
+    if (part > excess->most) {
+        excess->most = part;
+        excess->joint = joint;
+    }
+}
+
+static void judge(struct braking_path *path, const struct excess *speed,
+                  const struct excess *acceleration)
+{
+    const struct excess *worst = speed->most > 1 ? speed : acceleration;
+    if (path->obstacle != NOTHING || !(worst->most > 1))
+        return;
+    path->obstacle = worst == speed ? A_SPEED : AN_ACCELERATION;
+    path->joint = worst->joint;
+}
+
+struct braking_path braking_path(const struct jogged *machine, const struct jog_state *from,
+                                 const real twist[6])
+{
+    const struct jog_bounds *bounds = machine->bounds;
+    real joints[LEGS], rates[LEGS], gone = 0, ticks = braking_ticks(bounds, twist);
+    struct excess speed = {1, 0}, acceleration = {1, 0};
+    struct braking_path path = {.obstacle = NOTHING};
+    memcpy(joints, from->joints, sizeof joints);
+    memcpy(rates, from->rates, sizeof rates);
+    for (int tick = 0; tick <= ticks; tick++) {
+        struct braking_path at = {.obstacle = A_LIMIT};
+        real position[3], rotation[9], step[6];
+        gone += bounds->tick * (1 - tick / ticks);
+        memcpy(at.position, from->position, sizeof at.position);
+        memcpy(at.rotation, from->rotation, sizeof at.rotation);
+        for (int k = 0; k < 6; k++)
+            step[k] = gone * twist[k];
+        se3_move(step, at.position, at.rotation);
+        put_joints(machine, &at, from->joints, position, rotation, at.joints);
+        for (int i = 0; i < LEGS; i++) {
+            real rate = (at.joints[i] - joints[i]) / bounds->tick;
+            note(&speed, rate, bounds->joint_speed[i], i);
+            note(&acceleration, (rate - rates[i]) / bounds->tick, bounds->joint_acceleration[i], i);
+            joints[i] = at.joints[i];
+            rates[i] = rate;
+        }
+        if (!keeps_limits(machine->platform, machine->ranges, position, rotation, at.joints))
+            return at;
+        if (tick == 0) {
+            at.obstacle = NOTHING;
+            path = at;
+        }
+    }
+    judge(&path, &speed, &acceleration);
+    return path;
+}

@@ -1,0 +1,39 @@
+/* Whether a platform that is jogged can still brake: docs/teleop.md. */
+#ifndef KERNEL_BRAKING_H
+#define KERNEL_BRAKING_H
+
+#include "limits.h"
+
+/* The machine as it is jogged: poses are of its pivot in the work frame, SI units. */
+struct jogged {
+    const struct platform *platform;
+    const struct limit_ranges *ranges;
+    const struct jog_frame {
+        real position[3], rotation[9]; /* of the work frame in the base frame */
+        real pivot[3];                 /* platform frame */
+    } *frame;
+    const struct jog_bounds {
+        real tick; /* s */
+        real acceleration, angular_acceleration;
+        real joint_speed[LEGS], joint_acceleration[LEGS];
+    } *bounds;
+};
+
+struct jog_state {
+    const real *position, *rotation, *joints, *rates;
+};
+
+/* What limits a braking path: the first of these. */
+enum obstacle { NOTHING, A_LIMIT, A_SPEED, AN_ACCELERATION };
+
+/* One tick at a twist (6), then braking straight ahead to rest. Of the first tick, or of the first
+   that breaks a limit, are pose and joints; `joint` is the one that would be too fast. */
+struct braking_path {
+    real obstacle, joint;
+    real position[3], rotation[9], joints[LEGS];
+};
+
+struct braking_path braking_path(const struct jogged *machine, const struct jog_state *from,
+                                 const real twist[6]);
+
+#endif
