@@ -44,6 +44,7 @@ def __getattr__(name: str) -> Any:
 
 _PROFILES = 'FASTRTPS_DEFAULT_PROFILES_FILE'
 _RANGE = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
+_DOMAINS = 100
 _FAST_DDS = ('', 'rmw_fastrtps_cpp', 'rmw_fastrtps_dynamic_cpp')
 
 
@@ -73,6 +74,13 @@ def keep_to_this_computer() -> None:
     """No message leaves this computer; before ROS is initialised."""
     os.environ[_RANGE] = 'LOCALHOST'
     use_sockets()
+
+
+def use_own_domain() -> None:
+    """Keeps to this computer and to a ROS domain of this process, unless the user has chosen."""
+    if _RANGE not in os.environ:
+        keep_to_this_computer()
+    os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % _DOMAINS))
 
 
 # Before numpy is imported: for 6×6 systems BLAS threads only cost, and on busy cores a call that

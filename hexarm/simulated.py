@@ -7,14 +7,11 @@ from pathlib import Path
 
 import rclpy
 
-from hexarm import keep_to_this_computer
+from hexarm import use_own_domain
 from hexarm.cli.up import check_alive
 from hexarm.graph import Graph, link_folder, machine_graph
 from hexarm.machines import family
 from hexarm.robot import Robot
-
-RANGE, DOMAIN = 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_DOMAIN_ID'
-DOMAINS = 100
 
 
 class SimulatedRobot(Robot):
@@ -52,9 +49,7 @@ def own_domain() -> Iterator[None]:
     """
     before = dict(os.environ)
     if not rclpy.ok():
-        if RANGE not in os.environ:
-            keep_to_this_computer()
-        os.environ.setdefault(DOMAIN, str(1 + os.getpid() % DOMAINS))
+        use_own_domain()
     try:
         yield
     finally:

@@ -2,8 +2,9 @@
 
 import argparse
 import contextlib
+import json
 import math
-import os
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from hexarm import keep_to_this_computer
+from hexarm import use_own_domain
 from hexarm.cli.answers import picture_file
 from hexarm.cli.statuses import INTERRUPTED
 from hexarm.cli.up import Interrupted, StopSignal, check_alive
@@ -20,7 +21,6 @@ from hexarm.graph import Executable, Graph, link_folder, machine_graph
 from hexarm.machines import load
 from hexarm.panel_process import offered_panel
 from manipulator.errors import Refused, Stopped, TimedOut
-from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.states import MotionMode
 
@@ -43,18 +43,29 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument(
         '--picture', type=picture_file, default=Path('demo.png'), help='where to save it'
     )
+    parser.add_argument('--json', action='store_true', help='the table for programs')
     parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs the demonstration; status 0 when it went through, 130 after Ctrl-C."""
+    if not arguments.json:
+        return demonstrate(arguments, report)
+    # What is said meanwhile goes to the error output.
+    with contextlib.redirect_stdout(sys.stderr):
+        return demonstrate(arguments, report_as_json)
+
+
+def demonstrate(
+    arguments: argparse.Namespace, report: 'Callable[[Result, ArmResult, Path], None]'
+) -> int:
+    """Drives both machines, draws, and has the results reported."""
     from hexarm.demo import arm as demo_arm  # noqa: PLC0415 (need ROS)
     from hexarm.demo import arm_report as demo_arm_report  # noqa: PLC0415
+    from hexarm.demo.picture import draw  # noqa: PLC0415 (needs matplotlib)
 
     picture: Path = arguments.picture
-    if 'ROS_AUTOMATIC_DISCOVERY_RANGE' not in os.environ:
-        keep_to_this_computer()
-    os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 100))
+    use_own_domain()
     stop = StopSignal()
     try:
         echo('starting the graph: fake_hardware, serial_bridge, ik, trajectory, pose')
@@ -72,7 +83,9 @@ def run(arguments: argparse.Namespace) -> int:
         echo('interrupted: stopping the graph')
         return INTERRUPTED
     result = measure(observation, load(MACHINE).kinematics)
-    report(result, demo_arm_report.measure_arm(arm_observation, arm.kinematics), arm, picture)
+    arm_result = demo_arm_report.measure_arm(arm_observation, arm.kinematics)
+    draw(result, arm_result, arm, picture)
+    report(result, arm_result, picture)
     return 0
 
 
@@ -176,17 +189,20 @@ def stream(client: 'Client', recorder: 'Recorder') -> None:
     client.spin(0.5)
 
 
-def report(result: Result, arm_result: 'ArmResult', arm: Machine, picture: Path) -> None:
-    """Prints the table and saves the picture."""
-    from hexarm.demo.picture import draw  # noqa: PLC0415 (needs matplotlib)
-
+def report(result: Result, arm_result: 'ArmResult', picture: Path) -> None:
+    """Prints the table."""
     for title, rows in (('RoboCake', result.rows()), ('six-axis arm', arm_result.rows())):
         print(f'\n{title}')
         for name, value in rows:
             print(f'  {name:<40} {value}')
-    draw(result, arm_result, arm, picture)
     print(f'\nThe picture is in {picture}.')
     print('To drive it yourself, in a browser: hexarm up hexapod --panel')
+
+
+def report_as_json(result: Result, arm_result: 'ArmResult', picture: Path) -> None:
+    """Prints the table for programs."""
+    tables = {'robocake': dict(result.rows()), 'arm': dict(arm_result.rows())}
+    print(json.dumps(tables | {'picture': str(picture)}, ensure_ascii=False), file=sys.__stdout__)
 
 
 def echo(text: str) -> None:
