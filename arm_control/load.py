@@ -29,8 +29,8 @@ ROUNDING = 1e-6
 class ArmJogger:
     """`Jogger` of an arm: what it follows and keeps is said in `ResolvedRate`.
 
-    motion.twist is the wanted twist on its way up or down within the tool's accelerations. Where
-    the joints allow only a part of it, it starts again from that part.
+    Each tick starts from motion.twist, the one that the joints drive, so that the tool keeps its
+    accelerations also where the joints could not follow.
     """
 
     jog: ResolvedRate
@@ -42,17 +42,17 @@ class ArmJogger:
         wanted = towards(motion.twist, twist, limits, dt)
         ticks = max(float(ticks_for(wanted, limits, dt)), 1.0)
         step = self._stepped(motion, wanted, dt, SHARE_BEFORE_STOPS / (ticks * dt))
-        driven = step.driven * wanted
-        if ticks_for(driven - motion.twist, limits, dt) > 1.0 + ROUNDING:
+        change = step.driven * wanted - motion.twist
+        if ticks_for(change, limits, dt) > 1.0 + ROUNDING:
             # No part of what is wanted can be reached as gently as the tool asks for.
             straight = towards(motion.twist, np.zeros(6), limits, dt)
             braked = self._stepped(motion, straight, dt)
-            driven, step = braked.driven * straight, replace(step, state=braked.state)
+            step = replace(step, state=braked.state, twist=braked.twist)
         state = step.state
         return JogMotion(
             self.frames.pivot(self.jog.arm.chain.forward(state.joints)),
             state.joints,
-            frozen(driven),
+            self._of_pivot(step.twist, motion.pose),
             state.rates,
             step.scale,
             step.held_by,
@@ -76,6 +76,15 @@ class ArmJogger:
         turn = to_base @ twist[3:]
         arm = to_base @ T_work_pivot.rotation @ self.frames.T_platform_pivot.position
         return np.concatenate([to_base @ twist[:3] - np.cross(turn, arm), turn])
+
+    def _of_pivot(self, twist: Array, T_work_pivot: Pose) -> Array:
+        """The inverse: the pivot's twist in work axes, for the tool's in base axes."""
+        if self.frames.are_plain:
+            return twist
+        to_work = self.frames.T_base_work.rotation.T
+        turn = to_work @ twist[3:]
+        arm = T_work_pivot.rotation @ self.frames.T_platform_pivot.position
+        return frozen([*(to_work @ twist[:3] + np.cross(turn, arm)), *turn])
 
 
 KIND = 'serial_arm'

@@ -75,7 +75,8 @@ class JogStep:
 
     scale is the part of the wanted twist that the joints allow (1 when nothing holds it back),
     held_by what set it: '', 'speed of joint 2', 'stop of joint 3', the singularity ahead, or
-    SLIDING and where. driven is the part of the twist that the tool goes with by now.
+    SLIDING and where. driven is the part of the twist that the tool goes with by now, twist (6,)
+    is the tool's own, in base axes; where it slides, only what of it is wanted.
     """
 
     state: JogState
@@ -83,6 +84,7 @@ class JogStep:
     held_by: str
     sigma_min: float
     driven: float
+    twist: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,17 +143,18 @@ class ResolvedRate:
             drive = tick.way_out() or drive
         before = state.rates, state.joints
         rates, joints = self.scaling.followed(*before, drive.rates, drive.scale, tick.room, dt)
-        off_line, driven = tick.missed(rates)
+        off_line, driven, moving = tick.missed(rates)
         if drive.is_sliding:
-            off_line = STRAIGHT
+            off_line, moving = STRAIGHT, driven * wanted
         is_leaving = drive.is_leaving or (state.is_leaving and tick.is_singular)
         is_on_line = bool(rates.any()) and not (drive.is_sliding or is_leaving)
         is_asked = bool(wanted.any() or rates.any())
         is_under_way = is_on_line or (state.is_under_way and is_asked)
-        for array in (joints, rates, off_line):
+        for array in (joints, rates, off_line, moving):
             array.setflags(write=False)
         after = JogState(joints, rates, off_line, is_leaving, is_under_way)
-        return JogStep(after, drive.scale, drive.held_by, tick.posture.sigma_min, driven)
+        held = drive.scale, drive.held_by, tick.posture.sigma_min
+        return JogStep(after, *held, driven, moving)
 
     def posture(self, joints: Array) -> Posture:
         """The Jacobian at joints (6,), its linear velocities in characteristic lengths."""
@@ -205,12 +208,12 @@ class _Tick:
             found = self._leaving()
         return found or (self._sliding(JOINT_CORNER) if self._is_trapped() else None)
 
-    def missed(self, rates: Array) -> tuple[Array, float]:
-        """How far (6,) the tool is off its line with these rates, and the part of the twist."""
-        off_line, part = self._state.off_line.copy(), np.empty(1)
+    def missed(self, rates: Array) -> tuple[Array, float, Array]:
+        """How far (6,) the tool is off its line with these rates, the part of the twist, its own."""
+        off_line, part, moving = self._state.off_line.copy(), np.empty(1), np.empty(6)
         time = np.array((self._jog.arm.characteristic_length, self._dt))
-        _kernel.part_driven(self.posture.numbers, time, self._twist, rates, off_line, part)
-        return off_line, float(part[0])
+        _kernel.part_driven(self.posture.numbers, time, self._twist, rates, off_line, part, moving)
+        return off_line, float(part[0]), moving
 
     def _exact(self, twist: Array) -> LineRates:
         return line_rates(self.posture, twist, self._jog._onset)

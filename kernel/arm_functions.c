@@ -146,12 +146,14 @@ EACH(damped_rates, damped_rates(THE(struct decomposed, 0), *a[1], PART(2, 6), PA
 FUNCTION(damped_rates, {WHOLE, NUMBERS(struct decomposed)}, {WHOLE, 1}, {ITEMS, 6},
          {WRITTEN, JOINTS})
 
-/* Adds what is missed in a tick of a[1][1] seconds to the way back, in metres again. */
-EACH(part_driven, real missed[6];
-     a[5][i] = part_driven(THE(struct decomposed, 0), PART(2, 6), PART(3, JOINTS), missed);
-     for (int k = 0; k < 6; k++) PART(4, 6)[k] += a[1][1] * missed[k] * (k < 3 ? a[1][0] : 1);)
+/* Adds what is missed in a tick of a[1][1] seconds to the way back; it and the tool's twist are in
+   metres again. */
+EACH(part_driven, real missed[6]; real *back = PART(4, 6), *moving = PART(6, 6);
+     a[5][i] = part_driven(THE(struct decomposed, 0), PART(2, 6), PART(3, JOINTS), missed, moving);
+     for (int k = 0; k < 6; k++) back[k] += a[1][1] * missed[k] * (k < 3 ? a[1][0] : 1);
+     for (int k = 0; k < 3; k++) moving[k] *= a[1][0];)
 FUNCTION(part_driven, {WHOLE, NUMBERS(struct decomposed)}, {WHOLE, 2}, {ITEMS, 6}, {ITEMS, JOINTS},
-         {WRITTEN, 6}, {WRITTEN, 1})
+         {WRITTEN, 6}, {WRITTEN, 1}, {WRITTEN, 6})
 
 EACH(room_of, room_of(THE(struct joint_limits, 0), PART(1, JOINTS), PART(2, 2 * JOINTS));)
 FUNCTION(room_of, {WHOLE, NUMBERS(struct joint_limits)}, {ITEMS, JOINTS}, {WRITTEN, 2 * JOINTS})

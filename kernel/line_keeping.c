@@ -154,9 +154,9 @@ void damped_rates(const struct decomposed *at, real onset, const real twist[6],
 }
 
 real part_driven(const struct decomposed *at, const real twist[6], const real rates[JOINTS],
-                 real missed[6])
+                 real missed[6], real moving[6])
 {
-    real moving[6], size = dot6(twist, twist);
+    real size = dot6(twist, twist);
     for (int k = 0; k < 6; k++)
         moving[k] = dot6(at->jacobian[k], rates);
     real part = size > 0 ? dot6(moving, twist) / size : 0;

@@ -33,8 +33,8 @@ void line_rates(const struct decomposed *at, real onset, const real twist[6], co
 void damped_rates(const struct decomposed *at, real onset, const real twist[6],
                   real rates[JOINTS]);
 
-/* The part of the twist that the tool goes with at these rates, and what of it was missed. */
+/* The tool's twist at these rates; the part of `twist` that it has, and what of it was missed. */
 real part_driven(const struct decomposed *at, const real twist[6], const real rates[JOINTS],
-                 real missed[6]);
+                 real missed[6], real moving[6]);
 
 #endif

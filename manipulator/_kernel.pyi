@@ -149,8 +149,12 @@ def part_driven(
     rates: Array,
     off_line: Array,
     part: Array,
+    moving: Array,
 ) -> int:
-    """Writes the part of a scaled twist; adds to `off_line` what is missed in dt, unscaled."""
+    """Writes the part of a scaled twist that `rates` drive, and their own twist, unscaled.
+
+    Adds to `off_line` what is missed in dt, unscaled.
+    """
 
 def room_of(limits: Array, joints: Array, room: Array) -> int:
     """Writes what is left of the joint ranges: see kernel/rate_scaling.h."""
