@@ -7,7 +7,7 @@ import numpy as np
 from arm_control.arm import SerialArm
 from arm_control.geometry import FORMS, ArmLimits, placed
 from arm_control.rate_scaling import AT_ONCE
-from arm_control.resolved_rate import JogState, JogStep, ResolvedRate
+from arm_control.resolved_rate import STRAIGHT, JogState, ResolvedRate
 from manipulator.arrays import Array, frozen
 from manipulator.config import build, build_both
 from manipulator.errors import ConfigError
@@ -21,16 +21,18 @@ from manipulator.teleop.jogger import JogMotion, ticks_for, towards
 SHARE_BEFORE_STOPS = 0.5
 """Of the tool's acceleration, what braking before a stop counts on; the rest is for bends: a joint
 may turn ever faster while the tool goes straight on."""
-ROUNDING = 1e-6
-"""Part of a tick's change of twist."""
+LAG = 0.02
+"""Of a tick's change of twist, by which a tool that is pulled back on its line may pass it."""
+MOST_TICKS = np.array((1.0 + 1e-6, 1.0 + LAG))
+"""What the part along the line and the whole twist may change in a tick, in ticks."""
 
 
 @dataclass(frozen=True, eq=False)
 class ArmJogger:
     """`Jogger` of an arm: what it follows and keeps is said in `ResolvedRate`.
 
-    Each tick starts from motion.twist, the one that the joints drive, so that the tool keeps its
-    accelerations also where the joints could not follow.
+    The wanted twist goes on from motion.along, the part of it that the joints could follow, or
+    from motion.twist where the tool would otherwise pass its accelerations.
     """
 
     jog: ResolvedRate
@@ -39,15 +41,25 @@ class ArmJogger:
     def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
         """See `Jogger`; in a corner of the joint ranges the tool slides, so as to get out."""
         limits = self.jog.motion
-        wanted = towards(motion.twist, twist, limits, dt)
+        wanted = towards(motion.along, twist, limits, dt)
+        if ticks_for(wanted - motion.twist, limits, dt) > 1.0 + LAG:
+            wanted = towards(motion.twist, twist, limits, dt)
         ticks = max(float(ticks_for(wanted, limits, dt)), 1.0)
-        step = self._stepped(motion, wanted, dt, SHARE_BEFORE_STOPS / (ticks * dt))
-        change = step.driven * wanted - motion.twist
-        if ticks_for(change, limits, dt) > 1.0 + ROUNDING:
+        after = self._stepped(motion, wanted, dt, SHARE_BEFORE_STOPS / (ticks * dt))
+        changes = np.array((after.along - motion.along, after.twist - motion.twist))
+        if (ticks_for(changes, limits, dt) > MOST_TICKS).any():
             # No part of what is wanted can be reached as gently as the tool asks for.
             straight = towards(motion.twist, np.zeros(6), limits, dt)
-            braked = self._stepped(motion, straight, dt)
-            step = replace(step, state=braked.state, twist=braked.twist)
+            braked = self._stepped(replace(motion, off_line=STRAIGHT), straight, dt)
+            return replace(braked, scale=after.scale, held_by=after.held_by)
+        return after
+
+    def _stepped(
+        self, motion: JogMotion, wanted: Array, dt: float, slowing: float = AT_ONCE
+    ) -> JogMotion:
+        line = motion.off_line, motion.is_leaving, motion.is_under_way
+        before = JogState(motion.joints, motion.rates, *line)
+        step = self.jog.step(before, self._of_tool(wanted, motion.pose), dt, slowing)
         state = step.state
         return JogMotion(
             self.frames.pivot(self.jog.arm.chain.forward(state.joints)),
@@ -59,14 +71,8 @@ class ArmJogger:
             state.off_line,
             state.is_leaving,
             state.is_under_way,
+            frozen(step.driven * wanted),
         )
-
-    def _stepped(
-        self, motion: JogMotion, twist: Array, dt: float, slowing: float = AT_ONCE
-    ) -> JogStep:
-        line = motion.off_line, motion.is_leaving, motion.is_under_way
-        state = JogState(motion.joints, motion.rates, *line)
-        return self.jog.step(state, self._of_tool(twist, motion.pose), dt, slowing)
 
     def _of_tool(self, twist: Array, T_work_pivot: Pose) -> Array:
         """The tool's twist in base axes, for the pivot's in work axes: v − ω × r."""

@@ -24,7 +24,7 @@ from arm_control.rate_scaling import (
     sliding_rates,
 )
 from manipulator import _kernel
-from manipulator.arrays import Array, frozen
+from manipulator.arrays import Array, Mask, frozen
 from manipulator.errors import InvalidInput
 from manipulator.motion_limits import MotionLimits
 
@@ -209,7 +209,7 @@ class _Tick:
         return found or (self._sliding(JOINT_CORNER) if self._is_trapped() else None)
 
     def missed(self, rates: Array) -> tuple[Array, float, Array]:
-        """How far (6,) the tool is off its line with these rates, the part of the twist, its own."""
+        """How far (6,) the tool is off its line, its part of the twist (0 to 1), its own twist."""
         off_line, part, moving = self._state.off_line.copy(), np.empty(1), np.empty(6)
         time = np.array((self._jog.arm.characteristic_length, self._dt))
         _kernel.part_driven(self.posture.numbers, time, self._twist, rates, off_line, part, moving)
@@ -280,4 +280,10 @@ class _Tick:
             return free.size == 0
         size = float(np.sqrt(self._twist @ self._twist))
         units = size * np.concatenate([np.eye(6), -np.eye(6)])[free]
-        return all(self._scaled(self._exact(unit)).scale == 0.0 for unit in units)
+        drives = [self._scaled(self._exact(unit)) for unit in units]
+        return all(drive.scale == 0.0 or _presses(drive.rates, *near_stops) for drive in drives)
+
+
+def _presses(rates: Array, at_low: Mask, at_high: Mask) -> bool:
+    """Whether one of the joints (6,) turns to the end of its range at which it stands."""
+    return bool((rates[at_low] < 0.0).any() or (rates[at_high] > 0.0).any())

@@ -95,7 +95,8 @@ class JogMotion:
 
     For the jogger's next step: off_line (6,) is the twist that would bring the tool back onto its
     commanded line within a second, in base axes; is_leaving: it moves out of a singular
-    posture, off the line; is_under_way: it moves, or has stopped, on the line.
+    posture, off the line; is_under_way: it moves, or has stopped, on the line; along (6,) is what
+    of `twist` is along that line.
     """
 
     pose: Pose
@@ -107,6 +108,7 @@ class JogMotion:
     off_line: Array = field(default_factory=lambda: STRAIGHT)
     is_leaving: bool = False
     is_under_way: bool = False
+    along: Array = field(default_factory=lambda: STRAIGHT)
 
     @classmethod
     def at_rest(cls, pose: Pose, joints: Array) -> 'JogMotion':

@@ -1,5 +1,6 @@
 """A jogged tool keeps the direction that was asked for, or stands and says why."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +13,10 @@ from arm_control.load import jogging
 from arm_control.resolved_rate import JogState
 from manipulator import rotation as so3
 from manipulator.errors import InvalidInput
-from manipulator.teleop.jogger import JogMotion
+from manipulator.framed_machine import in_frames
+from manipulator.frames import Frames
+from manipulator.pose import Pose
+from manipulator.teleop.jogger import JogMotion, ticks_for, within_speed
 from sampling import enough
 
 DT = 0.01
@@ -227,6 +231,27 @@ def test_arm_braking_before_a_stop_keeps_its_joints_accelerations(jog):
             before, state = state, jog.step(state, twist, DT).state
             changes = np.abs(state.rates - before.rates) / DT
             assert (changes <= acceleration * (1 + 1e-6)).all()
+
+
+@pytest.mark.parametrize('name', ['arm_6r', 'ur5', 'puma560'])
+def test_tool_keeps_its_accelerations_where_joints_cannot_follow(machine_file, name):
+    """By differences of poses, at twists that change while the last one is not reached."""
+    work = Pose.from_xyz_rpy(np.array([0.1, -0.2, 0.3]), np.array([0.4, -0.5, 2.0]))
+    bare = load_arm(machine_file(name))
+    machine = in_frames(bare, Frames(work).with_pivot([0.03, -0.05, 0.06]))
+    rng, motion, limits = np.random.default_rng(14), bare.motion, bare.kinematics.limits
+    full = np.repeat([motion.linear.speed, motion.angular.speed], 3)
+    for _ in range(enough(8, 25)):
+        motions = [rng.uniform(np.maximum(limits.low, -3.0), np.minimum(limits.high, 3.0))]
+        for _ in range(8):
+            target = within_speed(rng.uniform(-1, 1, 6) * full, motion)[0]
+            motions += drive(machine, motions.pop(), target, seconds=rng.uniform(0.02, 0.5))
+        joints = np.array([m.joints for m in motions])
+        steps = [a.pose.twist_to(b.pose) for a, b in itertools.pairwise(motions)]
+        changes = np.diff(np.array(steps) / DT, axis=0)
+        away_from_stops = np.minimum(joints - limits.low, limits.high - joints).min(axis=1) > 0.05
+        regular = bare.kinematics.sigma_min(motions[0].pose, joints) > 0.2
+        assert (ticks_for(changes, motion, DT) < 1.05)[(away_from_stops & regular)[1:-1]].all()
 
 
 def test_another_word_for_what_a_jog_does_at_a_singularity_is_refused(machine):
