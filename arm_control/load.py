@@ -21,10 +21,10 @@ from manipulator.teleop.jogger import JogMotion, ticks_for, towards
 SHARE_BEFORE_STOPS = 0.5
 """Of the tool's acceleration, what braking before a stop counts on; the rest is for bends: a joint
 may turn ever faster while the tool goes straight on."""
+ROUNDING = 1e-6
+"""Part of a tick's change of twist."""
 LAG = 0.02
 """Of a tick's change of twist, by which a tool that is pulled back on its line may pass it."""
-MOST_TICKS = np.array((1.0 + 1e-6, 1.0 + LAG))
-"""What the part along the line and the whole twist may change in a tick, in ticks."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +42,14 @@ class ArmJogger:
         """See `Jogger`; in a corner of the joint ranges the tool slides, so as to get out."""
         limits = self.jog.motion
         wanted = towards(motion.along, twist, limits, dt)
-        if ticks_for(wanted - motion.twist, limits, dt) > 1.0 + LAG:
+        change, ticks = ticks_for(np.array((wanted - motion.twist, wanted)), limits, dt).tolist()
+        if change > 1.0 + LAG:
             wanted = towards(motion.twist, twist, limits, dt)
-        ticks = max(float(ticks_for(wanted, limits, dt)), 1.0)
-        after = self._stepped(motion, wanted, dt, SHARE_BEFORE_STOPS / (ticks * dt))
+        slowing = SHARE_BEFORE_STOPS / (max(ticks, 1.0) * dt)
+        after = self._stepped(motion, wanted, dt, slowing)
         changes = np.array((after.along - motion.along, after.twist - motion.twist))
-        if (ticks_for(changes, limits, dt) > MOST_TICKS).any():
+        along, whole = ticks_for(changes, limits, dt).tolist()
+        if along > 1.0 + ROUNDING or whole > 1.0 + LAG:
             # No part of what is wanted can be reached as gently as the tool asks for.
             straight = towards(motion.twist, np.zeros(6), limits, dt)
             braked = self._stepped(replace(motion, off_line=STRAIGHT), straight, dt)
