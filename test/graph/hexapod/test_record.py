@@ -77,6 +77,30 @@ def received(recording, request):
     return found
 
 
+def test_it_records_from_the_first_goal_after_it_says_so(user, hexarm, tmp_path):
+    path = tmp_path / 'first.mcap'
+    user.make_ready()
+    user.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.044)))
+    recorder = hexarm('record', 'hexapod', '-o', str(path))
+    lines = iter(recorder.stdout.readline, '')
+    assert any(line.startswith('recording ') for line in lines)
+    user.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.047)))
+    recorder.send_signal(signal.SIGINT)
+    ends_with(recorder, 0)
+    heights, results = [], []
+    with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+        for connection, _, raw in reader.messages():
+            message = reader.deserialize(raw, connection.msgtype)
+            if connection.topic == '/hexapod/setpoint':
+                heights.append(message.pose.position.z)
+            elif connection.topic == '/hexapod/motion_status':
+                results.append({pair.key: pair.value for pair in message.values}['result'])
+    assert 'moving' in results
+    assert results[-1] == 'reached'
+    assert min(heights) == pytest.approx(0.044, abs=1e-4)
+    assert max(heights) == pytest.approx(0.047, abs=1e-4)
+
+
 def test_streams_and_latched_states_are_in_it(received):
     assert {f'/hexapod/{name}' for name in (*STREAMS, *LATCHED)} < set(received)
     assert received['/hexapod/machine_state'][0].message == 'enabled'
