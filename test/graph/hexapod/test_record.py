@@ -20,6 +20,7 @@ from rosbags.typesys import Stores, get_typestore
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
+from hexarm import Robot
 from manipulator.nodes.messages import seconds
 from manipulator.nodes.qos import LATCHED as LATCHED_QUALITIES
 from manipulator.pose import Pose
@@ -84,17 +85,22 @@ def test_it_records_from_the_first_goal_after_it_says_so(user, hexarm, tmp_path)
     recorder = hexarm('record', 'hexapod', '-o', str(path))
     lines = iter(recorder.stdout.readline, '')
     assert any(line.startswith('recording ') for line in lines)
-    user.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.047)))
+    with Robot('/hexapod') as robot:
+        user.wait('who records goals', lambda: user.node.count_subscribers('goal_pose') > 1)
+        user.persist(lambda: robot.move_to((0.0, 0.0, 0.047)))
     recorder.send_signal(signal.SIGINT)
     ends_with(recorder, 0)
-    heights, results = [], []
+    heights, results, goals = [], [], []
     with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
         for connection, _, raw in reader.messages():
             message = reader.deserialize(raw, connection.msgtype)
             if connection.topic == '/hexapod/setpoint':
                 heights.append(message.pose.position.z)
+            elif connection.topic == '/hexapod/goal_pose':
+                goals.append(message.pose.position.z)
             elif connection.topic == '/hexapod/motion_status':
                 results.append({pair.key: pair.value for pair in message.values}['result'])
+    assert set(goals) == {0.047}
     assert 'moving' in results
     assert results[-1] == 'reached'
     assert min(heights) == pytest.approx(0.044, abs=1e-4)
