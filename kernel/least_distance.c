@@ -2,7 +2,7 @@
 
 #include "vector.h"
 
-#define NOT_FOUND_ABOVE REAL(-1e-12)
+#define NOTHING_LEFT REAL(1e-12) /* of what the residual is the rest of */
 #define DEPENDENT REAL(1e-20) /* squared sine to the columns before */
 #define TOLERANCE (10 * REAL_EPSILON)
 enum { ROWS = 7, STEPS_PER_COLUMN = 3 };
@@ -113,27 +113,32 @@ static ptrdiff_t steepest(const struct problem *p, const real residual[ROWS], co
    way. 0 where the last one is of no use. */
 static int taken_in(const struct problem *p, struct used *used, real *state)
 {
-    real wanted[ROWS];
+    real solution[ROWS];
     int last = used->count - 1;
     used->weight[last] = 0;
-    if (!solve(p, used, wanted) || !(wanted[last] > 0))
+    if (!solve(p, used, solution) || !(solution[last] > 0))
         return 0;
     for (;;) {
         real share = 1;
-        for (int j = 0; j < used->count; j++)
-            if (wanted[j] <= 0)
-                share = fmin(share, used->weight[j] / (used->weight[j] - wanted[j]));
-        int kept = 0;
+        int first = -1, kept = 0; /* the first whose weight falls to 0 */
         for (int j = 0; j < used->count; j++) {
-            real weight = used->weight[j] + share * (wanted[j] - used->weight[j]);
-            state[used->column[j]] = weight > TOLERANCE * TOLERANCE ? 1 : 0;
-            if (state[used->column[j]] == 0)
+            real part = used->weight[j] / (used->weight[j] - solution[j]);
+            if (solution[j] <= 0 && !(part >= share)) {
+                share = part;
+                first = j;
+            }
+        }
+        for (int j = 0; j < used->count; j++) {
+            real weight = used->weight[j] + share * (solution[j] - used->weight[j]);
+            int is_kept = j != first && weight > 0;
+            state[used->column[j]] = is_kept;
+            if (!is_kept)
                 continue;
             used->column[kept] = used->column[j];
             used->weight[kept++] = weight;
         }
         used->count = kept;
-        if (share >= 1 || !solve(p, used, wanted))
+        if (first < 0 || !solve(p, used, solution))
             return 1;
     }
 }
@@ -164,7 +169,12 @@ int least_distance(const real target[6], const real (*normals)[6], const real *s
     }
     for (ptrdiff_t i = 0; i < count; i++)
         multipliers[i] = 0;
-    for (int j = 0; j < used.count; j++)
+    real whole = 1;
+    for (int j = 0; j < used.count; j++) {
+        real column[ROWS];
+        column_of(&p, used.column[j], column);
+        whole += used.weight[j] * real_fabs(column[6]);
         multipliers[used.column[j]] = used.weight[j] / -residual[6];
-    return (steps > 0 || count == 0) && residual[6] <= NOT_FOUND_ABOVE;
+    }
+    return (steps > 0 || count == 0) && -residual[6] > NOTHING_LEFT * whole;
 }

@@ -4,8 +4,10 @@
 #include "matrix6.h"
 #include "se3.h"
 
-/* Metres and radians from the known pose, and radians of the joints, that count as beside it. */
+/* Radians of the joints that count as beside the known ones. */
 #define BESIDE REAL(0.05)
+/* Metres and radians from the known pose, farther than which such joints do not lead. */
+#define FARTHEST REAL(0.3)
 #define CONVERGED REAL(1e-12)
 #define ARRIVED REAL(1e-11)
 /* A start whose error is still more than this part of what it was ten steps ago is given up. */
@@ -41,7 +43,7 @@ int continue_nearby(const struct chain *chain, const struct frame *pose, const r
         if (away < CONVERGED)
             return 1;
         chain_jacobian(&here, jacobian);
-        if (!(away <= BESIDE) || eliminate6(jacobian, error) == 0)
+        if (!(away <= FARTHEST) || eliminate6(jacobian, error) == 0)
             return 0;
         for (int i = 0; i < JOINTS; i++)
             joints[i] += error[i]; /* solved for the joints by now */

@@ -8,7 +8,7 @@
 void twist_to_pose(const struct frame *here, const struct frame *pose, real twist[6]);
 
 /* The joints that continue `near` to a pose beside it; 0 where that is not certain: farther than
-   0.05 (m, rad), or where the method does not converge at once. */
+   0.05 rad, or where the method does not converge at once. */
 int continue_nearby(const struct chain *chain, const struct frame *pose, const real near[JOINTS],
                     real joints[JOINTS]);
 

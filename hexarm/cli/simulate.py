@@ -1,9 +1,9 @@
 """`hexarm simulate MACHINE`: a periodic motion in MuJoCo, with the sensors of Prokopovich 2019."""
 
 import argparse
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from hexarm import machines
 from hexarm.cli.accuracy import common_error
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.cli.export import modelled
+from hexarm.cli.simulated import Experiment, in_words, summary
 from hexarm.simulation.compensation import Compensation
 from hexarm.simulation.limit_search import (
     FREQUENCY,
@@ -20,10 +21,9 @@ from hexarm.simulation.limit_search import (
     share_in_reach,
 )
 from hexarm.simulation.model import dynamics_of
-from hexarm.simulation.rigid_body import Mechanism, RigidBody, payload
+from hexarm.simulation.rigid_body import payload
 from hexarm.simulation.static_load import check_holds, static_load
 from manipulator.analysis.accuracy import JointErrors
-from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.machine import Machine
 from manipulator.trajectory.cycle import Cycle
@@ -34,30 +34,9 @@ if TYPE_CHECKING:
     from hexarm.simulation.simulation import Simulation
 
 LONGEST_SECONDS = 120.0
-KG_CM, N_CM = 0.0980665, 0.01
-G = 9.80665
 SIX = ('X', 'Y', 'Z', 'R', 'P', 'Y')
 LAWS = ('independent', 'common')
 NOISE_SEED = 1
-
-
-@dataclass(frozen=True)
-class Experiment:
-    """A machine, its model, and the cycle that it is to do: `part` of the amplitudes requested.
-
-    corners_out is how many of the 64 poses with every amplitude at + or − are out of reach. load
-    is what the moving frame carries, noise what the servos are off by, None for exact ones.
-    """
-
-    machine: Machine
-    mechanism: Mechanism
-    cycle: Cycle
-    part: float
-    corners_out: int
-    compensation: Compensation
-    is_compensated: bool
-    load: RigidBody
-    noise: JointErrors | None
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -214,63 +193,3 @@ def servo_noise(arguments: argparse.Namespace, joints: int) -> JointErrors | Non
     if arguments.noise_law == 'common':
         return common_error(machines.read(arguments.machine), noise, joints)
     return JointErrors.of(joints, noise=noise)
-
-
-def summary(this: Experiment, recording: 'Recording') -> dict[str, Any]:
-    """Numbers for programs: SI units and radians."""
-    errors = recording.errors
-    speed = np.linalg.norm(recording.twists[:, :3], axis=1)
-    acceleration = np.linalg.norm(recording.accelerations[:, :3], axis=1)
-    return {
-        'part_in_reach': this.part,
-        'corners_out_of_reach': this.corners_out,
-        'platform_speed': float(speed.max()),
-        'platform_acceleration': float(acceleration.max()),
-        'axis_speed': np.abs(recording.twists[:, :3]).max(axis=0).tolist(),
-        'axis_acceleration': np.abs(recording.accelerations[:, :3]).max(axis=0).tolist(),
-        'joint_speed': np.abs(recording.rates).max(axis=0).tolist(),
-        'joint_effort': np.abs(recording.efforts).max(axis=0).tolist(),
-        'is_compensated': this.is_compensated,
-        'position_error': float(np.linalg.norm(errors[:, :3], axis=1).max()),
-        'angle_error': float(np.linalg.norm(errors[:, 3:], axis=1).max()),
-        'closure_error': float(recording.closure.max()),
-    }
-
-
-def in_words(this: Experiment, numbers: dict[str, Any]) -> list[str]:
-    """The same for people."""
-    drives, is_rotary = this.mechanism.drives, this.machine.kinematics.joint_unit == 'rad'
-    effort, most = nearest_to(np.array(numbers['joint_effort']), drives.effort)
-    speed, fastest = nearest_to(np.array(numbers['joint_speed']), drives.speed)
-    factor, unit = (np.degrees(1.0), '°/s') if is_rotary else (1e3, 'mm/s')
-    forces = f'{effort:.4g} {"N·m" if is_rotary else "N"} of {most:.4g}'
-    if is_rotary and drives.effort.max() < 1.0:
-        forces += f' ({effort / N_CM:.3g} N·cm, {effort / KG_CM:.3g} kg·cm of {most / KG_CM:.3g})'
-    reach = f'of the 64 corners of the amplitudes {this.corners_out} are out of reach'
-    if this.part < 1.0:
-        reach += f'; the motion is done with {100 * this.part:.1f} % of the amplitudes'
-    speeds = ', '.join(f'{1e3 * v:.1f}' for v in numbers['axis_speed'])
-    accelerations = ', '.join(f'{v:.3g}' for v in numbers['axis_acceleration'])
-    noise = []
-    if 'noise_position_rms' in numbers:
-        moved = 1e6 * numbers['noise_position_rms']
-        noise = [f'servo noise  moves the platform by {moved:.1f} µm rms']
-    return [
-        reach,
-        f'platform     at most {1e3 * numbers["platform_speed"]:.1f} mm/s and '
-        f'{numbers["platform_acceleration"]:.3g} m/s² = '
-        f'{numbers["platform_acceleration"] / G:.3g} g',
-        f'  on x, y, z at most {speeds} mm/s and {accelerations} m/s²',
-        f'joint speed  at most {factor * speed:.4g} {unit} of {factor * fastest:.4g}',
-        f'joint effort at most {forces}',
-        f'behind by    at most {1e3 * numbers["position_error"]:.3f} mm and '
-        f'{np.degrees(numbers["angle_error"]):.3f}°',
-        f'loops        open by at most {1e3 * numbers["closure_error"]:.2g} mm',
-        *noise,
-    ]
-
-
-def nearest_to(values: Array, limits: Array) -> tuple[float, float]:
-    """The value nearest to its limit, and that limit."""
-    worst = int(np.argmax(values / limits))
-    return float(values[worst]), float(limits[worst])

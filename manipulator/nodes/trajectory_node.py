@@ -51,7 +51,7 @@ GOAL_TOLERANCE = (
 )
 POSE_TOLERANCE = (
     'how far the pose of measured joints may be from a goal that is reached (m; turns in '
-    'proportion); 0: 0.1 % of the characteristic length'
+    'proportion); 0: 0.1 % of the characteristic length, or all joints within two counts'
 )
 
 

@@ -2,8 +2,6 @@
 
 from math import sqrt
 
-import numpy as np
-
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution
 from manipulator.machine import Machine
@@ -14,7 +12,6 @@ from manipulator.trajectory.following_error import Tolerances
 
 LONGEST_WAIT = 3.0
 """Seconds that a path waits for the arrival at its first pose."""
-
 
 CREEP = 0.1
 """Scaling factor while the play of a joint that has turned is taken up."""
@@ -74,9 +71,3 @@ class ClosedLoop:
             self._is_facing = True
         if is_ready or self._waited > self._longest_wait:
             executor.begin_waiting()
-
-
-def dead_band_of(machine: Machine) -> Array:
-    """The resolution (n,) of a machine's joints, 0 where it is not known."""
-    count = len(machine.kinematics.joint_names)
-    return np.zeros(count) if machine.resolution is None else machine.resolution

@@ -38,20 +38,22 @@ DISTANCE_SHARE = 0.001
 """Of the characteristic length that a measured pose may be from the goal."""
 
 COUNTS = 2.0
-"""Dead bands within which every joint is as near to its goal as it can come."""
+"""Steps of its resolution within which a joint is as near to its goal as it can come."""
 
 
 @dataclass(frozen=True, eq=False)
 class Tolerances:
     """How far each joint may be from its recent commands, and from a goal: (n,), rad or m.
 
-    distance, turn: how far a measured pose may be from a goal, in m and rad.
+    distance, turn: how far a measured pose may be from a goal, in m and rad. closest (n,): joints
+    that are all within this are there, whatever their pose.
     """
 
     following: Array
     goal: Array
     distance: float
     turn: float
+    closest: Array
 
     @classmethod
     def of(
@@ -59,7 +61,8 @@ class Tolerances:
     ) -> 'Tolerances':
         """One value for all joints (rad or m), or with 0 one by each joint's unit and range.
 
-        distance: with 0 a share of the characteristic length; turns in proportion.
+        distance: with 0 a share of the characteristic length, or what the joints' resolution
+        allows; turns in proportion.
         """
         low, high = machine.joint_ranges
         is_rotary = machine.kinematics.joint_unit == 'rad'
@@ -70,12 +73,14 @@ class Tolerances:
             return frozen(np.minimum(share * (high - low), most if is_rotary else np.inf))
 
         length = machine.kinematics.characteristic_length
+        closest = COUNTS * dead_band_of(machine) * (distance == 0.0)
         distance = distance or DISTANCE_SHARE * length
         return cls(
             each(following, FOLLOWING_SHARE, MOST_FOLLOWING),
             each(goal, GOAL_SHARE, MOST_AT_GOAL),
             distance,
             distance / length,
+            frozen(closest),
         )
 
     def violation(self, gap: Array) -> str:
@@ -87,6 +92,12 @@ class Tolerances:
             f'{missed(gap)} (tolerance {1e3 * self.distance:.3g} mm and '
             f'{np.degrees(self.turn):.2g}°)'
         )
+
+
+def dead_band_of(machine: Machine) -> Array:
+    """The resolution (n,) of a machine's joints, 0 where it is not known."""
+    count = len(machine.kinematics.joint_names)
+    return np.zeros(count) if machine.resolution is None else machine.resolution
 
 
 def missed(gap: Array) -> str:
@@ -144,12 +155,13 @@ class FollowingError:
         worst, excess = self._furthest(away, tolerance, 'the goal')
         return worst if excess > 0.0 else ''
 
-    def is_within(self, dead_band: Array) -> bool:
-        """Whether every joint is as near to the last command as its dead band (n,) allows."""
+    @property
+    def is_closest(self) -> bool:
+        """Whether every joint is as near to the last command as its resolution allows."""
         if self._measured is None or not self._commanded:
             return False
         away = np.abs(self._commanded[-1] - self._measured)
-        return bool((away <= COUNTS * dead_band).all())
+        return bool((away < self._tolerances.closest).all())
 
     @property
     def violation(self) -> str:

@@ -62,11 +62,12 @@ class Play:
     def add(self, change: Array, is_still: Mask) -> None:
         """Changes the offsets of the present directions by (n,), up to the largest.
 
-        A joint that stands still (n,) and has gone too far is approached from the other side.
+        A joint that stands still (n,) and has gone too far, by more than what makes a turn, is
+        approached from the other side.
         """
         own = np.clip(self.offset + change, -self._most, self._most)
         self._offsets[self._direction, self._columns] = own
-        is_back = np.where(self._direction == 0, change, -change) < 0.0
+        is_back = np.where(self._direction == 0, change, -change) < -self._turn
         if (is_still & is_back).any():
             pick = np.where(
                 self._direction == 0, np.minimum(own, self._other), np.maximum(own, self._other)

@@ -15,13 +15,14 @@ from manipulator.frames import Frames
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.states import MachineState, MotionMode, MotionResult
-from manipulator.trajectory.closed_loop import ClosedLoop, dead_band_of
+from manipulator.trajectory.closed_loop import ClosedLoop
 from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.following_error import (
     Arrival,
     FollowingError,
     PoseMatch,
     Tolerances,
+    dead_band_of,
     missed,
 )
 from manipulator.trajectory.motion_status import MotionStatus
@@ -250,8 +251,7 @@ class MotionSupervisor:
         gap = executor.state.pose.twist_to(self.machine.frames.pivot(self._pose))
         if joint:
             return f'{joint}: {missed(gap)}'
-        is_closest = following.is_within(self._dead_band)
-        return '' if is_closest else self._tolerances.violation(gap)
+        return '' if following.is_closest else self._tolerances.violation(gap)
 
     def _take_over(self, T_base_platform: Pose, near: Array) -> None:
         self._clear_mismatch()

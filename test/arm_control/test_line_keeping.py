@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from arm_control.arm import SerialArm
-from arm_control.line_keeping import singularity
+from arm_control.line_keeping import Posture, singularity
 from arm_control.load import arm as load_arm
 from arm_control.load import jogging
 from arm_control.resolved_rate import JogState
@@ -80,6 +80,24 @@ def twists(machine, rng, count):
 @pytest.fixture(scope='module')
 def machine(machine_file):
     return load_arm(machine_file('arm_6r'))
+
+
+@pytest.mark.parametrize('zeroed', [[], [2], [4], [2, 4], [0, 1, 2, 3, 4, 5]])
+def test_singular_values_and_vectors_make_the_jacobian_where_some_are_zero_too(arm_6r, zeroed):
+    length = np.array([arm_6r.characteristic_length])
+    joints = np.array([0.3, -0.5, 1.0, 0.8, 0.7, -0.5])
+    joints[zeroed] = 0.0
+    posture = Posture.at(arm_6r.chain, length, joints)
+    jacobian = arm_6r.chain.jacobian(joints)
+    jacobian[:3] /= length
+    left, sigma, right = posture.left, posture.sigma, posture.right
+    assert np.abs(posture.jacobian - jacobian).max() < 1e-15
+    assert np.abs((left * sigma) @ right - jacobian).max() < 1e-14
+    assert np.abs(left.T @ left - np.eye(6)).max() < 1e-14
+    assert np.abs(right @ right.T - np.eye(6)).max() < 1e-14
+    assert (np.diff(sigma) <= 0.0).all()
+    assert sigma == pytest.approx(np.linalg.svd(jacobian, compute_uv=False), abs=1e-14)
+    assert arm_6r.sigma_min(arm_6r.home, joints) == pytest.approx(sigma[-1], abs=1e-14)
 
 
 @pytest.mark.parametrize('name', ['arm_6r', 'ur5', 'puma560'])

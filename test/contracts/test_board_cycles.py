@@ -164,3 +164,11 @@ def test_a_cycle_outlives_a_reset_and_a_table_does_not(make_driver):
     driver.arm(HOME)
     assert driver.ask(Play(Program.TABLE, False)) is Result.NO_PROGRAM
     assert driver.ask(Play(Program.CYCLE, False)) is Result.OK
+
+
+@pytest.mark.parametrize('axis', [CycleAxis(2, 0.0, 500, 0.0), CycleAxis(2, 0.003, 0, 0.0)])
+def test_a_cycle_in_which_no_axis_moves_is_none(make_driver, axis):
+    driver = make_driver()
+    driver.arm(HOME)
+    assert driver.ask(axis) is Result.OK
+    assert driver.ask(Play(Program.CYCLE, True)) is Result.NO_PROGRAM

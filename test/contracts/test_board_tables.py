@@ -115,6 +115,14 @@ def test_a_table_larger_than_the_memory_is_refused(armed):
     assert armed.ask(TableBegin(448, 50)) is Result.OK
 
 
+def test_a_steep_table_that_is_played_once_ends_exactly_at_its_last_row(armed):
+    there = tuple(count + 240 for count in PARK)
+    assert armed.upload([PARK, there], 20) is Result.OK
+    assert armed.ask(Play(Program.TABLE, False)) is Result.OK
+    armed.run(4.0)
+    assert armed.counts() == there
+
+
 def test_the_joints_take_half_a_second_to_the_first_row_slow_fast_slow(armed):
     there = tuple(count + 100 for count in PARK)
     assert armed.upload([there, there]) is Result.OK

@@ -102,3 +102,21 @@ def test_the_next_turn_of_each_joint_is_seen_ahead_with_the_play_that_it_takes_u
     assert 15 < turns[0] < 18
     assert turns[1] == 31
     assert change == pytest.approx([-0.04, -0.04])
+
+
+@pytest.mark.parametrize('counts', [1.0, 3.0])
+def test_noisy_encoders_and_play_do_not_make_the_joints_swing(counts):
+    rng, half = np.random.default_rng(1), np.radians(1.0)
+    state = {'joints': None}
+
+    def plant(command):
+        before = command if state['joints'] is None else state['joints']
+        state['joints'] = np.clip(before, command - half, command + half)
+        return state['joints'] + counts * COUNT * rng.standard_normal(6)
+
+    rig = Rig(6, plant)
+    plant(rig.joints - 0.5 * half)
+    errors = rig.run(20.0)
+    swing = np.array(rig.commands)[round(5.0 / DT) :]
+    assert np.ptp(swing, axis=0).max() < 2.2 * half + 20 * counts * COUNT[0]
+    assert np.abs(errors[round(5.0 / DT) :]).mean() < 4 * counts * COUNT[0]

@@ -4,7 +4,7 @@ from manipulator.trajectory.following_error import FollowingError, Tolerances
 
 DT = 0.01
 NAMES = ('a', 'b')
-TOLERANCES = Tolerances(np.full(2, 0.1), np.full(2, 0.01), 1e-3, 1e-3)
+TOLERANCES = Tolerances(np.full(2, 0.1), np.full(2, 0.01), 1e-3, 1e-3, np.zeros(2))
 
 
 def following():

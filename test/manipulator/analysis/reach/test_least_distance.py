@@ -38,3 +38,19 @@ def test_bounds_that_exclude_each_other_have_no_multipliers():
     point, weights = nearest_point(np.full(6, 0.3), normals, np.array([-1.0, -1.0]))
     assert point == pytest.approx(np.full(6, 0.3))
     assert np.isnan(weights).all()
+
+
+def test_what_is_found_keeps_every_bound_also_where_hardly_anything_does():
+    """Bounds that are there twice, or against each other: a point that keeps all, or none."""
+    random, found = np.random.default_rng(4), 0
+    for _ in range(1000):
+        normals = random.standard_normal((random.integers(5, 60), 6))
+        normals[1], normals[2], normals[3] = normals[0], normals[0] * (1 + 1e-9), -normals[0]
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        slack = random.standard_normal(len(normals)) * random.choice([1e-6, 1.0])
+        target = random.standard_normal(6) * random.choice([0.0, 1e-3, 10.0])
+        point, weights = nearest_point(target, normals, slack)
+        if np.isfinite(weights).all():
+            found += 1
+            assert (normals @ point + slack).min() > -1e-7
+    assert 50 < found < 950

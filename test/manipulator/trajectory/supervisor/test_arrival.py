@@ -1,6 +1,7 @@
 """A goal is reached when the joints are there, by unit and range; else it says what is off."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,8 +18,8 @@ DT = 0.01
 class Machine:
     """A supervisor and joints that are measured, each off its command by `play` (n,)."""
 
-    def __init__(self, name, play, tolerances=None):
-        self.machine = load(name)
+    def __init__(self, machine, play, tolerances=None):
+        self.machine = load(machine) if isinstance(machine, str) else machine
         self.kinematics = self.machine.kinematics
         self.supervisor = MotionSupervisor(self.machine, DT, tolerances)
         self.play = np.asarray(play)
@@ -72,6 +73,15 @@ def test_an_arm_whose_joints_are_near_but_whose_tool_is_not_is_stopped_with_the_
     results, status = arm.go(arm.kinematics.home.moved([0.1, 0, 0.05, 0, 0, 0]))
     assert results == ['moving', 'stopped']
     assert re.match(r'the goal is missed by [\d.]+ mm and 0.3° \(tolerance 0.4 mm', status.reason)
+
+
+def test_joints_within_two_counts_are_there_unless_a_distance_is_asked_for():
+    machine = replace(load('arm_6r_stepper'), resolution=np.full(6, np.radians(0.2)))
+    off = np.radians([0, 0.3, 0, 0, 0, 0])
+    for distance, result in ((0.0, 'reached'), (1e-3, 'stopped')):
+        arm = Machine(machine, off, Tolerances.of(machine, distance=distance))
+        goal = arm.kinematics.home.moved([0.1, 0, 0.05, 0, 0, 0])
+        assert arm.go(goal)[1].result == result
 
 
 def test_the_tolerance_can_be_asked_for():
