@@ -69,7 +69,7 @@ def test_the_margin_test_is_sharp(cloud):
 
 
 def test_the_margin_test_is_sharp_beside_a_singular_pose():
-    """On the way down, where σmin is a millionth and pivots tell nothing."""
+    """On the way down, where σmin is so small that pivots tell nothing."""
     kinematics = load('robocake').kinematics
 
     def sigma(height):
@@ -79,7 +79,7 @@ def test_the_margin_test_is_sharp_beside_a_singular_pose():
         return float(np.copysign(kinematics.sigma_min(pose, joints), side)), pose, joints
 
     low, high = 0.005, 0.030
-    while sigma(high)[0] > 1e-6:
+    while sigma(high)[0] > 1e-9:
         middle = (low + high) / 2
         low, high = (low, middle) if sigma(middle)[0] > 0.0 else (middle, high)
     least, pose, joints = sigma(high)
