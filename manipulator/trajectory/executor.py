@@ -12,18 +12,18 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal
+from manipulator.planning.joint_move import JointMove
+from manipulator.planning.path_timing import TimedPath
+from manipulator.planning.plan import Hold, MotionState, Plan
+from manipulator.planning.worker import InPlace, Worker
 from manipulator.pose import Pose
 from manipulator.states import MotionMode, MotionResult
 from manipulator.trajectory.active_plan import ActivePlan, TimeScaling
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.goal_planning import Planned, Planning
 from manipulator.trajectory.jogging import JogCommand, Jogging
-from manipulator.trajectory.joint_move import JointMove
 from manipulator.trajectory.motion_status import OVERTAKEN, STOPPED, TAKEN_OVER, MotionStatus
-from manipulator.trajectory.path_timing import TimedPath
-from manipulator.trajectory.plan import Hold, MotionState, Plan
-from manipulator.trajectory.planning import Planned, Planning
-from manipulator.trajectory.worker import InPlace, Worker
 
 AHEAD, AHEAD_ROWS = 0.5, 26
 """Seconds in which the direction of a motion shows, and the poses that are looked at."""

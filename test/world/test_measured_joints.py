@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from hexarm import machines
+from manipulator.planning.path import Tolerance, arc
+from manipulator.planning.path_timing import PathRequest
 from manipulator.pose import Pose
 from manipulator.trajectory.correction import MOST_CORRECTION
 from manipulator.trajectory.following_error import Tolerances
-from manipulator.trajectory.path import Tolerance, arc
 from manipulator.trajectory.path_planning import PathGoal
-from manipulator.trajectory.path_timing import PathRequest
 from world.requests import Requests
 
 ARM = 'arm_6r_stepper'
