@@ -117,6 +117,13 @@ class Executor:
         if not isinstance(self._active.plan, Cycle):
             self._scaling.jump()
 
+    def give_up_waiting(self, reason: str) -> None:
+        """Drops the path or cycle that waits, and reports it as stopped."""
+        stamp = self._active.stamp
+        self._begin(Hold(self.state.pose), stamp)
+        self._scaling.jump()
+        self._report(MotionResult.STOPPED, stamp, reason)
+
     def pursue(self, goal: Goal) -> None:
         """Plans a goal from the next tick on; of several the newest wins.
 

@@ -225,7 +225,7 @@ class MotionSupervisor:
             deviation = self._deviation(executor, self._following_error)
             self.status = self._arrival.judged(executor.status, deviation) or self.status
         if self._loop is not None:
-            self._loop.prepare(executor, not deviation)
+            self._loop.prepare(executor, deviation)
             pose = self._loop.step(self.machine, executor, pose, self._is_correcting(executor))
         return self.machine.frames.platform(pose)
 
