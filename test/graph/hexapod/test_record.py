@@ -1,11 +1,13 @@
 """`hexarm record` beside a running machine, read back by readers that are not ours."""
 
 import contextlib
+import json
 import resource
 import signal
 import struct
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -128,6 +130,19 @@ def test_goal_of_a_publisher_that_stays_is_in_it(received):
 def test_the_count_that_it_reports_is_that_of_the_file(received, recording):
     count = sum(map(len, received.values()))
     assert f'{count:,} messages of {len(received)} topics' in recording[1]
+
+
+def test_its_counts_are_there_for_programs(user, hexarm, tmp_path):
+    path = tmp_path / 'counted.mcap'
+    recorder = hexarm(
+        'record', 'hexapod', '-o', str(path), '--for', '4', '--json', stderr=subprocess.PIPE
+    )
+    status, said = user.end_of(recorder)
+    summary = json.loads(said)
+    assert (status, summary['file']) == (0, str(path))
+    with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+        counts = Counter(connection.topic for connection, _, _ in reader.messages())
+    assert summary['counts'] == counts
 
 
 def test_messages_are_stored_as_they_were_on_the_wire(recording):
