@@ -13,9 +13,8 @@ from manipulator import _kernel
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
-from manipulator.links import PLATFORM, Link
+from manipulator.links import PLATFORM, Link, Stroke
 from manipulator.pose import Pose
-from manipulator.skeleton import Stroke
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,9 +6,9 @@ from bench.row import Row, interleaved_medians
 from hexarm.machines import load
 from manipulator.arrays import Array
 from manipulator.machine import Machine
+from manipulator.planning.path import Tolerance
+from manipulator.planning.path_timing import PathRequest, TimedPath, plan_path
 from manipulator.pose import Pose
-from manipulator.trajectory.path import Tolerance
-from manipulator.trajectory.path_timing import PathRequest, TimedPath, plan_path
 
 TICK = 0.01
 SHAPES = {'robocake': 0.008, 'stewart_6_3': 0.01, 'arm_6r': 0.08}

@@ -11,11 +11,11 @@ from hexarm.machines import load
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError
 from manipulator.machine import Machine
+from manipulator.planning.goal import Goal, Motion
+from manipulator.planning.plan import MotionState
+from manipulator.planning.planner import Start, plan_goal
+from manipulator.planning.worker import MOST_POSES, Effort
 from manipulator.pose import Pose
-from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.planner import Start, plan_goal
-from manipulator.trajectory.worker import MOST_POSES, Effort
 
 TICK = 0.01
 GOALS = 200

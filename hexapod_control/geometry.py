@@ -61,7 +61,7 @@ class RotaryGeometry:
 
 @dataclass(frozen=True)
 class HexagonConfig:
-    """The `geometry` section by the parameters of Prokopovich 2019, fig. 2, in millimetres."""
+    """The `geometry` section by the parameters of Prokopovich 2019, fig. 4, in millimetres."""
 
     body_radius_mm: float = quantity(5, 2000)
     crank_offset_mm: float = quantity(-500, 500)

@@ -20,9 +20,8 @@ from manipulator.arrays import Array, Mask, frozen, stretched
 from manipulator.continuity import first_jump
 from manipulator.errors import ConfigError, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
-from manipulator.links import PLATFORM, Link
+from manipulator.links import PLATFORM, Link, Stroke, outline
 from manipulator.pose import Pose
-from manipulator.skeleton import Stroke, outline
 
 SINGULAR = 1e-6
 

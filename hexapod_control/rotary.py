@@ -12,8 +12,8 @@ from manipulator._kernel import crank_elbows, crank_gains, crank_inverse
 from manipulator.arrays import Array, stretched
 from manipulator.errors import InvalidInput, Unreachable
 from manipulator.formatting import length
+from manipulator.links import Stroke, outline
 from manipulator.pose import Pose
-from manipulator.skeleton import Stroke, outline
 
 
 @dataclass(frozen=True, eq=False)

@@ -116,8 +116,7 @@ static int keeps_ranges(const struct limit_ranges *r, real height, const real jo
 {
     int kept = height >= r->height[0] && height <= r->height[1];
     for (int i = 0; i < LEGS; i++)
-        kept &= real_fabs(joints[i]) < INFINITY && joints[i] >= r->joint[0][i] &&
-                joints[i] <= r->joint[1][i];
+        kept &= joints[i] >= r->joint[0][i] && joints[i] <= r->joint[1][i];
     return kept;
 }
 

@@ -15,10 +15,9 @@ from manipulator.frames import Frames
 from manipulator.kinematics import ForwardSolution, Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import Bounds, BrakingPaths, LimitGroup, LimitOf, Search
-from manipulator.links import Link
+from manipulator.links import Link, Stroke
 from manipulator.machine import Machine
 from manipulator.pose import Pose
-from manipulator.skeleton import Stroke
 
 
 def in_frames(machine: Machine, frames: Frames) -> Machine:

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from manipulator.arrays import Array
-from manipulator.links import Link
+from manipulator.links import Link, Stroke
 from manipulator.pose import Pose
-from manipulator.skeleton import Stroke
 
 
 @dataclass(frozen=True)

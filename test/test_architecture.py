@@ -108,7 +108,7 @@ def test_nothing_that_controls_a_machine_can_come_to_import_scipy():
         seen.add(path)
         assert 'scipy' not in imports(path), path.relative_to(ROOT)
         waiting |= files_imported(path) - seen
-    assert ROOT / 'manipulator' / 'trajectory' / 'planner.py' in seen
+    assert ROOT / 'manipulator' / 'planning' / 'planner.py' in seen
     assert ROOT / 'arm_control' / 'resolved_rate.py' in seen
 
 

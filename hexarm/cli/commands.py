@@ -59,7 +59,7 @@ COMMANDS = (
             'run a periodic motion as rigid bodies with servos',
             'simulate robocake --picture simulated.png'),
     Command('reproduce', 'hexarm.cli.reproduce',
-            'compute the figures of the three papers, in some minutes', 'reproduce --quick'),
+            'compute the figures of the three papers, in a minute or two', 'reproduce --quick'),
     Command('reach', 'hexarm.cli.reach',
             'print which limits a pose meets, and the nearest reachable pose',
             'reach robocake --xyz 0.03 0 0.045'),

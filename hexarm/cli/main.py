@@ -94,11 +94,9 @@ def _silence() -> None:
 
 
 def _run(words: list[str] | None) -> int:
-    typed = sys.argv[1:] if words is None else words
     if '_ARGCOMPLETE' in os.environ:
-        typed = os.environ.get('COMP_LINE', '').split()[1:]
-    parser = parser_for(typed)
-    _complete(parser)
+        _complete(os.environ.get('COMP_LINE', '').split()[1:])
+    parser = parser_for(sys.argv[1:] if words is None else words)
     arguments = parser.parse_args(words)
     if arguments.run is None:
         parser.print_help(sys.stderr)
@@ -106,14 +104,12 @@ def _run(words: list[str] | None) -> int:
     return int(arguments.run(arguments))
 
 
-def _complete(parser: argparse.ArgumentParser) -> None:
-    """Answers the shell that completes a line, and ends; docs/cli.md."""
-    if '_ARGCOMPLETE' not in os.environ:
-        return
+def _complete(words: list[str]) -> None:
+    """Answers the shell that completes a line of these words, and ends; docs/cli.md."""
     with contextlib.suppress(ModuleNotFoundError):
         import argcomplete  # noqa: PLC0415 (an extra)
 
-        argcomplete.autocomplete(parser)
+        argcomplete.autocomplete(parser_for(words))
 
 
 def parser_for(words: list[str]) -> Parser:

@@ -5,15 +5,18 @@ import json
 import math
 import sys
 import time
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from hexarm.cli.up import StopSignal
 from hexarm.namespaces import namespace_of
 from hexarm.recording.topics import TopicSelection, missing_topics, nothing_recorded
 from manipulator.errors import ManipulatorError
 from manipulator.formatting import counted
+
+if TYPE_CHECKING:
+    from hexarm.recording.bag import Bag
 
 
 class NothingRecorded(ManipulatorError):
@@ -91,19 +94,22 @@ def run(arguments: argparse.Namespace) -> int:
     if not any(topic.startswith(space) or topic in selection.names for topic in bag.counts):
         path.unlink()
         raise NothingRecorded(_reason(selection, bag.counts, there, domain))
-    took = time.monotonic() - begin
-    if arguments.json:
-        counts = dict(bag.counts)
-        print(
-            json.dumps({'file': str(path), 'seconds': took, 'bytes': bag.size, 'counts': counts})
-        )
-        return 0
-    print(*lines, sep='\n', end='\n' if lines else '')
-    print(
-        f'{path}: {counted(bag.counts.total(), "message")} of '
-        f'{counted(len(bag.counts), "topic")} in {took:.1f} s, {bag.size / 1e6:.1f} MB'
-    )
+    summary = _summary(bag, path, time.monotonic() - begin)
+    print(json.dumps(summary) if arguments.json else '\n'.join([*lines, _in_words(summary)]))
     return 0
+
+
+def _summary(bag: 'Bag', path: Path, seconds: float) -> dict[str, Any]:
+    return {'file': str(path), 'seconds': seconds, 'bytes': bag.size, 'counts': dict(bag.counts)}
+
+
+def _in_words(summary: Mapping[str, Any]) -> str:
+    counts = summary['counts']
+    return (
+        f'{summary["file"]}: {counted(sum(counts.values()), "message")} of '
+        f'{counted(len(counts), "topic")} in {summary["seconds"]:.1f} s, '
+        f'{summary["bytes"] / 1e6:.1f} MB'
+    )
 
 
 def _reason(

@@ -26,7 +26,7 @@ from hexarm.simulation.static_load import check_holds, static_load
 from manipulator.analysis.accuracy import JointErrors
 from manipulator.errors import InvalidInput
 from manipulator.machine import Machine
-from manipulator.trajectory.cycle import Cycle
+from manipulator.planning.cycle import Cycle
 
 if TYPE_CHECKING:
     from hexarm.simulation.experiment import Recording

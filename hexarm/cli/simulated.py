@@ -10,7 +10,7 @@ from hexarm.simulation.rigid_body import Mechanism, RigidBody
 from manipulator.analysis.accuracy import JointErrors
 from manipulator.arrays import Array
 from manipulator.machine import Machine
-from manipulator.trajectory.cycle import Cycle
+from manipulator.planning.cycle import Cycle
 
 if TYPE_CHECKING:
     from hexarm.simulation.experiment import Recording

@@ -19,7 +19,7 @@ from hexarm.panel.pieces import (
 )
 from hexarm.panel.view import Stance
 from manipulator.kinematics import Kinematics
-from manipulator.skeleton import Stroke
+from manipulator.links import Stroke
 
 STILL = 2e-5
 """Metres and radians below which a change is not drawn."""

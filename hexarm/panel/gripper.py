@@ -9,8 +9,8 @@ import numpy as np
 from bridge.calibration import Calibration
 from hexarm.machines import board_config
 from manipulator.arrays import Array
+from manipulator.links import Stroke
 from manipulator.pose import Pose
-from manipulator.skeleton import Stroke
 
 PART = 'gripper'
 REACH, WIDEST, NARROWEST = 0.09, 0.055, 0.012

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from hexarm.panel.readout import colour
 from manipulator.arrays import Array
+from manipulator.links import Stroke
 from manipulator.pose import Pose
 from manipulator.rotation import to_quaternion
-from manipulator.skeleton import Stroke
 
 Mesh = tuple[Array, NDArray[np.uint32]]
 SIDES = 20

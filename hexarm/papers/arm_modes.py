@@ -19,7 +19,7 @@ SIGHT = 0.35
 MODE_TICKS = 300
 KEPT = 1e-3
 """Degrees or millimetres within which a mode keeps what it is for."""
-ROUNDING = 1e-9
+ROUNDING = 1e-6
 REASON = 'closed loop on the pose, by the angular velocity: without false singularities'
 
 

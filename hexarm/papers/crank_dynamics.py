@@ -24,7 +24,7 @@ from hexarm.papers.finding import ROTARY, Claim, Finding, unstated
 from hexarm.simulation.experiment import Recording, noisy, position_rms, run, unshifted
 from hexarm.simulation.limit_search import FREQUENCY, PAPER_AMPLITUDE, corners_out, in_phase
 from hexarm.simulation.simulation import Simulation
-from manipulator.trajectory.cycle import Cycle
+from manipulator.planning.cycle import Cycle
 
 DRAWS = {1: 12, 3: 20, 6: 12}
 """How many motions with noise are simulated on one, three and six servos."""

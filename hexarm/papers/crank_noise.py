@@ -20,7 +20,7 @@ from hexarm.papers.finding import ROTARY, Claim, Finding, unstated
 from hexarm.simulation.limit_search import FREQUENCY, PAPER_AMPLITUDE, in_phase, poses_of
 from manipulator.analysis.accuracy import JointErrors, drawn_spread, linear_spread
 from manipulator.kinematics import Kinematics
-from manipulator.trajectory.cycle import Cycle
+from manipulator.planning.cycle import Cycle
 
 MACHINE = 'robocake'
 SIGMA = np.radians(1.0 / 6.0)

@@ -94,7 +94,7 @@ class Recorder:
             if name in self._unknown:
                 continue
             publishers = self._node.get_publishers_info_by_topic(name)
-            if not self._selection.may_join(name, bool(publishers), now):
+            if not self._selection.may_join(name, [p.node_name for p in publishers], now):
                 self._leave(name)
                 continue
             try:

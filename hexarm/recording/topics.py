@@ -21,6 +21,9 @@ COMMANDS = frozenset(
 SETTLED = 5.0
 """Seconds after which a publisher has found all its subscribers."""
 
+GOALS, CAREFUL = ('goal_pose', 'goal_path'), frozenset(('hexarm', 'panel'))
+"""Commands that these nodes publish once they have found the machine, not any subscriber."""
+
 
 @dataclass
 class TopicSelection:
@@ -29,7 +32,7 @@ class TopicSelection:
     A command is joined only once its publisher has been there for SETTLED. Many a script
     publishes once, for the first subscriber; a recorder that subscribed before would sometimes be
     taken for the machine, and the goal, or the stop, would reach no other node. With
-    `with_commands`, and for a requested name, it is joined at once.
+    `with_commands`, for a requested name, and for GOALS of CAREFUL nodes, it is joined at once.
     """
 
     namespace: str
@@ -47,20 +50,22 @@ class TopicSelection:
         """Whether the topic is what the recording is made for: not one that all machines share."""
         return topic in self.names if self.names else topic.startswith(self._space)
 
-    def may_join(self, topic: str, is_published: bool, now: float) -> bool:
-        """Whether to subscribe to the topic from now (s, monotonic) on."""
+    def may_join(self, topic: str, publishers: Collection[str], now: float) -> bool:
+        """Whether to subscribe to the topic from now (s, monotonic) on; `publishers`: nodes."""
         if self.names:
             return topic in self.names
         if topic in SHARED:
             return True
         if not topic.startswith(self._space):
             return False
-        if self.with_commands or topic.removeprefix(self._space) not in COMMANDS:
+        name = topic.removeprefix(self._space)
+        if self.with_commands or name not in COMMANDS:
             return True
-        if not is_published:
+        if not publishers:
             self._since.pop(topic, None)
             return False
-        return now - self._since.setdefault(topic, now) >= SETTLED
+        is_settled = now - self._since.setdefault(topic, now) >= SETTLED
+        return is_settled or (name in GOALS and CAREFUL.issuperset(publishers))
 
 
 NEAREST = 3

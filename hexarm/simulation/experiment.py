@@ -10,8 +10,8 @@ from manipulator.analysis.accuracy import JointErrors
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput
 from manipulator.kinematics import Kinematics
+from manipulator.planning.cycle import Cycle
 from manipulator.pose import Pose
-from manipulator.trajectory.cycle import Cycle
 
 SHOWN_STEPS = 4
 NOISE_STEPS = 40

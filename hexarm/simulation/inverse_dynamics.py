@@ -14,7 +14,7 @@ from hexarm.simulation.dynamics_config import RotaryDynamicsConfig
 from hexarm.simulation.platform_parts import moving_bodies
 from hexarm.simulation.rigid_body import GRAVITY, RigidBody
 from manipulator.arrays import Array
-from manipulator.trajectory.plan import MotionState
+from manipulator.planning.plan import MotionState
 
 UP = np.array([0.0, 0.0, 1.0])
 NEAR = 1e-5

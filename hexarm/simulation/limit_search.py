@@ -18,9 +18,9 @@ from hexarm.simulation.dynamics_config import RotaryDynamicsConfig
 from hexarm.simulation.inverse_dynamics import InverseDynamics
 from manipulator.arrays import Array, Mask
 from manipulator.machine import Machine
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.plan import MotionState
 from manipulator.pose import Pose
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.plan import MotionState
 
 PAPER_AMPLITUDE = (6e-3, 6e-3, 3e-3, 0.1, 0.1, 0.08)
 """x, y, z in m; about x (ψ), y (θ), z (φ) in rad."""

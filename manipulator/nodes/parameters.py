@@ -20,10 +20,10 @@ from rclpy.parameter import Parameter
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
 from manipulator.formatting import shown
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Motion
+from manipulator.planning.orientation import Orientation
 from manipulator.pose import Pose
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.goal import Motion
-from manipulator.trajectory.orientation import Orientation
 
 
 def declare(

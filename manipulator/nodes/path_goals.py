@@ -31,11 +31,11 @@ from manipulator.nodes.messages import (
 from manipulator.nodes.parameters import GoalParameters, declare
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.subscriptions import FilteredCallback, decoded
+from manipulator.planning.path import Tolerance
+from manipulator.planning.path_timing import PathRequest
 from manipulator.pose import Pose
 from manipulator.trajectory.controller import MotionController
-from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.path_planning import PathGoal
-from manipulator.trajectory.path_timing import PathRequest
 
 MOST_POSES = 2000
 MOST_BYTES = 100 * MOST_POSES

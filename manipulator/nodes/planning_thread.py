@@ -6,7 +6,7 @@ from threading import Event
 from typing import TypeVar
 
 from manipulator.errors import Refused
-from manipulator.trajectory.worker import Effort, Job, Task
+from manipulator.planning.worker import Effort, Job, Task
 
 T = TypeVar('T')
 

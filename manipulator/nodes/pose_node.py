@@ -24,7 +24,7 @@ from manipulator.errors import InvalidInput
 from manipulator.formatting import shown
 from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
-from manipulator.links import Link
+from manipulator.links import Link, Stroke
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.messages import (
@@ -41,7 +41,6 @@ from manipulator.nodes.qos import COMMAND, MEASUREMENT
 from manipulator.nodes.subscriptions import FilteredCallback
 from manipulator.pose import Pose
 from manipulator.pose_estimate import PoseEstimate
-from manipulator.skeleton import Stroke
 
 PERIOD = 0.1
 LIFETIME = Duration(sec=1)

@@ -31,11 +31,11 @@ from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.subscriptions import FilteredCallback
 from manipulator.nodes.teleop_topics import TeleopTopics
 from manipulator.nodes.trajectory_services import TrajectoryServices
+from manipulator.planning.goal import Goal
 from manipulator.states import MotionResult
 from manipulator.teleop.arbiter import PEOPLE
 from manipulator.trajectory.controller import MotionController, lag_of
 from manipulator.trajectory.following_error import Tolerances
-from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
 from manipulator.trajectory.supervisor import MEASUREMENT_DELAY
 

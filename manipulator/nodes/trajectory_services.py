@@ -16,11 +16,11 @@ from manipulator.machine import Machine
 from manipulator.nodes.late_answers import Call, create_late_service
 from manipulator.nodes.messages import goal_of, pose_message, seconds
 from manipulator.nodes.parameters import CycleParameters, GoalParameters
+from manipulator.planning.goal import Goal
+from manipulator.planning.plan import MotionState
+from manipulator.planning.planner import ComparedPlan, Start, compared
+from manipulator.planning.worker import Job, Worker
 from manipulator.trajectory.controller import MotionController
-from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.planner import ComparedPlan, Start, compared
-from manipulator.trajectory.worker import Job, Worker
 
 STAMP = ', goal_stamp '
 """What precedes the stamp in the answers of home and park: motion_status names the move by it."""

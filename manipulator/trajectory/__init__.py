@@ -1,1 +1,1 @@
-"""One file per profile or path: from a goal to a pose at every tick."""
+"""Execution: who drives, which plan is active, and a pose for every tick."""

@@ -6,12 +6,12 @@ At a scaling factor of 1 the plan's own time runs as planned, at 0 it is halted.
 from dataclasses import dataclass
 
 from manipulator.errors import Refused
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.joint_move import JointMove
+from manipulator.planning.path_timing import TimedPath
+from manipulator.planning.plan import Hold, MotionState, Plan
+from manipulator.planning.point_to_point import LineMove, MoveInMotion
 from manipulator.states import MotionMode
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.joint_move import JointMove
-from manipulator.trajectory.path_timing import TimedPath
-from manipulator.trajectory.plan import Hold, MotionState, Plan
-from manipulator.trajectory.point_to_point import LineMove, MoveInMotion
 
 MODES: dict[type, MotionMode] = {
     Hold: MotionMode.HOLD,

@@ -59,15 +59,22 @@ class ClosedLoop:
         left = BRAKING * machine.motion.braking_rate * share * AHEAD
         return min(sqrt(CREEP**2 + 2.0 * left), 1.0)
 
-    def prepare(self, executor: Executor, is_there: bool) -> None:
-        """Begins a waiting path once its first pose is reached and the joints' play taken up."""
+    def prepare(self, executor: Executor, deviation: str) -> None:
+        """Begins a waiting path once its first pose is reached and the joints' play taken up.
+
+        deviation: how far the machine is from that pose, in words; a path whose first pose is not
+        reached ends with it.
+        """
         if not executor.is_waiting:
             self._waited, self._is_facing = 0, False
             return
-        self._waited += 1
-        is_ready = self._is_facing and self._correction.is_settled
-        if is_there and not self._is_facing:
+        self._waited += executor.is_executing
+        is_late = self._waited > self._longest_wait
+        if self._is_facing:
+            if is_late or self._correction.is_settled:
+                executor.begin_waiting()
+        elif not deviation:
             self._correction.face(executor.joints_ahead())
             self._is_facing = True
-        if is_ready or self._waited > self._longest_wait:
-            executor.begin_waiting()
+        elif is_late:
+            executor.give_up_waiting(f'before the path begins: {deviation}')

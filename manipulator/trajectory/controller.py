@@ -15,18 +15,18 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, NoSolution, Refused
 from manipulator.machine import Machine
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal, Motion
+from manipulator.planning.orientation import Orientation, OrientationRule
+from manipulator.planning.worker import InPlace, Worker
 from manipulator.pose import Pose
 from manipulator.states import MotionResult
-from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.following_error import Tolerances
-from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.motion_status import STOPPED, MotionNews, MotionStatus
-from manipulator.trajectory.orientation import Orientation, OrientationRule
 from manipulator.trajectory.path_planning import PathGoal, PathPlanning
 from manipulator.trajectory.supervisor import MEASUREMENT_DELAY, MotionSupervisor
 from manipulator.trajectory.teleop import Teleop
-from manipulator.trajectory.worker import InPlace, Worker
 
 
 class Jitter:

@@ -12,18 +12,18 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal
+from manipulator.planning.joint_move import JointMove
+from manipulator.planning.path_timing import TimedPath
+from manipulator.planning.plan import Hold, MotionState, Plan
+from manipulator.planning.worker import InPlace, Worker
 from manipulator.pose import Pose
 from manipulator.states import MotionMode, MotionResult
 from manipulator.trajectory.active_plan import ActivePlan, TimeScaling
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.goal import Goal
+from manipulator.trajectory.goal_planning import Planned, Planning
 from manipulator.trajectory.jogging import JogCommand, Jogging
-from manipulator.trajectory.joint_move import JointMove
 from manipulator.trajectory.motion_status import OVERTAKEN, STOPPED, TAKEN_OVER, MotionStatus
-from manipulator.trajectory.path_timing import TimedPath
-from manipulator.trajectory.plan import Hold, MotionState, Plan
-from manipulator.trajectory.planning import Planned, Planning
-from manipulator.trajectory.worker import InPlace, Worker
 
 AHEAD, AHEAD_ROWS = 0.5, 26
 """Seconds in which the direction of a motion shows, and the poses that are looked at."""
@@ -116,6 +116,13 @@ class Executor:
         self.is_waiting = False
         if not isinstance(self._active.plan, Cycle):
             self._scaling.jump()
+
+    def give_up_waiting(self, reason: str) -> None:
+        """Drops the path or cycle that waits, and reports it as stopped."""
+        stamp = self._active.stamp
+        self._begin(Hold(self.state.pose), stamp)
+        self._scaling.jump()
+        self._report(MotionResult.STOPPED, stamp, reason)
 
     def pursue(self, goal: Goal) -> None:
         """Plans a goal from the next tick on; of several the newest wins.

@@ -10,15 +10,15 @@ from dataclasses import dataclass, field, replace
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused
 from manipulator.machine import Machine
+from manipulator.planning.goal import Goal
+from manipulator.planning.orientation import OrientationRule
+from manipulator.planning.path_timing import PathRequest, TimedPath, plan_path
+from manipulator.planning.worker import Effort, Job, Worker
 from manipulator.pose import Pose
 from manipulator.states import MotionResult
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import OVERTAKEN, MotionNews, MotionStatus
-from manipulator.trajectory.orientation import OrientationRule
-from manipulator.trajectory.path_timing import PathRequest, TimedPath, plan_path
 from manipulator.trajectory.supervisor import MotionSupervisor
-from manipulator.trajectory.worker import Effort, Job, Worker
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,7 @@ from manipulator.errors import Refused
 from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames
 from manipulator.machine import Machine
+from manipulator.planning.worker import Worker
 from manipulator.pose import Pose
 from manipulator.states import MachineState, MotionMode, MotionResult
 from manipulator.trajectory.closed_loop import ClosedLoop
@@ -26,7 +27,6 @@ from manipulator.trajectory.following_error import (
     missed,
 )
 from manipulator.trajectory.motion_status import MotionStatus
-from manipulator.trajectory.worker import Worker
 
 DRIVABLE = (MachineState.ENABLED, MachineState.HOLDING)
 """Machine states in which the board follows setpoints; it holds after its deadline."""
@@ -225,7 +225,7 @@ class MotionSupervisor:
             deviation = self._deviation(executor, self._following_error)
             self.status = self._arrival.judged(executor.status, deviation) or self.status
         if self._loop is not None:
-            self._loop.prepare(executor, not deviation)
+            self._loop.prepare(executor, deviation)
             pose = self._loop.step(self.machine, executor, pose, self._is_correcting(executor))
         return self.machine.frames.platform(pose)
 

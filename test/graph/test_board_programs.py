@@ -5,7 +5,6 @@ import math
 import pytest
 from builtin_interfaces.msg import Duration
 from std_msgs.msg import String
-from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from hexarm.graph import Executable, Graph, board_process
@@ -36,9 +35,6 @@ class Rig(PatientUser):
         self.said.clear()
         self._tables.publish(table)
         self.wait(words, lambda: any(words in text for text in self.said))
-
-    def ask(self, service, is_true):
-        return self._call(SetBool, service, SetBool.Request(data=is_true))
 
     def wait_for_state(self, word):
         self.wait(word, lambda: self.machine_state.message == word)
@@ -73,18 +69,18 @@ AMPLITUDE = '[0.0,0.0,0.002,0.0,0.0,0.03]'
 
 @pytest.fixture
 def enabled(rig):
-    rig.ask('serial_bridge/enable', True)
+    rig.switch('serial_bridge/enable', True)
     rig.wait_for_state('enabled')
     return rig
 
 
 def test_a_table_and_a_cycle_are_played_and_end_enabled(enabled):
     enabled.upload(swing(), 'table of 20 rows, 100 ms apart, is on board')
-    enabled.ask('serial_bridge/play_table', True)
+    enabled.switch('serial_bridge/play_table', True)
     enabled.wait_for_state('playing')
     enabled.trigger('serial_bridge/finish_program')
     enabled.wait_for_state('enabled')
-    enabled.ask('serial_bridge/play_cycle', False)
+    enabled.switch('serial_bridge/play_cycle', False)
     enabled.wait_for_state('playing')
     enabled.wait_for_state('enabled')
 
@@ -93,9 +89,9 @@ def test_refusals_report_why(enabled):
     enabled.upload(swing(rows=600), 'the table has more rows than the board can hold')
     enabled.upload(JointTrajectory(joint_names=['elbow']), "joints are ['elbow'], needs")
     with pytest.raises(Refused, match='no such program'):
-        enabled.ask('serial_bridge/play_table', True)
-    enabled.ask('serial_bridge/enable', False)
+        enabled.switch('serial_bridge/play_table', True)
+    enabled.switch('serial_bridge/enable', False)
     enabled.wait_for_state('disarmed')
     enabled.upload(swing(), 'is on board')
     with pytest.raises(Refused, match='servos are off'):
-        enabled.ask('serial_bridge/play_table', True)
+        enabled.switch('serial_bridge/play_table', True)

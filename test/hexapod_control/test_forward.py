@@ -113,6 +113,21 @@ def test_an_answer_on_the_other_side_of_a_singularity_is_refused(base, platform,
         solver.solve(base, lengths, below, side=side)
 
 
+def test_an_answer_is_on_the_side_of_its_start_however_far_that_is(base, platform, solver):
+    generator, refused = np.random.default_rng(8), 0
+    for _ in range(1000):
+        pose, start = (home().moved(generator.normal(0, 1, 6) * [0.08] * 6) for _ in range(2))
+        start = start.moved([0, 0, 0, *generator.normal(0, 1.0, 3)])
+        side = np.linalg.det(leg_jacobian(base, platform, start))
+        try:
+            found = solver.solve(base, lengths_at(base, platform, pose), start).pose
+        except NoSolution as error:
+            refused += 'beyond a singularity' in str(error)
+            continue
+        assert np.linalg.det(leg_jacobian(base, platform, found)) * side > 0.0
+    assert refused > 20
+
+
 def test_a_pose_below_the_margin_is_refused(base, platform, solver):
     lengths = lengths_at(base, platform, home())
     margin = solver.solve(base, lengths, home()).sigma_min

@@ -8,6 +8,7 @@ import pytest
 from hexapod_control.leg_limits import singularity_margin
 from hexarm.machines import load
 from manipulator.limits.constraints import Constraints
+from manipulator.pose import Pose
 
 
 @pytest.fixture(scope='module', params=['robocake', 'stewart_6_3', 'stewart_6_6'])
@@ -65,3 +66,23 @@ def test_the_margin_test_is_sharp(cloud):
         for factor, is_kept in ((1 - 1e-6, True), (1 + 1e-6, False)):
             limits = Constraints((singularity_margin(kinematics, least * factor),))
             assert limits.admits(poses[k], joints[k]) == is_kept
+
+
+def test_the_margin_test_is_sharp_beside_a_singular_pose():
+    """On the way down, where σmin is so small that pivots tell nothing."""
+    kinematics = load('robocake').kinematics
+
+    def sigma(height):
+        pose = Pose.from_xyz_rpy([0.0, 0.0, height])
+        joints = kinematics.inverse(pose)
+        side = np.linalg.det(kinematics.leg_jacobian(pose, joints)) * kinematics.home_side
+        return float(np.copysign(kinematics.sigma_min(pose, joints), side)), pose, joints
+
+    low, high = 0.005, 0.030
+    while sigma(high)[0] > 1e-9:
+        middle = (low + high) / 2
+        low, high = (low, middle) if sigma(middle)[0] > 0.0 else (middle, high)
+    least, pose, joints = sigma(high)
+    for factor, is_kept in ((0.999, True), (1.001, False)):
+        limits = Constraints((singularity_margin(kinematics, least * factor),))
+        assert limits.admits(pose, joints) == is_kept

@@ -6,9 +6,9 @@ from manipulator import rotation as so3
 from manipulator.errors import InvalidInput, LimitViolated
 from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames, FramesConfig
+from manipulator.planning.plan import MotionState
+from manipulator.planning.planner import Start, plan_to
 from manipulator.pose import Pose
-from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.planner import Start, plan_to
 
 MACHINE = load('robocake')
 FRAMES = Frames.from_config(

@@ -29,7 +29,7 @@ def test_exp_is_the_power_series(w):
     np.testing.assert_allclose(so3.exp(w), series(w), atol=1e-9)
 
 
-@pytest.mark.parametrize('size', [0.0, 1e-300, 1e-12, 1e-7, 1e-6, 1e-5, 1e-3])
+@pytest.mark.parametrize('size', [0.0, 1e-300, 1e-12, 1e-7, 1e-6, 1e-5, 3e-4, 1e-3])
 def test_small_rotations_are_exact(size):
     w = np.array([0.6, -0.8, 0.0]) * size
     np.testing.assert_allclose(so3.exp(w), series(w), atol=1e-15)

@@ -6,10 +6,10 @@ import pytest
 from hexarm.machines import load, shipped
 from manipulator.analysis.reach import reach
 from manipulator.errors import InvalidInput, LimitViolated, Refused, Unreachable
+from manipulator.planning.path import Tolerance
+from manipulator.planning.path_timing import PathRequest, plan_path
+from manipulator.planning.planner import check_goal
 from manipulator.pose import Pose
-from manipulator.trajectory.path import Tolerance
-from manipulator.trajectory.path_timing import PathRequest, plan_path
-from manipulator.trajectory.planner import check_goal
 from manipulator.unit_hints import check_turns, hint_at_metres
 
 HINT = 'millimetres'

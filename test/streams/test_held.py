@@ -9,7 +9,7 @@ import itertools
 import numpy as np
 import pytest
 
-from manipulator.trajectory.goal import Goal
+from manipulator.planning.goal import Goal
 from sampling import enough
 
 TILTED = np.radians([10.0, 20.0, 80.0, 20.0, 50.0, 0.0])

@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from arm_control.arm import SerialArm
 from bridge.protocol import Clear, Disarm, Stop
 from manipulator.errors import ManipulatorError
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal
+from manipulator.planning.path import Tolerance
+from manipulator.planning.path_timing import PathRequest, plan_path
 from manipulator.pose import Pose
 from manipulator.teleop.arbiter import SOURCES
 from manipulator.teleop.modes import MODES
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.path import Tolerance
-from manipulator.trajectory.path_timing import PathRequest, plan_path
 from sampling import enough
 
 DT = 0.01

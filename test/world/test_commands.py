@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from manipulator.planning.cycle import Cycle
 from manipulator.pose import Pose
-from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.path_planning import OVERTAKEN
 
 HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))

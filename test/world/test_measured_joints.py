@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from hexarm import machines
+from manipulator.planning.path import Tolerance, arc
+from manipulator.planning.path_timing import PathRequest
 from manipulator.pose import Pose
 from manipulator.trajectory.correction import MOST_CORRECTION
 from manipulator.trajectory.following_error import Tolerances
-from manipulator.trajectory.path import Tolerance, arc
 from manipulator.trajectory.path_planning import PathGoal
-from manipulator.trajectory.path_timing import PathRequest
+from world.requests import Requests
 
 ARM = 'arm_6r_stepper'
 PLAY = np.radians(2.0)
@@ -232,3 +233,58 @@ def test_where_joints_are_not_measured_the_setpoint_is_the_plan(make_world):
     world.run(0.5)
     end = world.machine.kinematics.forward(commands(world)[-1]).pose
     assert np.abs(end.twist_to(goal)).max() < 1e-6
+
+
+def begin_waiting(world):
+    """A path that has been approached, and waits for its play; its stamp."""
+    _, poses = circle(world.machine.kinematics.home)
+    stamp = world.send_path(poses, speed=0.05)
+    world.wait('approach', lambda: world.controller.supervisor.executor.is_waiting)
+    return stamp
+
+
+def test_a_path_that_waits_for_its_arrival_is_stopped_at_once(make_world):
+    world = make_world(ARM, PLAY)
+    stamp = begin_waiting(world)
+    world.controller.core.stop()
+    assert world.end_of(stamp).result == 'stopped'
+    world.run(0.3)
+    since = len(world.inverse.published)
+    world.run(2.0)
+    assert np.ptp(commands(world)[since:], axis=0).max() < 1e-9
+    assert world.go_to(world.machine.kinematics.home).result == 'reached'
+
+
+def test_a_path_that_waits_for_its_arrival_gives_way_to_a_goal_and_to_a_pause(make_world):
+    world = make_world(ARM, PLAY)
+    begin_waiting(world)
+    world.controller.supervisor.pause(True)
+    world.run(5.0)
+    since = len(world.inverse.published)
+    world.run(1.0)
+    assert np.ptp(commands(world)[since:], axis=0).max() < 1e-9
+    world.controller.supervisor.pause(False)
+    begin_waiting(world)
+    assert world.go_to(world.machine.kinematics.home).result == 'reached'
+    assert_within_limits(world)
+
+
+def test_a_path_whose_first_pose_is_not_reached_ends_there_with_the_distance(make_world):
+    world = make_world(ARM, np.radians(9.0))
+    status = world.end_of(begin_waiting(world))
+    assert status.result == 'stopped'
+    assert status.reason.startswith('before the path begins: ')
+    assert 'the goal is missed by' in status.reason
+    since = len(world.inverse.published)
+    world.run(3.0)
+    assert np.ptp(commands(world)[since + 30 :], axis=0).max() < 1e-9
+
+
+def test_a_cycle_begins_when_its_play_is_taken_up_and_stops(make_world):
+    world = make_world(ARM, PLAY)
+    Requests(world).cycle(amplitude=[0.02, 0.02, 0.01, 0.05, 0.05, 0.05])
+    world.wait('cycle', lambda: world.status.mode == 'cycle')
+    world.run(6.0)
+    Requests(world).stop()
+    world.wait('stop', lambda: world.status.result == 'stopped')
+    assert_within_limits(world)

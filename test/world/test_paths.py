@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from manipulator.planning.path import arc
 from manipulator.pose import Pose
-from manipulator.trajectory.path import arc
 
 RADIUS, HEIGHT = 0.008, 0.045
 NEAR = 5e-4

@@ -6,12 +6,12 @@ And moves by joints: motion linear in the legs of a platform.
 import numpy as np
 import pytest
 
+from manipulator.planning.goal import Goal, Motion
+from manipulator.planning.orientation import Orientation
+from manipulator.planning.path import Tolerance
+from manipulator.planning.path_timing import PathRequest
 from manipulator.pose import Pose
-from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.orientation import Orientation
-from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.path_planning import PathGoal
-from manipulator.trajectory.path_timing import PathRequest
 
 ARM = 'arm_6r_stepper'
 

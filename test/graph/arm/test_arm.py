@@ -17,8 +17,8 @@ from std_msgs.msg import Bool, Float64
 from hexarm.machines import load
 from manipulator.nodes.messages import joints_of
 from manipulator.nodes.qos import COMMAND, EVERY_WORD
+from manipulator.planning.path import arc
 from manipulator.pose import Pose
-from manipulator.trajectory.path import arc
 
 pytestmark = pytest.mark.graph
 

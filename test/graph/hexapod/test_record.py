@@ -1,11 +1,13 @@
 """`hexarm record` beside a running machine, read back by readers that are not ours."""
 
 import contextlib
+import json
 import resource
 import signal
 import struct
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -20,6 +22,7 @@ from rosbags.typesys import Stores, get_typestore
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
+from hexarm import Robot
 from manipulator.nodes.messages import seconds
 from manipulator.nodes.qos import LATCHED as LATCHED_QUALITIES
 from manipulator.pose import Pose
@@ -77,6 +80,35 @@ def received(recording, request):
     return found
 
 
+def test_it_records_from_the_first_goal_after_it_says_so(user, hexarm, tmp_path):
+    path = tmp_path / 'first.mcap'
+    user.make_ready()
+    user.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.044)))
+    recorder = hexarm('record', 'hexapod', '-o', str(path))
+    lines = iter(recorder.stdout.readline, '')
+    assert any(line.startswith('recording ') for line in lines)
+    with Robot('/hexapod') as robot:
+        user.wait('who records goals', lambda: user.node.count_subscribers('goal_pose') > 1)
+        user.persist(lambda: robot.move_to((0.0, 0.0, 0.047)))
+    recorder.send_signal(signal.SIGINT)
+    ends_with(recorder, 0)
+    heights, results, goals = [], [], []
+    with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+        for connection, _, raw in reader.messages():
+            message = reader.deserialize(raw, connection.msgtype)
+            if connection.topic == '/hexapod/setpoint':
+                heights.append(message.pose.position.z)
+            elif connection.topic == '/hexapod/goal_pose':
+                goals.append(message.pose.position.z)
+            elif connection.topic == '/hexapod/motion_status':
+                results.append({pair.key: pair.value for pair in message.values}['result'])
+    assert set(goals) == {0.047}
+    assert 'moving' in results
+    assert results[-1] == 'reached'
+    assert min(heights) == pytest.approx(0.044, abs=1e-4)
+    assert max(heights) == pytest.approx(0.047, abs=1e-4)
+
+
 def test_streams_and_latched_states_are_in_it(received):
     assert {f'/hexapod/{name}' for name in (*STREAMS, *LATCHED)} < set(received)
     assert received['/hexapod/machine_state'][0].message == 'enabled'
@@ -98,6 +130,19 @@ def test_goal_of_a_publisher_that_stays_is_in_it(received):
 def test_the_count_that_it_reports_is_that_of_the_file(received, recording):
     count = sum(map(len, received.values()))
     assert f'{count:,} messages of {len(received)} topics' in recording[1]
+
+
+def test_its_counts_are_there_for_programs(user, hexarm, tmp_path):
+    path = tmp_path / 'counted.mcap'
+    recorder = hexarm(
+        'record', 'hexapod', '-o', str(path), '--for', '4', '--json', stderr=subprocess.PIPE
+    )
+    status, said = user.end_of(recorder)
+    summary = json.loads(said)
+    assert (status, summary['file']) == (0, str(path))
+    with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+        counts = Counter(connection.topic for connection, _, _ in reader.messages())
+    assert summary['counts'] == counts
 
 
 def test_messages_are_stored_as_they_were_on_the_wire(recording):

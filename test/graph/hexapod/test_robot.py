@@ -106,6 +106,18 @@ def test_a_path_keeps_its_speed_and_reports_its_progress(robot, setpoints, enabl
     assert np.median(spans) < 1.1 * speed
 
 
+def test_the_speed_of_one_path_is_not_that_of_the_next(robot):
+    usual = robot._client._path_speed()
+
+    def follow():
+        robot.move(x=0.0, speed=0.004)
+        robot.follow([(0.001, 0.0, 0.045), (0.0, 0.0, 0.045)], speed=0.01, wait=False)
+        robot.wait()
+
+    robot.persist(follow)
+    assert robot._client._path_speed() == usual
+
+
 def test_a_move_with_a_speed_goes_along_a_line(robot, setpoints, enabled):
     def move():
         robot.move_to(CENTRE)

@@ -75,7 +75,7 @@ def monitor(request):
 @pytest.mark.parametrize('key', [b'q', b'\x03'])
 def test_it_shows_the_link_and_leaves_the_terminal_as_it_was(rig, monitor, key):
     monitor.read_until(b'serial_bridge')
-    monitor.read_until(b'battery_v 7.6')
+    monitor.read_until(b'battery_v 7.8')
     assert re.search(rb'link\S* \S*ready', monitor.seen)
     assert b'machine disarmed' in monitor.seen
     assert monitor.ends(key) == (0, True)

@@ -24,7 +24,7 @@ class Graph:
         return [(name, [TYPE]) for name in self.topics]
 
     def get_publishers_info_by_topic(self, name):
-        return [SimpleNamespace(qos_profile=QoSProfile(depth=1))]
+        return [SimpleNamespace(qos_profile=QoSProfile(depth=1), node_name='pose')]
 
     def get_subscriptions_info_by_topic(self, name):
         return []

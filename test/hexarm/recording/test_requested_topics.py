@@ -25,30 +25,37 @@ def test_commands_are_what_the_nodes_of_the_document_only_receive():
 
 @pytest.mark.parametrize('topic', ['/arm/pose', '/arm/serial_bridge/log', '/diagnostics', '/tf'])
 def test_streams_and_shared_topics_are_joined_at_once(topic):
-    assert TopicSelection('arm').may_join(topic, True, 0.0)
+    assert TopicSelection('arm').may_join(topic, ['script'], 0.0)
 
 
 @pytest.mark.parametrize('topic', ['/hexapod/pose', '/arms/pose', '/arm2/pose', '/clock'])
 def test_other_machines_are_left_alone(topic):
-    assert not TopicSelection('arm').may_join(topic, True, 0.0)
+    assert not TopicSelection('arm').may_join(topic, ['script'], 0.0)
 
 
 @pytest.mark.parametrize('command', sorted(COMMANDS))
 def test_command_is_joined_once_its_publisher_has_been_there_for_long(command):
     selection, topic = TopicSelection('arm'), f'/arm/{command}'
-    assert not selection.may_join(topic, True, 10.0)
-    assert not selection.may_join(topic, True, 10.0 + SETTLED - 0.01)
-    assert selection.may_join(topic, True, 10.0 + SETTLED)
-    assert not selection.may_join(topic, False, 20.0)
-    assert not selection.may_join(topic, True, 20.1), 'the next publisher is another one'
+    assert not selection.may_join(topic, ['script'], 10.0)
+    assert not selection.may_join(topic, ['script'], 10.0 + SETTLED - 0.01)
+    assert selection.may_join(topic, ['script'], 10.0 + SETTLED)
+    assert not selection.may_join(topic, [], 20.0)
+    assert not selection.may_join(topic, ['script'], 20.1), 'the next publisher is another one'
+
+
+def test_goals_of_publishers_that_wait_for_the_machine_are_joined_at_once():
+    selection = TopicSelection('arm')
+    assert selection.may_join('/arm/goal_pose', ['hexarm', 'panel'], 0.0)
+    assert not selection.may_join('/arm/goal_path', ['hexarm', 'script'], 0.0)
+    assert not selection.may_join('/arm/emergency_stop', ['hexarm'], 0.0)
 
 
 def test_commands_are_joined_early_where_that_is_asked_for():
-    assert TopicSelection('arm', with_commands=True).may_join('/arm/goal_pose', False, 0.0)
+    assert TopicSelection('arm', with_commands=True).may_join('/arm/goal_pose', [], 0.0)
     named = TopicSelection('arm', names=['goal_pose', '/hexapod/pose'])
-    assert named.may_join('/arm/goal_pose', False, 0.0)
-    assert named.may_join('/hexapod/pose', False, 0.0)
-    assert not named.may_join('/arm/pose', True, 0.0)
+    assert named.may_join('/arm/goal_pose', [], 0.0)
+    assert named.may_join('/hexapod/pose', [], 0.0)
+    assert not named.may_join('/arm/pose', ['script'], 0.0)
 
 
 def test_what_a_recording_is_made_for_is_what_was_named_or_the_machines_own():

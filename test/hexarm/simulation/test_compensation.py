@@ -104,6 +104,6 @@ def test_without_the_key_nothing_is_added(tmp_path):
 
 
 def test_machines_with_encoders_are_refused(tmp_path):
-    measured = ('  battery_v: 7.6', '  battery_v: 7.6\n  joints: measured')
+    measured = ('  battery_v: 7.8', '  battery_v: 7.8\n  joints: measured')
     with pytest.raises(ConfigError, match='joints are measured'):
         loaded(tmp_path, on=ON, measured=measured)

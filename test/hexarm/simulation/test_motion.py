@@ -21,7 +21,7 @@ from hexarm.simulation.limit_search import (
 from hexarm.simulation.model import dynamics_of
 from hexarm.simulation.static_load import Stalls, check_holds, static_load
 from manipulator.errors import InvalidInput
-from manipulator.trajectory.plan import MotionState
+from manipulator.planning.plan import MotionState
 
 G = 9.80665
 PAPER = Demand(0.150, 0.050, 0.3 * G)

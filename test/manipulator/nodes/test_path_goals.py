@@ -26,8 +26,8 @@ from manipulator.nodes.path_goals import (
 )
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.subscriptions import decoded
+from manipulator.planning.orientation import OrientationRule
 from manipulator.pose import Pose
-from manipulator.trajectory.orientation import OrientationRule
 
 STAMP = Time(sec=1_700_000_000, nanosec=123_456_789)
 

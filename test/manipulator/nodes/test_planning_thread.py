@@ -6,7 +6,7 @@ import pytest
 
 from manipulator.errors import Refused
 from manipulator.nodes.planning_thread import MOST_WAITING, PlanningThread
-from manipulator.trajectory.worker import MOST_POSES, Cancelled, Effort, InPlace, TooLong
+from manipulator.planning.worker import MOST_POSES, Cancelled, Effort, InPlace, TooLong
 
 LONG = 30.0
 

@@ -120,3 +120,23 @@ def test_noisy_encoders_and_play_do_not_make_the_joints_swing(counts):
     swing = np.array(rig.commands)[round(5.0 / DT) :]
     assert np.ptp(swing, axis=0).max() < 2.2 * half + 20 * counts * COUNT[0]
     assert np.abs(errors[round(5.0 / DT) :]).mean() < 4 * counts * COUNT[0]
+
+
+def test_a_correction_that_would_break_a_limit_on_poses_is_cut_to_the_part_that_keeps_it():
+    machine = load('robocake')
+    kinematics, constraints = machine.kinematics, machine.constraints
+    lowest = kinematics.home.moved([0.0, 0.0, -0.01775, 0.0, 0.0, 0.0])
+    joints = kinematics.inverse(lowest)
+    assert constraints.admits(lowest, joints)
+    down = joints - kinematics.inverse(kinematics.home.moved([0.0, 0.0, -0.0170, 0.0, 0.0, 0.0]))
+    beyond = kinematics.forward(joints + down, lowest).pose
+    assert not constraints.admits(beyond, joints + down)
+    correction = Correction(COUNT, Tolerances.of(machine).following, DELAY, DT)
+    heights = []
+    for _ in range(300):
+        pose = correction.step(machine, lowest, joints, is_active=True)
+        correction.measure(joints - down)
+        assert constraints.admits(pose, kinematics.inverse(pose, joints))
+        heights.append(pose.position[2])
+    assert min(heights) < lowest.position[2] - 2e-5
+    assert np.abs(np.diff(heights)).max() < machine.motion.linear.speed * DT

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from hexarm.machines import load
 from manipulator.errors import Refused, Unreachable
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal
 from manipulator.pose import Pose
-from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import MotionStatus
 
 MACHINE = load('robocake')

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
+from manipulator.planning.goal import Goal
 from manipulator.trajectory.controller import lag_of
-from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.supervisor import MotionSupervisor
 
 MACHINE = load('robocake')

@@ -2,9 +2,9 @@ import numpy as np
 
 from hexarm.machines import load
 from manipulator import rotation as so3
+from manipulator.planning.plan import MotionState
+from manipulator.planning.point_to_point import coordinates, plan_move_in_motion, state_of
 from manipulator.pose import Pose
-from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.point_to_point import coordinates, plan_move_in_motion, state_of
 
 LIMITS = load('robocake').motion
 

@@ -9,9 +9,9 @@ import pytest
 from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.motion_limits import BRAKING_SHARE, Derivatives, JointDerivatives, MotionLimits
+from manipulator.planning.check import first_fault
+from manipulator.planning.cycle import Cycle
 from manipulator.pose import Pose
-from manipulator.trajectory.check import first_fault
-from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.executor import Executor, Goal
 
 MACHINE = load('robocake')

@@ -4,9 +4,9 @@ from concurrent.futures import Future
 from threading import Event
 
 from manipulator.errors import ManipulatorError
+from manipulator.planning.goal import Goal
+from manipulator.planning.worker import Effort, Job
 from manipulator.trajectory.controller import MotionController
-from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.worker import Effort, Job
 from world.filtered_callback import FilteredCallback
 from world.timeline import Process
 

@@ -3,11 +3,11 @@
 import numpy as np
 
 from manipulator.errors import ManipulatorError, Refused
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal
+from manipulator.planning.path import Tolerance
+from manipulator.planning.path_timing import PathRequest, plan_path
 from manipulator.pose import Pose
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.path import Tolerance
-from manipulator.trajectory.path_timing import PathRequest, plan_path
 from world.controller import DT
 
 SWING = np.array([0.003, 0.003, 0.0015, 0.05, 0.05, 0.04])

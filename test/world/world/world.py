@@ -8,9 +8,9 @@ from bridge.fake.board_thread import FakeMachine
 from bridge.protocol import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from manipulator.trajectory.path import Tolerance
+from manipulator.planning.path import Tolerance
+from manipulator.planning.path_timing import PathRequest
 from manipulator.trajectory.path_planning import PathGoal
-from manipulator.trajectory.path_timing import PathRequest
 from world.board import BoardProcess, Cable
 from world.bridge import Bridge
 from world.controller import ControllerProcess

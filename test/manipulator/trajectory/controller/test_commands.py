@@ -7,11 +7,11 @@ import pytest
 
 from hexarm.machines import load
 from manipulator.errors import NoSolution, Refused
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal
 from manipulator.pose import Pose
 from manipulator.trajectory.controller import MotionController
-from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.early_command import PATIENCE
-from manipulator.trajectory.goal import Goal
 
 MACHINE = load('robocake')
 HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))

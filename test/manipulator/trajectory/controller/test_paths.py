@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from manipulator.errors import InvalidInput, Refused
+from manipulator.planning.goal import Goal
+from manipulator.planning.path import Tolerance
+from manipulator.planning.path_timing import PathRequest
 from manipulator.pose import Pose
-from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.motion_status import OVERTAKEN
-from manipulator.trajectory.path import Tolerance
 from manipulator.trajectory.path_planning import PathGoal
-from manipulator.trajectory.path_timing import PathRequest
 
 HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))
 FAR = Pose.from_xyz_rpy((0.008, 0.0, 0.045))

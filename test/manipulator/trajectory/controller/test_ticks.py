@@ -5,8 +5,8 @@ import pytest
 
 from manipulator.deadlines import POSE_DEADLINE, POSE_PAUSE, STATE_DEADLINE
 from manipulator.errors import InvalidInput
+from manipulator.planning.goal import Goal
 from manipulator.pose import Pose
-from manipulator.trajectory.goal import Goal
 
 HIGHER = Pose.from_xyz_rpy((0.0, 0.0, 0.0452))
 DT = 0.01

@@ -5,10 +5,10 @@ import pytest
 
 from hexarm.machines import load
 from manipulator.errors import Refused
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal
 from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.jogging import JogCommand, Jogging
 
 DT = 0.01

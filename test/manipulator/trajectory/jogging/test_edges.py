@@ -11,9 +11,9 @@ from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.machine_limits import JointRange
+from manipulator.planning.goal import Goal
 from manipulator.pose import Pose
 from manipulator.teleop.jogger import JogMotion, ticks_for, within_speed
-from manipulator.trajectory.goal import Goal
 from sampling import enough
 
 DT = 0.01

@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from manipulator.errors import Refused, Unreachable
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal
 from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.goal import Goal
 from sampling import enough
 
 DT = 0.01

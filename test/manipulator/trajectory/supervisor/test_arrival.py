@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
+from manipulator.planning.goal import Goal
 from manipulator.pose import Pose
 from manipulator.trajectory.following_error import ARRIVAL_PATIENCE, Tolerances
-from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.supervisor import MotionSupervisor
 
 DT = 0.01

@@ -5,10 +5,10 @@ import pytest
 
 from hexarm.machines import load
 from manipulator.errors import Refused
+from manipulator.planning.path import Tolerance
+from manipulator.planning.path_timing import PathRequest, plan_path
 from manipulator.pose import Pose
 from manipulator.trajectory.executor import Goal
-from manipulator.trajectory.path import Tolerance
-from manipulator.trajectory.path_timing import PathRequest, plan_path
 
 HOME = load('robocake').kinematics.home
 ELSEWHERE = Pose.from_xyz_rpy((0.004, 0.002, 0.044), (0.0, 0.05, 0.0))

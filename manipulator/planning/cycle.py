@@ -9,8 +9,8 @@ import numpy as np
 from manipulator import rotation as so3
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput
+from manipulator.planning.plan import MotionState, PosePlan
 from manipulator.pose import Pose
-from manipulator.trajectory.plan import MotionState, PosePlan
 
 LONGEST_PERIOD = 60.0
 FREQUENCY_STEP = 1000

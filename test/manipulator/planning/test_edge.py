@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
+from manipulator.planning.goal import Goal
 from manipulator.setpoint_validator import SetpointValidator
 from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.goal import Goal
 from manipulator.trajectory.jogging import JogCommand
 from sampling import some
 

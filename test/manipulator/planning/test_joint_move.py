@@ -8,14 +8,14 @@ import pytest
 
 from hexarm.machines import load
 from manipulator.errors import Refused, Unreachable
+from manipulator.planning.goal import Goal, Motion
+from manipulator.planning.joint_move import plan_joint_move
+from manipulator.planning.plan import MotionState
+from manipulator.planning.planner import Start, compared, plan_goal
+from manipulator.planning.worker import Effort
 from manipulator.pose import Pose
 from manipulator.setpoint_validator import SetpointValidator
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.joint_move import plan_joint_move
-from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.planner import Start, compared, plan_goal
-from manipulator.trajectory.worker import Effort
 
 DT = 0.01
 TARGETS = {

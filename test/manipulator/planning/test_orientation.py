@@ -5,10 +5,10 @@ import pytest
 
 from hexarm.machines import load
 from manipulator.errors import Refused
+from manipulator.planning.orientation import Orientation, OrientationRule
+from manipulator.planning.path import Tolerance, arc
+from manipulator.planning.path_timing import PathRequest, plan_path
 from manipulator.pose import Pose
-from manipulator.trajectory.orientation import Orientation, OrientationRule
-from manipulator.trajectory.path import Tolerance, arc
-from manipulator.trajectory.path_timing import PathRequest, plan_path
 
 DT = 0.01
 START = Pose.from_xyz_rpy((0.1, 0.2, 0.3), (3.0, 0.2, 0.7))

@@ -3,8 +3,8 @@ import pytest
 
 from hexarm.machines import load
 from manipulator import rotation as so3
+from manipulator.planning.point_to_point import plan_line_move
 from manipulator.pose import Pose
-from manipulator.trajectory.point_to_point import plan_line_move
 
 LIMITS = load('robocake').motion
 

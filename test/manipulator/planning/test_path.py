@@ -5,8 +5,8 @@ import pytest
 
 from manipulator import rotation as so3
 from manipulator.errors import InvalidInput
+from manipulator.planning.path import Path, Tolerance, arc, line, path_along, path_in_time
 from manipulator.pose import Pose
-from manipulator.trajectory.path import Path, Tolerance, arc, line, path_along, path_in_time
 from sampling import enough
 
 TOLERANCE = Tolerance(1e-4, np.radians(0.1))

@@ -12,14 +12,14 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import Refused
 from manipulator.machine import Machine
+from manipulator.planning.check import TOLERANCE as CHECK_TOLERANCE
+from manipulator.planning.check import check_plan
+from manipulator.planning.orientation import OrientationRule
+from manipulator.planning.path import Path, Tolerance, path_along, path_in_time
+from manipulator.planning.path_limits import PathLimits, fastest, path_limits
+from manipulator.planning.plan import MotionState, PosePlan
+from manipulator.planning.worker import Effort
 from manipulator.pose import Pose
-from manipulator.trajectory.check import TOLERANCE as CHECK_TOLERANCE
-from manipulator.trajectory.check import check_plan
-from manipulator.trajectory.orientation import OrientationRule
-from manipulator.trajectory.path import Path, Tolerance, path_along, path_in_time
-from manipulator.trajectory.path_limits import PathLimits, fastest, path_limits
-from manipulator.trajectory.plan import MotionState, PosePlan
-from manipulator.trajectory.worker import Effort
 
 FEWEST_INTERVALS = 500
 NODE_STEP = 0.1

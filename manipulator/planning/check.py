@@ -10,9 +10,9 @@ from manipulator.continuity import first_jump
 from manipulator.errors import Refused, Unreachable
 from manipulator.limits.constraints import Constraints
 from manipulator.machine import Machine
+from manipulator.planning.plan import MotionState, Plan
+from manipulator.planning.worker import Effort
 from manipulator.pose import Pose
-from manipulator.trajectory.plan import MotionState, Plan
-from manipulator.trajectory.worker import Effort
 from manipulator.unit_hints import hint_at_metres
 
 TOLERANCE = 1.005

@@ -14,11 +14,11 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused, Unreachable
 from manipulator.machine import Machine
+from manipulator.planning.goal import Goal
+from manipulator.planning.plan import MotionState, Plan
+from manipulator.planning.planner import Start, plan_goal
+from manipulator.planning.worker import Effort, InPlace, Job, TooLong, Worker
 from manipulator.trajectory.active_plan import ActivePlan
-from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.plan import MotionState, Plan
-from manipulator.trajectory.planner import Start, plan_goal
-from manipulator.trajectory.worker import Effort, InPlace, Job, TooLong, Worker
 
 LEADS = (3, 12, 50)
 """Ticks after which a plan is to be joined in motion, at the first, second and third attempt."""

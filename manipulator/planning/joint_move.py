@@ -13,9 +13,9 @@ from manipulator.errors import NoSolution, Refused
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
+from manipulator.planning.plan import MotionState
+from manipulator.planning.point_to_point import Profile, profile_within
 from manipulator.pose import Pose
-from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.point_to_point import Profile, profile_within
 
 KNOTS = 64
 """Poses along the move that are known beforehand: forward kinematics begin at the nearest."""

@@ -18,9 +18,9 @@ from numpy.typing import ArrayLike
 from manipulator import rotation as so3
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
+from manipulator.planning.plan import MotionState
+from manipulator.planning.point_to_point import state_of
 from manipulator.pose import Pose
-from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.point_to_point import state_of
 
 REPEATED_SHARE = 0.1
 """Poses nearer to the one before than this part of the tolerance are repetitions of it."""

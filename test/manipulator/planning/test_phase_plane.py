@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from manipulator.trajectory.path_limits import Rows, fastest
+from manipulator.planning.path_limits import Rows, fastest
 
 
 def straight(length, intervals, acceleration):

@@ -21,8 +21,8 @@ from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused
 from manipulator.machine import Machine
 from manipulator.motion_limits import Derivatives, JointDerivatives
-from manipulator.trajectory.check import first_fault
-from manipulator.trajectory.path import Path
+from manipulator.planning.check import first_fault
+from manipulator.planning.path import Path
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from manipulator.arrays import Array
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.orientation import OrientationRule
+from manipulator.planning.path_timing import TimedPath
 from manipulator.pose import Pose
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.orientation import OrientationRule
-from manipulator.trajectory.path_timing import TimedPath
 
 
 class Motion(Enum):

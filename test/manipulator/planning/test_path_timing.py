@@ -9,13 +9,13 @@ from hexapod_control import workspace
 from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.errors import Refused
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal
+from manipulator.planning.path import Tolerance, arc, line, path_along
+from manipulator.planning.path_limits import path_limits
+from manipulator.planning.path_timing import PathRequest, TimedPath, nodes_of, plan_path
 from manipulator.pose import Pose
-from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.goal import Goal
-from manipulator.trajectory.path import Tolerance, arc, line, path_along
-from manipulator.trajectory.path_limits import path_limits
-from manipulator.trajectory.path_timing import PathRequest, TimedPath, nodes_of, plan_path
 
 DT = 0.01
 MACHINES = {name: load(name) for name in ('robocake', 'stewart_6_3', 'arm_6r')}

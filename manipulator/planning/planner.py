@@ -9,15 +9,15 @@ from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
+from manipulator.planning.check import check_plan
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal, Motion
+from manipulator.planning.joint_move import KNOTS, plan_joint_move
+from manipulator.planning.path_timing import TimedPath
+from manipulator.planning.plan import MotionState, Plan
+from manipulator.planning.point_to_point import plan_line_move, plan_move_in_motion
+from manipulator.planning.worker import Effort, TooLong
 from manipulator.pose import Pose
-from manipulator.trajectory.check import check_plan
-from manipulator.trajectory.cycle import Cycle
-from manipulator.trajectory.goal import Goal, Motion
-from manipulator.trajectory.joint_move import KNOTS, plan_joint_move
-from manipulator.trajectory.path_timing import TimedPath
-from manipulator.trajectory.plan import MotionState, Plan
-from manipulator.trajectory.point_to_point import plan_line_move, plan_move_in_motion
-from manipulator.trajectory.worker import Effort, TooLong
 from manipulator.unit_hints import hint_at_metres
 
 ATTEMPTS = 8

@@ -9,15 +9,15 @@ import pytest
 from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.errors import ManipulatorError
+from manipulator.planning.goal import Goal, Motion
+from manipulator.planning.plan import MotionState
+from manipulator.planning.planner import Start, plan_goal
+from manipulator.planning.worker import MOST_POSES, Effort
 from manipulator.pose import Pose
 from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.goal import Goal, Motion
 from manipulator.trajectory.jogging import JogCommand
-from manipulator.trajectory.plan import MotionState
-from manipulator.trajectory.planner import Start, plan_goal
-from manipulator.trajectory.worker import MOST_POSES, Effort
 
 DT = 0.01
 FREE = jog_mode('free', Feedback.for_delay(0.0))

@@ -17,8 +17,8 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array
 from manipulator.errors import Refused
 from manipulator.motion_limits import MotionLimits
+from manipulator.planning.plan import MotionState, PosePlan
 from manipulator.pose import Pose
-from manipulator.trajectory.plan import MotionState, PosePlan
 
 FASTEST = 1e9
 """1/s and so on: bounds of what does not move at all."""

@@ -9,17 +9,17 @@ import pytest
 
 from hexarm.machines import load
 from manipulator.errors import ManipulatorError, Refused
+from manipulator.planning.cycle import Cycle
+from manipulator.planning.goal import Goal, Motion
+from manipulator.planning.joint_move import plan_joint_move
+from manipulator.planning.worker import Effort, Job
 from manipulator.pose import Pose
 from manipulator.teleop.jog_modes import Feedback
 from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.active_plan import ActivePlan
-from manipulator.trajectory.cycle import Cycle
 from manipulator.trajectory.executor import Executor
-from manipulator.trajectory.goal import Goal, Motion
+from manipulator.trajectory.goal_planning import LEADS, Planning
 from manipulator.trajectory.jogging import JogCommand
-from manipulator.trajectory.joint_move import plan_joint_move
-from manipulator.trajectory.planning import LEADS, Planning
-from manipulator.trajectory.worker import Effort, Job
 
 DT = 0.01
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from manipulator.errors import InvalidInput
+from manipulator.planning.cycle import Cycle
 from manipulator.pose import Pose
-from manipulator.trajectory.cycle import Cycle
 
 CENTRE = Pose.from_xyz_rpy((0.01, 0.02, 0.3), (0.1, -0.2, 0.3))
 

@@ -1,0 +1,1 @@
+"""Plans: motions that are computed, timed and checked before anything moves."""
