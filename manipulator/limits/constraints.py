@@ -21,6 +21,10 @@ from manipulator.limits.limit import (
 )
 from manipulator.pose import Pose
 
+ROUNDING = 1e-9
+"""rad, m or a ratio by which values may differ when the same pose is computed again: the joints of
+a pose that was found from joints at the end of their range may be beyond it by as much."""
+
 
 @dataclass(frozen=True)
 class Constraints:
@@ -55,17 +59,21 @@ class Constraints:
             'high': frozen(np.concatenate([[], *(limit.high for limit in limits)])),
             'places': places,
             'bounds': tuple(parts.values()),
-            'checks': tuple((group, group.ranges(bounds)) for group, bounds in parts.items()),
+            'checks': tuple(
+                (group, group.ranges([_widened(*bounds) for bounds in some]))
+                for group, some in parts.items()
+            ),
         }.items():
             object.__setattr__(self, name, value)
 
     def admits(self, pose: Pose, joints: Array) -> Mask:
-        """Which of the configurations (...) keep every limit."""
+        """Which of the configurations (...) keep every limit, but for ROUNDING."""
         masks = [group.keeps(ranges, pose, joints) for group, ranges in self.checks]
         for (group, _), limit in zip(self.places, self.limits, strict=True):
             if group is None:
                 values = limit.values(pose, joints)
-                inside = (values >= limit.low) & (values <= limit.high)
+                _, low, high = _widened(slice(0), limit.low, limit.high)
+                inside = (values >= low) & (values <= high)
                 masks.append(np.asarray(inside.all(axis=-1)))
         if len(masks) == 1:
             return masks[0]
@@ -136,13 +144,14 @@ class Constraints:
         )
 
 
+def _widened(columns: slice, low: Array, high: Array) -> Bounds:
+    """Bounds by which a machine that stands exactly at one may stay there."""
+    return columns, low - ROUNDING, high + ROUNDING
+
+
 def _place(limit: Limit) -> tuple[LimitGroup | None, slice]:
     """Where its values are computed together with others, and which columns they are there."""
     return (limit.group, limit.columns) if isinstance(limit, Grouped) else (None, slice(0))
-
-
-ROUNDING = 1e-9
-"""rad, m or a ratio by which values may differ when the same pose is computed again."""
 
 
 @dataclass(frozen=True, eq=False)

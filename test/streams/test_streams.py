@@ -209,6 +209,14 @@ def norms(vectors):
         (('emergency_stop',), 17),
     ]
 )
+@example(
+    stream=[  # a board that was stopped where a crank is at the very end of its range
+        (('emergency_stop',), 60),
+        (('twist', 'cmd_vel/keyboard', (0.5, 0.2, -1.0, 0.0, 0.55, -0.46), 52), 17),
+        (('mode', 'turn_tool_z'), 17),
+        (('emergency_stop',), 17),
+    ]
+)
 @example(stream=[(('goal', (0.1,) * 6, 1.0), 9), (('enable',), 9)])
 @given(stream=STREAMS)
 def test_no_stream_of_wishes_breaks_a_limit(loop_of, name, stream):

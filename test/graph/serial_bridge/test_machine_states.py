@@ -73,8 +73,8 @@ def test_every_trouble_that_can_be_asked_of_the_fake_board_shows_in_the_state(en
     enabled.wait_for_state('fault')
     with pytest.raises(Refused, match='battery is too low'):
         enabled.trigger('serial_bridge/clear_fault')
-    enabled.set_battery(7.6)
-    enabled.wait('a good battery', lambda: enabled.report()['battery_v'] == '7.6')
+    enabled.set_battery(7.8)
+    enabled.wait('a good battery', lambda: enabled.report()['battery_v'] == '7.8')
     enabled.trigger('serial_bridge/clear_fault')
     enabled.switch('fake_hardware/stop_pin')
     enabled.wait_for_state('stopped')
