@@ -85,11 +85,6 @@ def encode(message: Message, sequence: int) -> bytes:
     return wire
 
 
-def code_of(message: Message) -> int:
-    """The type byte of a message's frame."""
-    return _ENCODERS[type(message)][0]
-
-
 def decode(stuffed: bytes) -> Frame:
     """The frame in the bytes before a delimiter.
 

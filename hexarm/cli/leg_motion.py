@@ -24,9 +24,7 @@ SHOWN = 10
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser(
-        'leg-motion', help='how far from straight a platform goes while its legs move linearly'
-    )
+    parser = commands.add_parser('leg-motion')
     add_machine(parser)
     parser.add_argument(
         '--to', nargs=3, type=float, required=True, metavar=('X', 'Y', 'Z'), help='metres, level'
