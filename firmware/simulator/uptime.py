@@ -1,7 +1,7 @@
 """Makes a simulated board believe that it has been running for days.
 
-The board's clock is one counter of pulse periods (`periods` in chip_clock.c, 32 bits); microseconds and
-milliseconds follow from it and wrap earlier.
+The board's clock is one counter of pulse periods (`periods` in chip_clock.c, 32 bits);
+microseconds and milliseconds follow from it and wrap earlier.
 """
 
 import subprocess
