@@ -66,11 +66,6 @@ class Frame:
 class Unreadable(ProtocolError):
     """A whole frame, CRC and all, whose type or payload means nothing here."""
 
-    def __init__(self, message: str, type_code: int, is_known_type: bool) -> None:
-        super().__init__(message)
-        self.type_code = type_code
-        self.is_known_type = is_known_type
-
 
 def encode(message: Message, sequence: int) -> bytes:
     """The bytes on the wire, delimiter included; InvalidInput where a value does not fit."""
@@ -98,11 +93,11 @@ def decode(stuffed: bytes) -> Frame:
         raise ProtocolError('CRC does not match')
     code, sequence = _HEAD.unpack_from(body)
     if code not in _DECODERS:
-        raise Unreadable(f'unknown frame type 0x{code:02x}', code, False)
+        raise Unreadable(f'unknown frame type 0x{code:02x}')
     try:
         return Frame(sequence, _DECODERS[code](body[_HEAD.size :]))
     except (struct.error, ValueError) as error:
-        raise Unreadable(f'frame type 0x{code:02x}: {error}', code, True) from error
+        raise Unreadable(f'frame type 0x{code:02x}: {error}') from error
 
 
 def checksum(content: bytes) -> int:
