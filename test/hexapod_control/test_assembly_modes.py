@@ -7,7 +7,7 @@ from hexapod_control.linear_geometry import joint_circle
 from manipulator import rotation as so3
 from manipulator.errors import InvalidInput, NoSolution
 from manipulator.pose import Pose
-from newton import Newton
+from newton import Newton, lengths_at
 from sampling import enough
 
 # P. Dietmaier, The Stewart-Gough platform of general geometry can have 40 real postures, 1998.
@@ -30,10 +30,6 @@ DIETMAIER_PLATFORM = [
 DIETMAIER_LENGTHS = [1, 0.645275, 1.086284, 1.503439, 1.281933, 0.771071]
 
 ROBOCAKE = HexagonConfig(71.492, 25.0, 5.79, 17.5, 58.0, 1.5, 30.0, 41.19).geometry()
-
-
-def lengths_at(base, platform, pose):
-    return np.linalg.norm(pose.transform(platform) - base, axis=1)
 
 
 def circle(radius, degrees):

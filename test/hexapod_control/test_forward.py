@@ -6,7 +6,7 @@ import pytest
 from hexapod_control.leg_jacobian import leg_jacobian, smallest_singular_value
 from manipulator.errors import NoSolution
 from manipulator.pose import Pose
-from newton import Newton
+from newton import Newton, lengths_at
 
 HEIGHT = 0.15
 
@@ -30,10 +30,6 @@ def platform():
 @pytest.fixture
 def solver(platform):
     return Newton(platform, 0.05)
-
-
-def lengths_at(base, platform, pose):
-    return np.linalg.norm(pose.transform(platform) - base, axis=1)
 
 
 def home():

@@ -9,6 +9,11 @@ from manipulator import _kernel
 from manipulator.arrays import stretched
 
 
+def lengths_at(base, platform, pose):
+    """The rods' lengths (6,) from base points to platform points (6, 3 each)."""
+    return np.linalg.norm(pose.transform(platform) - base, axis=1)
+
+
 @dataclass(frozen=True, eq=False)
 class Newton:
     """Rods to platform_points (6, 3); characteristic_length (m) scales rotations in σmin."""
