@@ -53,7 +53,7 @@ class Calibration:
             names=tuple(joint.name for joint in config.joints),
             unit='m' if is_linear else 'rad',
             channels=tuple(joint.channel for joint in config.joints),
-            centre=frozen([_centre(joint) * per_unit for joint in config.joints]),
+            centre=frozen([joint.centre * per_unit for joint in config.joints]),
             centre_count=frozen([COUNTS_PER_US * joint.centre_us for joint in config.joints]),
             scale=frozen([_counts_per_config_unit(j) / per_unit for j in config.joints]),
             lowest=tuple(_count(joint.pulse_range_us[0]) for joint in config.joints),
@@ -131,10 +131,6 @@ class Calibration:
 
 def _count(pulse_us: float) -> int:
     return round(COUNTS_PER_US * pulse_us)
-
-
-def _centre(joint: ServoConfig) -> float:
-    return joint.centre_mm if joint.centre_mm is not None else joint.centre_deg or 0.0
 
 
 def _counts_per_config_unit(joint: ServoConfig) -> float:

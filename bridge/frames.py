@@ -66,11 +66,6 @@ class Frame:
 class Unreadable(ProtocolError):
     """A whole frame, CRC and all, whose type or payload means nothing here."""
 
-    def __init__(self, message: str, type_code: int, is_known_type: bool) -> None:
-        super().__init__(message)
-        self.type_code = type_code
-        self.is_known_type = is_known_type
-
 
 def encode(message: Message, sequence: int) -> bytes:
     """The bytes on the wire, delimiter included; InvalidInput where a value does not fit."""
@@ -83,11 +78,6 @@ def encode(message: Message, sequence: int) -> bytes:
     if len(wire) > MAX_WIRE_BYTES:
         raise InvalidInput(f'{message} takes {len(wire)} bytes, at most {MAX_WIRE_BYTES}')
     return wire
-
-
-def code_of(message: Message) -> int:
-    """The type byte of a message's frame."""
-    return _ENCODERS[type(message)][0]
 
 
 def decode(stuffed: bytes) -> Frame:
@@ -103,11 +93,11 @@ def decode(stuffed: bytes) -> Frame:
         raise ProtocolError('CRC does not match')
     code, sequence = _HEAD.unpack_from(body)
     if code not in _DECODERS:
-        raise Unreadable(f'unknown frame type 0x{code:02x}', code, False)
+        raise Unreadable(f'unknown frame type 0x{code:02x}')
     try:
         return Frame(sequence, _DECODERS[code](body[_HEAD.size :]))
     except (struct.error, ValueError) as error:
-        raise Unreadable(f'frame type 0x{code:02x}: {error}', code, True) from error
+        raise Unreadable(f'frame type 0x{code:02x}: {error}') from error
 
 
 def checksum(content: bytes) -> int:

@@ -7,20 +7,18 @@ from manipulator.errors import ProtocolError
 class FrameReader:
     """Feed it what arrived, get the frames that are complete. Holds at most one frame's bytes.
 
-    bad_frames counts damaged frames, overruns those that were too long to be one. `unreadable`
-    holds the whole frames of the last `feed` that are no message of this protocol.
+    bad_frames counts damaged frames, overruns those that were too long to be one. Whole
+    frames that are no message of this protocol are passed over.
     """
 
     def __init__(self) -> None:
         self.bad_frames = 0
         self.overruns = 0
-        self.unreadable: list[Unreadable] = []
         self._pending = b''
         self._is_skipping = False
 
     def feed(self, received: bytes) -> list[Frame]:
         """The frames completed by `received`, oldest first."""
-        self.unreadable = []
         *ended, self._pending = (self._pending + received).split(DELIMITER)
         frames = [frame for piece in ended if (frame := self._read(piece)) is not None]
         if len(self._pending) >= MAX_WIRE_BYTES:
@@ -37,8 +35,8 @@ class FrameReader:
             return None
         try:
             return decode(stuffed)
-        except Unreadable as error:
-            self.unreadable.append(error)
+        except Unreadable:
+            return None
         except ProtocolError:
             self.bad_frames += 1
-        return None
+            return None

@@ -58,6 +58,11 @@ class ServoConfig:
         """Millimetres instead of degrees."""
         return self.centre_mm is not None
 
+    @property
+    def centre(self) -> float:
+        """The position at `centre_us`, in ° or mm as in the file."""
+        return self.centre_mm if self.centre_mm is not None else self.centre_deg or 0.0
+
 
 @dataclass(frozen=True)
 class ServosConfig:

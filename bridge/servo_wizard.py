@@ -157,7 +157,7 @@ class ServoWizard:
         if self.stage in (Stage.CENTRE, Stage.SCALE) and key == '=':
             return replace(self, typed='')
         if self.stage is Stage.CENTRE and key == 'enter':
-            return self._settle_centre(_position(self.servo))
+            return self._settle_centre(self.servo.centre)
         if self.stage is Stage.RANGE and key in ('[', ']'):
             return self._settle_end(key)
         if self.stage is Stage.RANGE and key == 'enter':
@@ -206,7 +206,7 @@ class ServoWizard:
     def _settle_scale(self, position: float) -> 'ServoWizard':
         servo, unit = self.servo, 'mm' if self.servo.is_linear else 'deg'
         pulses = self.pulse - servo.centre_us
-        change = servo.sign * (position - _position(servo))
+        change = servo.sign * (position - servo.centre)
         if abs(pulses) < LEAST_SPAN_US:
             return self._notify(f'too near the centre: go {LEAST_SPAN_US:g} µs away from it')
         if change * pulses <= 0.0:
@@ -251,11 +251,6 @@ class ServoWizard:
 
     def _notify(self, notice: str) -> 'ServoWizard':
         return replace(self, notice=notice)
-
-
-def _position(servo: ServoConfig) -> float:
-    """The reference, in the file's unit."""
-    return servo.centre_mm if servo.centre_mm is not None else servo.centre_deg or 0.0
 
 
 def _on_wire(pulse: float) -> float:

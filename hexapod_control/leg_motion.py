@@ -125,7 +125,7 @@ def leg_motion(solve: Solver, first: Array, last: Array, start: Pose, steps: int
 def paper_motion(geometry: LinearGeometry, solve: Solver, steps: int = 100) -> LegMotion:
     """The experiment of section 4: level with all legs 150 mm, to (20, 20, 200) mm unturned.
 
-    With the paper's own φb = φmp, a 6-6 geometry cannot even be built: see architecture.py.
+    With the paper's own φb = φmp, a 6-6 geometry cannot even be built: see `check_architecture`.
     """
     start = level_pose(geometry, PAPER_LENGTH)
     target = Pose(np.array(PAPER_TARGET), np.eye(3))

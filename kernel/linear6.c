@@ -1,5 +1,7 @@
 #include "linear6.h"
 
+#include "matrix6.h"
+
 static void swap(real *a, real *b)
 {
     real kept = *a;
@@ -47,40 +49,6 @@ void damped6(real matrix[6][6], real damping, const real right[6], real solution
             solution[i] -= l[k][i] * solution[k];
         solution[i] *= inverse[i];
     }
-}
-
-static real dot6(const real a[6], const real b[6])
-{
-    real sum = 0;
-    for (int k = 0; k < 6; k++)
-        sum += a[k] * b[k];
-    return sum;
-}
-
-static void turn_rows(real a[6], real b[6], real cosine, real sine)
-{
-    for (int k = 0; k < 6; k++) {
-        real x = a[k], y = b[k];
-        a[k] = cosine * x - sine * y;
-        b[k] = sine * x + cosine * y;
-    }
-}
-
-/* Turns two rows of `columns` (A's columns) until they are at a right angle; 1 where they were. */
-static int made_perpendicular(real columns[6][6], real right[6][6], int i, int j)
-{
-    real *a = columns[i], *b = columns[j];
-    real aa = dot6(a, a), bb = dot6(b, b), ab = dot6(a, b);
-    if (!(ab * ab > REAL_EPSILON * REAL_EPSILON * aa * bb))
-        return 1;
-    real zeta = (bb - aa) / (2 * ab);
-    real tangent = 1 / (real_fabs(zeta) + real_sqrt(1 + zeta * zeta));
-    if (zeta < 0)
-        tangent = -tangent;
-    real cosine = 1 / real_sqrt(1 + tangent * tangent);
-    turn_rows(a, b, cosine, cosine * tangent);
-    turn_rows(right[i], right[j], cosine, cosine * tangent);
-    return 0;
 }
 
 /* Exchanges rows so that the lengths of `columns` fall. */
@@ -138,11 +106,15 @@ void svd6(real matrix[6][6], struct svd6 *parts)
             columns[j][i] = matrix[i][j];
             parts->right[i][j] = i == j;
         }
-    for (int sweep = 0, done = 0; sweep < MOST_SWEEPS && !done; sweep++) {
-        done = 1;
+    for (int sweep = 0, turned = 1; sweep < MOST_SWEEPS && turned; sweep++) {
+        turned = 0;
         for (int i = 0; i < 6; i++)
-            for (int j = i + 1; j < 6; j++)
-                done &= made_perpendicular(columns, parts->right, i, j);
+            for (int j = i + 1; j < 6; j++) {
+                struct rotation6 by = rotation6(columns[i], columns[j]);
+                rotate6(&by, columns[i], columns[j]);
+                rotate6(&by, parts->right[i], parts->right[j]);
+                turned |= by.is_far;
+            }
     }
     sort_rows(columns, parts->sigma, parts->right);
     make_unit_rows(columns, parts->sigma);

@@ -15,7 +15,7 @@ struct svd6 {
     real right[6][6];
 };
 
-/* By Jacobi's rotations from one side (Hestenes 1958): small values keep their digits. */
+/* By rotations from one side (matrix6.h): small values keep their digits. */
 void svd6(real matrix[6][6], struct svd6 *parts);
 
 #endif

@@ -43,29 +43,37 @@ real eliminate6(real matrix[6][6], real b[6])
     return determinant;
 }
 
-static real dot6(const real a[6], const real b[6])
+real dot6(const real a[6], const real b[6])
 {
     return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) +
            (a[4] * b[4] + a[5] * b[5]);
 }
 
-/* Turns two rows in their plane so that they are orthogonal. Returns whether they were far from
-   it: as convergence is quadratic, a sweep in which none was is the last. */
-static int made_orthogonal(real a[6], real b[6])
+struct rotation6 rotation6(const real a[6], const real b[6])
 {
+    struct rotation6 found = {1, 0, 0};
     real aa = dot6(a, a), bb = dot6(b, b), ab = dot6(a, b);
     if (!(ab * ab > REAL_EPSILON * REAL_EPSILON * aa * bb))
-        return 0;
+        return found;
     real difference = bb - aa, twice = 2 * ab; /* whose ratio is that of 2 cosines and 2 sines */
     real both = real_fabs(difference) + real_sqrt(difference * difference + twice * twice);
     real tangent = (difference < 0 ? -twice : twice) / both;
-    real cosine = 1 / real_sqrt(1 + tangent * tangent), sine = cosine * tangent;
+    found.cosine = 1 / real_sqrt(1 + tangent * tangent);
+    found.sine = found.cosine * tangent;
+    found.is_far = ab * ab > REAL_EPSILON * aa * bb;
+    return found;
+}
+
+void rotate6(const struct rotation6 *by, real a[6], real b[6])
+{
+    real cosine = by->cosine, sine = by->sine;
+    if (sine == 0)
+        return;
     for (int k = 0; k < 6; k++) {
         real before = a[k];
         a[k] = cosine * before - sine * b[k];
         b[k] = sine * before + cosine * b[k];
     }
-    return ab * ab > REAL_EPSILON * aa * bb;
 }
 
 real smallest_singular_value(real matrix[6][6])
@@ -77,8 +85,12 @@ real smallest_singular_value(real matrix[6][6])
     int turned = 1;
     for (int sweep = 0; turned && sweep < MOST_SWEEPS; sweep++) {
         turned = 0;
-        for (int i = 0; i < 15; i++)
-            turned |= made_orthogonal(matrix[pairs[i][0]], matrix[pairs[i][1]]);
+        for (int i = 0; i < 15; i++) {
+            real *a = matrix[pairs[i][0]], *b = matrix[pairs[i][1]];
+            struct rotation6 by = rotation6(a, b);
+            rotate6(&by, a, b);
+            turned |= by.is_far;
+        }
     }
     real least = dot6(matrix[0], matrix[0]), sum = least;
     for (int i = 1; i < 6; i++) {

@@ -19,9 +19,9 @@ def counted(count: int, one: str, many: str = '') -> str:
     return f'{count:,} {one if count == 1 else many or one + "s"}'
 
 
-def shown(value: object, most: int = MOST_SHOWN) -> str:
+def shown(value: object) -> str:
     """An input as a message repeats it: as Python writes it, its beginning where it is long."""
-    return shortened(repr(value[: most + 1] if isinstance(value, str) else value), most)
+    return shortened(repr(value[: MOST_SHOWN + 1] if isinstance(value, str) else value))
 
 
 def shortened(text: str, most: int = MOST_SHOWN) -> str:

@@ -5,7 +5,7 @@ the span of each value, and only those characters are replaced.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import yaml
@@ -25,6 +25,11 @@ def with_values(text: str, values: Mapping[Place, str]) -> str:
     for start, end, new in sorted(spans, reverse=True):
         text = text[:start] + new + text[end:]
     return text
+
+
+def flow_list(numbers: Iterable[float], digits: int = 4) -> str:
+    """The numbers, rounded, as a flow list; without a -0.0."""
+    return f'[{", ".join(str(round(float(n), digits) + 0.0) for n in numbers)}]'
 
 
 def with_section(text: str, key: str, lines: Sequence[str]) -> str:

@@ -18,6 +18,7 @@ from arm_control.chain import JOINTS, Chain
 from manipulator.analysis.measurements import Parameter
 from manipulator.arrays import Array
 from manipulator.pose import Pose
+from manipulator.yaml_edit import flow_list
 
 PARALLEL = 1e-3
 """Sine of the angle of two axes below which an offset is no longer told from the next one."""
@@ -84,27 +85,22 @@ def _of_link(chain: Chain, i: int) -> Iterator[LinkError]:
     yield LinkError(i + 1, 'skew', np.cross(axis, normal), point)
 
 
-POINT_DIGITS, AXIS_DIGITS, ANGLE_DIGITS = 4, 8, 6
+AXIS_DIGITS, ANGLE_DIGITS = 8, 6
 
 
 def geometry_lines(chain: Chain, rest: Array) -> list[str]:
     """The `geometry` section by joint axes, to 0.1 µm; rest (6,) are the joints at home, rad."""
     screws = [
-        f'    - {{axis: {_list(axis, AXIS_DIGITS)}, point_mm: {_list(1e3 * point)}}}'
+        f'    - {{axis: {flow_list(axis, AXIS_DIGITS)}, point_mm: {flow_list(1e3 * point)}}}'
         for axis, point in zip(chain.axes, chain.points, strict=True)
     ]
     return [
         '  screws:',
         *screws,
-        f'  tool_position_mm: {_list(1e3 * chain.home.position)}',
-        f'  tool_rpy_deg: {_list(np.degrees(chain.home.rpy), ANGLE_DIGITS)}',
-        f'  home_deg: {_list(np.degrees(rest), ANGLE_DIGITS)}',
+        f'  tool_position_mm: {flow_list(1e3 * chain.home.position)}',
+        f'  tool_rpy_deg: {flow_list(np.degrees(chain.home.rpy), ANGLE_DIGITS)}',
+        f'  home_deg: {flow_list(np.degrees(rest), ANGLE_DIGITS)}',
     ]
-
-
-def _list(numbers: Array, digits: int = POINT_DIGITS) -> str:
-    # Adding zero makes -0.0 a plain zero.
-    return f'[{", ".join(str(float(np.round(n, digits) + 0.0)) for n in numbers)}]'
 
 
 def _perpendicular(axis: Array) -> Array:

@@ -9,7 +9,6 @@ from hexarm.board import build as firmware_build
 from hexarm.board.header import header
 from hexarm.board.table import flash_text
 
-CHANNELS = 8
 OFF_AFTER = 21 * CLOCK_HZ // 1000
 """A channel without a pulse for so long is off: a period is 20 ms."""
 STOP_BUTTON, START_BUTTON = 0, 1
@@ -77,7 +76,6 @@ class SimulatedBoard:
         if self.settings is not self._flashed:
             self._flash()
         self._boot_left = self.settings.boot_us * CLOCK_HZ // 1_000_000
-        self._cause = cause
         self._widths = np.zeros(len(self.settings.count_ranges), np.int64)
         self._risen = self._widths.copy()
         self.chip.reset(cause)

@@ -1,7 +1,7 @@
 """Makes a simulated board believe that it has been running for days.
 
-The board's clock is one counter of pulse periods (`periods` in clock.c, 32 bits); microseconds and
-milliseconds follow from it and wrap earlier.
+The board's clock is one counter of pulse periods (`periods` in chip_clock.c, 32 bits);
+microseconds and milliseconds follow from it and wrap earlier.
 """
 
 import subprocess
@@ -25,7 +25,7 @@ def put_forward(board: SimulatedBoard, periods: int) -> None:
 
 
 def _address(board: SimulatedBoard) -> int:
-    """Where it stands in RAM: board.c has a `periods` too, of one byte."""
+    """Where it stands in RAM."""
     command = ['avr-nm', '-S', str(board.program)]
     lines = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
     symbols = [line.split() for line in lines]

@@ -27,6 +27,7 @@ from manipulator.analysis.measurements import Parameter
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.kinematics import Kinematics
+from manipulator.yaml_edit import flow_list
 
 
 def geometry_lines(geometry: RotaryGeometry | LinearGeometry) -> list[str]:
@@ -39,19 +40,14 @@ def geometry_lines(geometry: RotaryGeometry | LinearGeometry) -> list[str]:
         *_points('crank_centres_mm', 1e3 * geometry.crank_centres),
         *_points('crank_tangents', geometry.tangents, 6),
         *joints,
-        f'  crank_length_mm: {_list(1e3 * geometry.crank_lengths)}',
-        f'  rod_length_mm: {_list(1e3 * geometry.rod_lengths)}',
+        f'  crank_length_mm: {flow_list(1e3 * geometry.crank_lengths)}',
+        f'  rod_length_mm: {flow_list(1e3 * geometry.rod_lengths)}',
         height,
     ]
 
 
 def _points(key: str, points: Array, digits: int = 4) -> list[str]:
-    return [f'  {key}:', *(f'    - {_list(point, digits)}' for point in points)]
-
-
-def _list(numbers: Array, digits: int = 4) -> str:
-    # Adding zero makes -0.0 a plain zero.
-    return f'[{", ".join(str(float(np.round(n, digits) + 0.0)) for n in numbers)}]'
+    return [f'  {key}:', *(f'    - {flow_list(point, digits)}' for point in points)]
 
 
 UP = np.array([0.0, 0.0, 1.0])

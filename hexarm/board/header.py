@@ -23,7 +23,7 @@ A_MACHINE = "a machine's settings"
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('firmware-header', help="a machine file as the board's C header")
+    parser = commands.add_parser('firmware-header')
     parser.add_argument('machine', help='a shipped name or a path')
     parser.add_argument('--table', type=Path, help='a CSV of joint positions, for flash_table.h')
     parser.set_defaults(run=run)

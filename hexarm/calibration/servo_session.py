@@ -70,12 +70,11 @@ POSITIVE = {
 def question(wizard: ServoWizard, positive: str) -> str:
     """The question of the present stage."""
     servo, unit = wizard.servo, 'mm' if wizard.servo.is_linear else '°'
-    centre = servo.centre_mm if servo.centre_mm is not None else servo.centre_deg
     low, high = servo.pulse_range_us
     question_text = {
         Stage.DIRECTION: f'jog it. Does a longer pulse (→) move it towards positive{positive}? '
         'y or n',
-        Stage.CENTRE: f'bring it to {centre:g} {unit} and press ENTER; '
+        Stage.CENTRE: f'bring it to {servo.centre:g} {unit} and press ENTER; '
         'or bring it anywhere and type =ANGLE ENTER',
         Stage.SCALE: 'bring it to a second angle that you can read and type =ANGLE ENTER; '
         's keeps the scale',

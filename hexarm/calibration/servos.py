@@ -46,7 +46,7 @@ def mounted_wrongly(config: BoardConfig, seed: int) -> BoardConfig:
 
     # The true park position does not matter: the board only ever gets pulses.
     joints = tuple(map(wrong, config.servos.joints))
-    centres = tuple(joint.centre_mm or joint.centre_deg or 0.0 for joint in joints)
+    centres = tuple(joint.centre for joint in joints)
     if joints[0].is_linear:
         servos = replace(config.servos, joints=joints, park_mm=centres)
     else:

@@ -50,7 +50,7 @@ class Row:
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('accuracy', help='pose errors from servos and geometry')
+    parser = commands.add_parser('accuracy')
     add_machine(parser)
     parser.add_argument(
         '--noise', type=float, metavar='A',

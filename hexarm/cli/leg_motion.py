@@ -4,13 +4,12 @@ The experiment of Lapikov et al. 2014, section 4: `--legs 0.15 --to 0.02 0.02 0.
 """
 
 import argparse
-from pathlib import Path
 
 import numpy as np
 
 from hexapod_control.leg_motion import LegMotion, leg_motion, level_pose
 from hexapod_control.linear import LinearPlatform
-from hexarm.cli.answers import Answer, add_machine, answering
+from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.machines import load
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
@@ -24,9 +23,7 @@ SHOWN = 10
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser(
-        'leg-motion', help='how far from straight a platform goes while its legs move linearly'
-    )
+    parser = commands.add_parser('leg-motion')
     add_machine(parser)
     parser.add_argument(
         '--to', nargs=3, type=float, required=True, metavar=('X', 'Y', 'Z'), help='metres, level'
@@ -35,7 +32,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
         '--legs', type=float, metavar='L', help='start level on legs of L metres (default: home)'
     )
     parser.add_argument('--steps', type=int, default=100, metavar='N', help='default 100')
-    parser.add_argument('--picture', type=Path, metavar='FILE', help='save plots, by its ending')
+    parser.add_argument('--picture', type=picture_file, metavar='FILE', help='save plots')
     parser.set_defaults(run=answering(answer))
 
 

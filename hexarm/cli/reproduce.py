@@ -15,9 +15,7 @@ OUTPUT = Path('reproduction', 'reproduction.md')
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser(
-        'reproduce', help='the figures of the three papers, in a minute or two'
-    )
+    parser = commands.add_parser('reproduce')
     parser.add_argument(
         '--output', type=Path, default=OUTPUT, metavar='FILE.md',
         help=f'the report; its figures and numbers go beside it (default {OUTPUT})',

@@ -41,7 +41,7 @@ NOISE_SEED = 1
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('simulate', help='a periodic motion as rigid bodies with servos')
+    parser = commands.add_parser('simulate')
     add_machine(parser)
     _add_motion(parser)
     parser.add_argument('--payload', type=float, metavar='G', help="grams, for the machine file's")

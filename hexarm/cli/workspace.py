@@ -31,7 +31,7 @@ COLUMNS = ('x', 'y', 'z', 'admitted', 'sigma_min', 'joint_speed')
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommand."""
-    parser = commands.add_parser('workspace', help='ranges, volumes and pictures of the workspace')
+    parser = commands.add_parser('workspace')
     add_machine(parser)
     parser.add_argument(
         '--points', type=int, metavar='N',

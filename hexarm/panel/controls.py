@@ -85,7 +85,7 @@ def slider_marks(marks: tuple[tuple[float, str], ...]) -> tuple[Any, ...]:
     return tuple(GuiSliderMark(value=value, label=label) for value, label in marks)
 
 
-RED, GREEN, GREY = (218, 54, 51), (46, 160, 67), (68, 76, 86)
+RED, GREY = (218, 54, 51), (68, 76, 86)
 STATE_COLOURS: dict[str, str] = {
     MachineState.ENABLED: '#40c08c',
     MachineState.ARMING: '#f5b041',

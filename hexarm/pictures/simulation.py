@@ -15,8 +15,6 @@ from hexarm.simulation.experiment import Recording
 from hexarm.simulation.rigid_body import Mechanism, RigidBody
 from hexarm.simulation.sensors import AXES, carrying_force
 from manipulator.arrays import Array
-from manipulator.errors import InvalidInput
-from manipulator.formatting import reason
 
 N_CM = 0.01
 LIMIT = '#b3261e'
@@ -26,7 +24,7 @@ AXIS_COLOURS = ('#0b6e99', '#d1603d', '#6a994e')
 def draw(
     recording: Recording, mechanism: Mechanism, picture: Path, load: RigidBody, dpi: int = 130
 ) -> None:
-    """Saves the picture; InvalidInput where it cannot be saved under this name."""
+    """Saves the picture."""
     plt.rcParams.update({'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False})
     figure, axes = plt.subplots(3, 2, figsize=(10, 8), dpi=dpi, sharex=True, layout='constrained')
     _drives(axes[0, 0], axes[0, 1], recording, mechanism)
@@ -49,12 +47,8 @@ def draw(
         each.set_xlim(0, recording.times[-1])
     for each in axes[2]:
         each.set_xlabel('time (s)')
-    try:
-        figure.savefig(picture)
-    except (OSError, ValueError) as error:
-        raise InvalidInput(f'cannot save {picture}: {reason(error)}') from error
-    finally:
-        plt.close(figure)
+    figure.savefig(picture)
+    plt.close(figure)
 
 
 def _drives(efforts: Axes, speeds: Axes, recording: Recording, mechanism: Mechanism) -> None:

@@ -94,7 +94,7 @@ class Nearest:
     distance: float
 
 
-def nearest_reachable(machine: Machine, target: Pose, most_steps: int = MOST_STEPS) -> Nearest:
+def nearest_reachable(machine: Machine, target: Pose) -> Nearest:
     """The pose nearest to `target` (itself, when it is reachable) that keeps all limits.
 
     It is admitted and connected to home: both are checked. It is a local minimum of the distance
@@ -105,16 +105,16 @@ def nearest_reachable(machine: Machine, target: Pose, most_steps: int = MOST_STE
         pose = nearest_by_joints(machine, target)
         return Nearest(pose, float(distance(machine, pose, target)))
     starts = _starts(machine, target)
-    near = [_descended(machine, target, start, most_steps) for start in starts]
+    near = [_descended(machine, target, start) for start in starts]
     found = [(float(distance(machine, pose, target)), k) for k, pose in enumerate(near)]
     for _, k in sorted(found):
-        end = _settled(machine, target, near[k], most_steps)
+        end = _settled(machine, target, near[k])
         if is_connected(machine, end) or are_linked(machine, starts[k], end):
             return Nearest(end, float(distance(machine, end, target)))
     return Nearest(starts[0], float(distance(machine, starts[0], target)))
 
 
-def _settled(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Pose:
+def _settled(machine: Machine, target: Pose, start: Pose) -> Pose:
     """A local minimum, left again as long as a random pose near it is nearer to the target."""
     generator = np.random.default_rng(8)
     length = machine.kinematics.characteristic_length
@@ -128,14 +128,14 @@ def _settled(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Po
         if not nearer.any():
             break
         best = int(np.argmin(np.where(nearer, distances, np.inf)))
-        pose = _descended(machine, target, trials[best], most_steps)
+        pose = _descended(machine, target, trials[best])
     return pose
 
 
-def _descended(machine: Machine, target: Pose, start: Pose, most_steps: int) -> Pose:
+def _descended(machine: Machine, target: Pose, start: Pose) -> Pose:
     """An admitted pose at a local minimum of the distance, from the admitted `start`."""
     clearance = CLEARANCE * machine.kinematics.characteristic_length
-    wide = Search(target, WIDE * clearance, most_steps)
+    wide = Search(target, WIDE * clearance, MOST_STEPS)
     pose = machine.constraints.descended(wide, start)
     return machine.constraints.descended(replace(wide, clearance=clearance), pose)
 

@@ -7,6 +7,7 @@ from arm_control.arm import SerialArm
 from arm_control.chain import Chain
 from arm_control.identification.arm_model import ArmModel
 from arm_control.numerical import AlmostClosed, Numerical
+from branches import apart
 from hexarm.machines import load
 from manipulator.errors import Unreachable
 from manipulator.pose import Pose
@@ -31,17 +32,11 @@ def some_joints(arm, count):
     return np.random.default_rng(4).uniform(low, high, (count, 6))
 
 
-def apart(branches, joints):
-    """How far the nearest branch (n, k, 6) is from joints (n, 6), whole turns aside."""
-    gaps = np.abs(np.exp(1j * branches) - np.exp(1j * joints)[:, None]).max(axis=-1)
-    return np.nan_to_num(gaps, nan=9.0).min(axis=1)
-
-
 def test_the_joints_that_made_a_pose_are_among_its_branches(arm):
     assert isinstance(arm.method, AlmostClosed)
     joints = some_joints(arm, enough(300, 1000))
     branches = arm.method.branches(arm.chain.forward(joints), joints * 0.0 + arm.rest)
-    assert (apart(branches, joints) < 1e-5).mean() > 0.97
+    assert (apart(branches, joints[:, None]).min(axis=1) < 1e-5).mean() > 0.97
 
 
 def test_every_branch_leads_to_the_pose_and_none_stands_twice(arm):
@@ -52,7 +47,7 @@ def test_every_branch_leads_to_the_pose_and_none_stands_twice(arm):
     there = arm.chain.forward(found)
     assert max(np.abs(there[i].twist_to(pose)).max() for i in range(len(found))) < 1e-9
     for i, one in enumerate(found):
-        assert (apart(np.delete(found, i, axis=0)[None], one[None]) > 1e-5).all()
+        assert (apart(np.delete(found, i, axis=0), one) > 1e-5).all()
 
 
 def test_at_the_edge_where_the_drawn_arm_does_not_reach_it_still_does(arm):

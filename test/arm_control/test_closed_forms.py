@@ -9,6 +9,7 @@ import pytest
 from arm_control.arm import SerialArm
 from arm_control.chain import Chain
 from arm_control.load import serial_arm
+from branches import apart
 from manipulator.pose import Pose
 
 SENSES = [(a, b, c) for a, b, c in product([1.0, -1.0], repeat=3) if (a, b, c) != (1, 1, 1)]
@@ -23,10 +24,6 @@ def with_turned_axes(arm, senses):
     return SerialArm(chain, limits, arm.characteristic_length, arm.rest * signs), signs
 
 
-def apart(a, b):
-    return np.abs(np.remainder(a - b + np.pi, 2 * np.pi) - np.pi).max(axis=-1)
-
-
 @pytest.mark.parametrize('senses', SENSES)
 def test_axes_of_opposite_senses_make_the_same_arm_with_angles_of_opposite_signs(arm, senses):
     turned, signs = with_turned_axes(arm, senses)
@@ -34,7 +31,7 @@ def test_axes_of_opposite_senses_make_the_same_arm_with_angles_of_opposite_signs
     joints = np.random.default_rng(12).uniform(arm.limits.low, arm.limits.high, (30, 6))
     poses = arm.chain.forward(joints)
     branches = turned.inverse_all(poses)
-    assert np.nanmin(apart(branches, (signs * joints)[:, None]), axis=-1).max() < 1e-6
+    assert apart(branches, (signs * joints)[:, None]).min(axis=-1).max() < 1e-6
     closes = ~np.isnan(branches).any(axis=-1)
     reached = turned.chain.forward(np.nan_to_num(branches))
     targets = Pose(poses.position[:, None], poses.rotation[:, None])
@@ -52,7 +49,7 @@ def test_an_arm_whose_shoulder_is_ahead_of_joint_1_is_inverted_too(arm):
     assert type(shifted.method) is type(arm.method)
     joints = np.random.default_rng(13).uniform(arm.limits.low, arm.limits.high, (30, 6))
     branches = shifted.inverse_all(shifted.chain.forward(joints))
-    assert np.nanmin(apart(branches, joints[:, None]), axis=-1).max() < 1e-6
+    assert apart(branches, joints[:, None]).min(axis=-1).max() < 1e-6
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from arm_control.arm import SerialArm
 from arm_control.chain import Chain
 from arm_control.load import serial_arm
 from arm_control.numerical import NO_LOOP, Numerical
+from branches import apart
 from sampling import enough
 
 OFFSETS = {
@@ -35,12 +36,6 @@ def arm(request, machine_file):
     return SerialArm(chain, puma.limits, puma.characteristic_length, puma.rest)
 
 
-def apart(branches, joints):
-    """How far each branch (..., k, 6) is from joints (..., 6), whole turns aside; NaN as far."""
-    gaps = np.abs(np.exp(1j * branches) - np.exp(1j * joints)[..., None, :]).max(axis=-1)
-    return np.nan_to_num(gaps, nan=9.0)
-
-
 def some_joints(count):
     return np.random.default_rng(4).uniform(-np.pi, np.pi, (count, 6))
 
@@ -50,7 +45,7 @@ def test_the_joints_that_made_a_pose_are_among_its_branches(arm):
     assert arm.method.first != NO_LOOP
     joints = some_joints(enough(500, 5000))
     branches = arm.method.branches(arm.chain.forward(joints), np.zeros(6))
-    assert (apart(branches, joints).min(axis=-1) < 1e-5).mean() > 0.99
+    assert (apart(branches, joints[:, None]).min(axis=-1) < 1e-5).mean() > 0.99
 
 
 def test_every_branch_leads_to_the_pose_and_none_stands_twice(arm):

@@ -29,10 +29,6 @@ def regular_joints(jog, count, seed):
     return joints[jog.arm.sigma_min(jog.arm.home, joints) > 2 * jog.onset][:count]
 
 
-def tool_twist(jog, state):
-    return jog.arm.chain.jacobian(state.joints) @ state.rates
-
-
 def test_a_slow_twist_is_driven_exactly_where_the_arm_is_regular(jog):
     rng = np.random.default_rng(1)
     for joints in regular_joints(jog, 20, 1):

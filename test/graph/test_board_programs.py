@@ -36,9 +36,6 @@ class Rig(PatientUser):
         self._tables.publish(table)
         self.wait(words, lambda: any(words in text for text in self.said))
 
-    def wait_for_state(self, word):
-        self.wait(word, lambda: self.machine_state.message == word)
-
 
 def swing(rows=20, step_ms=100):
     points = []

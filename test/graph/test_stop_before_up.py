@@ -14,10 +14,6 @@ pytestmark = pytest.mark.graph
 SPACE = 'stop_before_up'
 
 
-def wait_for_state(user, word):
-    user.wait(word, lambda: user.machine_state.message == word)
-
-
 def stop_by_a_bridge_that_ends(port):
     """The board obeys a STOP of a bridge that is no more when this returns."""
     parameters = {'machine': 'robocake', 'port': str(port)}
@@ -25,9 +21,9 @@ def stop_by_a_bridge_that_ends(port):
     with Graph([bridge], 'before'), PatientUser('before') as user:
         stops = user.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         user.wait('the bridge', lambda: stops.get_subscription_count() == 1)
-        wait_for_state(user, 'disarmed')
+        user.wait_for_state('disarmed')
         stops.publish(Bool(data=True))
-        wait_for_state(user, 'stopped')
+        user.wait_for_state('stopped')
 
 
 def test_up_waits_until_a_stop_from_before_is_cleared(hexarm, tmp_path):

@@ -47,7 +47,7 @@ class User(PatientUser):
         self.node.create_subscription(String, 'program_status', self._hear, LATCHED)
         self.plays = self.node.create_client(SetBool, 'serial_bridge/play_cycle')
         self.wait('the bridge', self._is_heard)
-        self.wait('the board', lambda: self.machine_state.message == 'disarmed')
+        self.wait_for_state('disarmed')
 
     def _is_heard(self):
         publishers = (self.stops, self.tables)
@@ -59,9 +59,6 @@ class User(PatientUser):
 
     def play_cycle(self):
         return self.plays.call_async(SetBool.Request(data=True))
-
-    def wait_for_state(self, word):
-        self.wait(word, lambda: self.machine_state.message == word)
 
 
 @pytest.fixture(scope='module')

@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 
 from hexapod_control.assembly_modes import _null_space, assembly_modes
-from hexapod_control.forward import ForwardByLengths
 from hexapod_control.geometry import HexagonConfig
 from hexapod_control.linear_geometry import joint_circle
 from manipulator import rotation as so3
 from manipulator.errors import InvalidInput, NoSolution
 from manipulator.pose import Pose
+from newton import Newton, lengths_at
 from sampling import enough
 
 # P. Dietmaier, The Stewart-Gough platform of general geometry can have 40 real postures, 1998.
@@ -30,10 +30,6 @@ DIETMAIER_PLATFORM = [
 DIETMAIER_LENGTHS = [1, 0.645275, 1.086284, 1.503439, 1.281933, 0.771071]
 
 ROBOCAKE = HexagonConfig(71.492, 25.0, 5.79, 17.5, 58.0, 1.5, 30.0, 41.19).geometry()
-
-
-def lengths_at(base, platform, pose):
-    return np.linalg.norm(pose.transform(platform) - base, axis=1)
 
 
 def circle(radius, degrees):
@@ -133,7 +129,7 @@ def test_newton_from_anywhere_finds_no_mode_that_is_not_listed(kind):
         base, platform = kind(random)
         wanted = lengths_at(base, platform, random_pose(random, 1.0, 1.0))
         modes = assembly_modes(base, platform, wanted)
-        solver = ForwardByLengths(platform, 1.0)
+        solver = Newton(platform, 1.0)
         for _ in range(60):
             start = Pose(random.normal(size=3), so3.exp(random.uniform(-2, 2, 3)))
             try:

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from hexapod_control.forward import ForwardByLengths
 from hexapod_control.leg_jacobian import leg_jacobian, smallest_singular_value
-from manipulator.errors import InvalidInput, NoSolution
+from manipulator.errors import NoSolution
 from manipulator.pose import Pose
+from newton import Newton, lengths_at
 
 HEIGHT = 0.15
 
@@ -29,11 +29,7 @@ def platform():
 
 @pytest.fixture
 def solver(platform):
-    return ForwardByLengths(platform, 0.05)
-
-
-def lengths_at(base, platform, pose):
-    return np.linalg.norm(pose.transform(platform) - base, axis=1)
+    return Newton(platform, 0.05)
 
 
 def home():
@@ -95,7 +91,7 @@ def test_lengths_that_are_not_finite_end_at_the_first_step(base, solver, length)
 
 
 def test_a_singular_architecture_is_refused(platform):
-    solver = ForwardByLengths(platform, 0.05)
+    solver = Newton(platform, 0.05)
     similar = platform * [2.0, 2.0, 1.0]
     pose = home().moved([0.005, 0.0, 0.0, 0.0, 0.0, 0.05])
     assert smallest_singular_value(leg_jacobian(similar, platform, pose), 0.05) < 1e-12
@@ -133,11 +129,6 @@ def test_a_pose_below_the_margin_is_refused(base, platform, solver):
     margin = solver.solve(base, lengths, home()).sigma_min
     with pytest.raises(NoSolution, match='margin'):
         solver.solve(base, lengths, home(), margin=1.01 * margin)
-
-
-def test_platform_points_must_be_six(platform):
-    with pytest.raises(InvalidInput):
-        ForwardByLengths(platform[:5], 0.05)
 
 
 def test_the_result_cannot_be_written(base, platform, solver):

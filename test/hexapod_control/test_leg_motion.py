@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from hexapod_control.forward import ForwardByLengths
 from hexapod_control.leg_motion import LegMotion, from_zxz, leg_motion, level_pose, paper_motion
 from hexapod_control.linear_geometry import LinearGeometry, PlatesConfig
 from hexarm.papers.plane_method import PlaneMethod
@@ -9,6 +8,7 @@ from manipulator import rotation as so3
 from manipulator.arrays import frozen
 from manipulator.errors import ConfigError, InvalidInput, Unreachable
 from manipulator.pose import Pose
+from newton import Newton
 
 
 def plates(base_degrees, platform_degrees):
@@ -73,7 +73,7 @@ def test_the_papers_singular_choice_is_refused_and_explained():
 
 def test_newton_gives_the_same_motion():
     geometry = plates(50, 10).geometry()
-    newton = ForwardByLengths(geometry.platform_points, 0.05)
+    newton = Newton(geometry.platform_points, 0.05)
 
     def solve(lengths, near):
         return newton.solve(geometry.base_points, lengths, near).pose

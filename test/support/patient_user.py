@@ -23,6 +23,9 @@ class PatientUser(Client):
     def wait(self, what, is_so, seconds=PATIENCE, progress=lambda: None):
         super().wait(what, is_so, max(seconds, self.patience), progress)
 
+    def wait_for_state(self, word):
+        self.wait(word, lambda: self.machine_state.message == word)
+
     def answer_of(self, client, request, what):
         """Asked again every few seconds: a question may be lost just after discovery."""
         for _ in range(TRIES):

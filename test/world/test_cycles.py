@@ -1,7 +1,5 @@
 """Cycles, pauses, the speed override and another pivot: nothing changes suddenly."""
 
-import itertools
-
 import numpy as np
 import pytest
 
@@ -15,19 +13,9 @@ CIRCLE = [0.005, 0.005, 0.0, 0.0, 0.0, 0.0]
 QUARTER = [0.0, np.pi / 2, 0.0, 0.0, 0.0, 0.0]
 
 
-def steps(world, since):
-    """The largest change of a count from each frame to the next."""
-    return [np.abs(b - a).max() for a, b in itertools.pairwise(world.setpoints(since))]
-
-
 def changes(world, since):
     """The largest change of such a step to the next one."""
     return np.abs(np.diff(world.setpoints(since), 2, axis=0)).max(axis=1)
-
-
-def moved(world, since):
-    pulses = world.pulses(since)
-    return np.nanmax(np.abs(pulses - pulses[0]))
 
 
 @pytest.fixture
@@ -54,18 +42,18 @@ def test_a_cycle_swings_until_it_is_stopped(make_world, name):
     ask.stop()
     world.wait('rest', lambda: world.status.result == 'stopped')
     world.run(0.3)
-    assert moved(world, world.now - 0.1) <= QUIET
+    assert world.moved(world.now - 0.1) <= QUIET
 
 
 def test_pause_and_speed_override_change_nothing_suddenly(circling, ask):
-    usual, since = max(steps(circling, circling.now - 1.0)), circling.now
+    usual, since = max(circling.steps(circling.now - 1.0)), circling.now
     for rate in (0.0, 1.0, 0.2, 1.0):
         ask.override(rate)
         circling.run(0.3)
     for is_paused in (True, False):
         ask.pause(is_paused)
         circling.run(0.4)
-    assert max(steps(circling, since)) <= 1.2 * usual + QUIET
+    assert max(circling.steps(since)) <= 1.2 * usual + QUIET
     assert max(changes(circling, since)) <= 0.5 * usual + QUIET
     assert circling.status.mode == 'cycle'
 
@@ -75,10 +63,10 @@ def test_a_paused_machine_stands_and_goes_on(circling, ask):
     circling.run(0.7)
     since = circling.now
     circling.run(1.0)
-    assert moved(circling, since) <= QUIET
+    assert circling.moved(since) <= QUIET
     ask.pause(False)
     circling.run(1.0)
-    assert moved(circling, since) > 20.0
+    assert circling.moved(since) > 20.0
 
 
 @pytest.mark.parametrize('depth', [0.05, -0.03])
@@ -90,7 +78,7 @@ def test_another_pivot_moves_nothing(world, ask, depth):
     for z in (depth, 0.0):
         ask.pivot([0.0, 0.0, z])
         world.run(0.3)
-    assert moved(world, since) <= QUIET
+    assert world.moved(since) <= QUIET
 
 
 def test_goals_turn_about_the_pivot(world, ask):

@@ -30,11 +30,6 @@ def last_change(world, since):
     return [at for (_, old), (at, new) in pairs if new.counts != old.counts][-1]
 
 
-def moved(world, since):
-    pulses = world.pulses(since)
-    return np.nanmax(np.abs(pulses - pulses[0]))
-
-
 @pytest.fixture
 def arm(make_world):
     """On stepper drives with encoders."""
@@ -114,7 +109,7 @@ def test_a_stick_overrides_a_goal_in_motion_smoothly_and_the_goal_does_not_resum
     arm.run(1.0)
     rest = arm.now
     arm.run(1.0)
-    assert moved(arm, rest) <= QUIET
+    assert arm.moved(rest) <= QUIET
     assert arm.status.mode == 'hold'
     assert arm.pose.position[2] > home.position[2] + 0.03
     assert arm.pose.position[0] < home.position[0] + 0.2
@@ -148,7 +143,7 @@ def test_twists_for_a_machine_that_is_lost_do_not_count_when_it_is_back(world):
     world.wait('hold', lambda: world.status.mode == 'hold')
     since = world.now
     hold(world, FORWARD, 1.0)
-    assert moved(world, since) <= QUIET
+    assert world.moved(since) <= QUIET
     world.run(0.5)
     hold(world, FORWARD, 0.3)
     assert world.status.mode == 'jog'

@@ -184,7 +184,7 @@ def test_emergency_stop_ends_a_motion_and_nothing_resumes_after_the_clear(arm, l
 
     arm.wait_driven('moving', is_moving)
     stops.publish(Bool(data=True))
-    arm.wait('the stop', lambda: arm.machine_state.message == 'stopped')
+    arm.wait_for_state('stopped')
     arm.trigger('serial_bridge/clear_fault')
     arm.wait('goals', lambda: arm.motion('mode') == 'hold')
     received = listen('joint_command')

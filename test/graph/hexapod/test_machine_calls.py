@@ -18,13 +18,13 @@ def says(hexarm, user):
 def test_a_machine_is_enabled_stopped_cleared_and_disabled_without_ros2(user, says):
     user.make_ready()
     user.disable()
-    user.wait('the end', lambda: user.machine_state.message == 'disarmed')
+    user.wait_for_state('disarmed')
     assert says('enable') == (0, '/hexapod: machine enabled, motion idle\n')
     status, text = says('stop', 'hexapod')
     assert status == 0
     assert text.startswith('/hexapod: machine stopped')
     assert text.endswith('hexarm clear hexapod\n')
-    user.wait('the stop', lambda: user.machine_state.message == 'stopped')
+    user.wait_for_state('stopped')
     status, text = says('enable', '/hexapod')
     assert (status, text.count('\n')) == (2, 1)
     assert 'the board is stopped: clear the stop first' in text
@@ -36,7 +36,7 @@ def test_a_machine_is_enabled_stopped_cleared_and_disabled_without_ros2(user, sa
     assert text.endswith(' (nothing to clear: the machine is enabled)\n')
     status, text = says('disable')
     assert (status, text[:26]) == (0, '/hexapod: machine disarmed')
-    user.wait('the end', lambda: user.machine_state.message == 'disarmed')
+    user.wait_for_state('disarmed')
 
 
 def test_where_nobody_answers_namespace_and_domain_are_named_and_where_somebody_is(user, says):
@@ -48,7 +48,7 @@ def test_where_nobody_answers_namespace_and_domain_are_named_and_where_somebody_
 
 def test_a_stop_from_the_same_computer_needs_no_ros(enabled):
     assert send_stop(stop_address('/hexapod/serial_bridge', domain_here()))
-    enabled.wait('the stop', lambda: enabled.machine_state.message == 'stopped')
+    enabled.wait_for_state('stopped')
     enabled.trigger('serial_bridge/clear_fault')
 
 

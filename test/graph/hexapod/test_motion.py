@@ -229,7 +229,7 @@ def test_plan_answers_the_path_or_nothing(enabled):
 def test_a_client_that_is_informed_that_the_machine_was_cleared_may_ask_for_motion_at_once(
     enabled,
 ):
-    """At which tick the goal comes, test/streams/test_early_goals.py tries."""
+    """At which tick the goal comes, test/world/test_commands.py tries."""
     path = Pose(np.array([p.position for p in POSES]), np.array([p.rotation for p in POSES]))
     goals = [lambda pose=pose: enabled.go_to(pose) for pose in POSES * 3]
 

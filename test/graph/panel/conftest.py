@@ -194,7 +194,7 @@ class Seen:
         """From a press on STOP of the page until a machine on its cycle stands still."""
         self.client.persist(self._cycle)
         taken = self.seconds_to_rest(page.press_stop())
-        self.client.wait('the stop', lambda: self.client.machine_state.message == 'stopped')
+        self.client.wait_for_state('stopped')
         page.let_go()
         self.client.spin(0.3)  # the release says STOP once more
         return taken

@@ -1,6 +1,6 @@
 """The hexapod's page: what it shows, what sliders, joystick and STOP do, and who may open it.
 
-What counts as a hand that is gone, test/panel/test_joystick_page.py tries.
+What counts as a hand that is gone, test/hexarm/panel/test_joystick_page.py tries.
 """
 
 import os

@@ -41,9 +41,6 @@ class Rig(PatientUser):
     def switch(self, service, is_true=True):
         return self._call(SetBool, service, SetBool.Request(data=is_true))
 
-    def wait_for_state(self, word):
-        self.wait(word, lambda: self.machine_state.message == word)
-
     def enable(self):
         self.switch('serial_bridge/enable')
         self.wait_for_state('enabled')

@@ -59,13 +59,21 @@ def test_without_legs_the_motion_starts_at_home(capsys):
         (['stewart_6_6', '--to', '0', '0', '0.19', '--steps', '0'], '0 steps'),
         (['stewart_6_6', '--to', '0', '0', '0.19', '--steps', '1000000000'], 'at most'),
         (['stewart_6_6', '--to', 'nan', '0', '0.19'], 'not finite'),
-        (['stewart_6_6', *PAPER, '--picture', '/does/not/exist.png'], 'cannot save'),
-        (['stewart_6_6', *PAPER, '--picture', 'motion.nonsense'], 'cannot save'),
+        (
+            ['stewart_6_6', *PAPER, '--picture', '/does/not/exist.png'],
+            '/does/not/exist.png: No such',
+        ),
     ],
 )
 def test_what_cannot_be_simulated_is_refused_with_a_reason(capsys, words, reason):
     assert main(['leg-motion', *words]) == (OUT_OF_REACH if reason.startswith('leg 1') else 2)
     assert reason in capsys.readouterr().err
+
+
+def test_a_picture_of_an_unknown_ending_is_refused_before_anything_is_computed(capsys):
+    with pytest.raises(SystemExit, match='2'):
+        main(['leg-motion', 'stewart_6_6', *PAPER, '--picture', 'motion.nonsense'])
+    assert 'motion.nonsense: a picture ends in one of' in capsys.readouterr().err
 
 
 def test_picture_is_saved(tmp_path, capsys):

@@ -58,7 +58,7 @@ def test_pictures_are_saved(tmp_path, capsys):
         (['--periods', '1e9'], 'not within'),
         (['--amplitude', '0', '0', '0', '0', '0', '0'], 'periods of 0 s'),
         (['--amplitude', 'nan', '0', '0', '0', '0', '0'], 'finite'),
-        ([*QUICK, '--frequency', '3', '--picture', '/does/not/exist.png'], 'cannot save'),
+        ([*QUICK, '--frequency', '3', '--picture', '/does/not/exist.png'], 'No such file'),
         ([*QUICK, '--frequency', '3', '--animation', 'a.txt'], 'must end in .gif'),
     ],
 )

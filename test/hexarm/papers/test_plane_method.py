@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 
 from hexapod_control.assembly_modes import assembly_modes
-from hexapod_control.forward import ForwardByLengths
 from hexapod_control.linear_geometry import PlatesConfig
 from hexarm.papers.plane_method import PlaneMethod
 from manipulator import rotation as so3
 from manipulator.errors import NoSolution
 from manipulator.pose import Pose
+from newton import Newton
 
 START = Pose(np.array([0, 0, 0.17]), np.eye(3))
 PLATES = {
@@ -46,7 +46,7 @@ def test_the_pose_that_made_the_lengths_is_found(name):
 def test_three_forward_methods_agree(name):
     random, plates = np.random.default_rng(3), PLATES[name]
     geometry = plates.geometry()
-    newton = ForwardByLengths(geometry.platform_points, 0.05)
+    newton = Newton(geometry.platform_points, 0.05)
     for _ in range(10):
         lengths = lengths_at(plates, random_pose(random))
         plane = PlaneMethod.of(plates).solve(lengths, START).pose

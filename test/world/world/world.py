@@ -144,6 +144,15 @@ class World:
         """Counts (n, channels) that the board put out, 100 times a second."""
         return np.array([counts for t, counts in self.board.pulses if t >= since])
 
+    def moved(self, since):
+        """The largest difference, in counts, of a pulse from the first since then."""
+        pulses = self.pulses(since)
+        return np.nanmax(np.abs(pulses - pulses[0]))
+
+    def steps(self, since):
+        """The largest change of a count from each setpoint frame to the next."""
+        return np.abs(np.diff(self.setpoints(since), axis=0)).max(axis=1)
+
     # The user
 
     def ask(self, question):
