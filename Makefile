@@ -19,7 +19,7 @@ check: lint   # all that starts no other program
 	@$(PYTEST) -n auto --dist loadfile -m 'not processes'
 
 test: check
-	@echo 'Tests that start graphs, a browser, installations: 3.5 minutes on two quiet cores.'
+	@echo 'Tests that start graphs, a browser, installations: 5 minutes on two quiet cores.'
 	@$(PYTEST) -n auto --dist loadfile -m processes
 
 lint: $(ENV)/ready $(LIBRARIES)
