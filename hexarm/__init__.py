@@ -43,6 +43,7 @@ def __getattr__(name: str) -> Any:
 
 
 _PROFILES = 'FASTRTPS_DEFAULT_PROFILES_FILE'
+_FOUND_HERE, _SKIP = 'DEFAULT_FASTRTPS_PROFILES.xml', 'SKIP_DEFAULT_XML_FILE'
 _RANGE = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
 _DOMAINS = 100
 _FAST_DDS = ('', 'rmw_fastrtps_cpp', 'rmw_fastrtps_dynamic_cpp')
@@ -64,8 +65,10 @@ def use_sockets() -> None:
     is_local = os.environ.get(_RANGE) == 'LOCALHOST' and not os.environ.get('ROS_STATIC_PEERS')
     is_fast_dds = os.environ.get('RMW_IMPLEMENTATION', '') in _FAST_DDS
     own = os.environ.get(_PROFILES) not in (None, _profile('fastdds.xml'))
+    own = own or Path(_FOUND_HERE).exists()  # Fast DDS reads it after the other one
     if is_local and is_fast_dds and not own:
         os.environ[_PROFILES] = _profile('fastdds_loopback.xml')
+        os.environ[_SKIP] = '1'  # nor may a process that is started elsewhere find one
         os.environ[_RANGE] = 'SUBNET'
     os.environ.setdefault(_PROFILES, _profile('fastdds.xml'))
 

@@ -12,7 +12,7 @@ import hexarm
 
 JOIN = 'import rclpy; rclpy.init(); rclpy.create_node("x").destroy_node(); rclpy.shutdown()'
 PROFILE, RANGE = 'FASTRTPS_DEFAULT_PROFILES_FILE', 'ROS_AUTOMATIC_DISCOVERY_RANGE'
-OTHERS = ('RMW_IMPLEMENTATION', 'ROS_STATIC_PEERS')
+OTHERS = ('RMW_IMPLEMENTATION', 'ROS_STATIC_PEERS', 'SKIP_DEFAULT_XML_FILE')
 FOLDER = Path(hexarm.__file__).parent
 EVERYWHERE, LOOPBACK = (str(FOLDER / f'{name}.xml') for name in ('fastdds', 'fastdds_loopback'))
 
@@ -65,6 +65,22 @@ def test_the_range_localhost_becomes_the_loopback_profile_unless_the_user_has_an
     variables, expected
 ):
     assert chosen(**variables) == expected
+
+
+def test_a_profile_in_the_working_directory_is_the_users_own(tmp_path, monkeypatch):
+    monkeypatch.setenv('PYTHONPATH', str(FOLDER.parent))
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'DEFAULT_FASTRTPS_PROFILES.xml').write_text(Path(EVERYWHERE).read_text())
+    assert chosen(**{RANGE: 'LOCALHOST'}) == (EVERYWHERE, 'LOCALHOST')
+
+
+def test_no_profile_that_a_child_finds_where_it_starts_takes_the_place_of_the_loopbacks(tmp_path):
+    """It would let messages out; of a file that is skipped not even an error is said."""
+    wrong = Path(EVERYWHERE).read_text().replace('leaseAnnouncement', 'leaseAnouncement')
+    (tmp_path / 'DEFAULT_FASTRTPS_PROFILES.xml').write_text(wrong)
+    code = f'import hexarm, os; os.chdir({str(tmp_path)!r}); {JOIN}'
+    assert run(code, **{RANGE: 'LOCALHOST'}) == ''
+    assert 'leaseAnouncement' in run(code, **{RANGE: 'SUBNET'})
 
 
 @pytest.mark.parametrize('reach', ['LOCALHOST', 'SUBNET'])
