@@ -60,6 +60,7 @@ setup(
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.5', 'matplotlib>=3.8'],
         'panel': ['viser>=1.1,<1.2'],  # panel/nodes/web_server.py reaches into it
         'terminal': ['rich>=13', 'argcomplete>=3'],
+        'docs': ['mkdocs-material>=9.5', 'mkdocstrings-python>=1.10'],  # make docs
         # Libraries that `make bench` compares with: docs/performance.md.
         'bench': [
             'reachy-mini-rust-kinematics>=1.0',
