@@ -36,7 +36,7 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
-        (f'share/{NAME}/config', sorted(str(f) for f in Path('config').glob('*.yaml'))),
+        (f'share/{NAME}/config', sorted(str(f) for f in Path('config').iterdir())),
         (f'share/{NAME}/launch', sorted(str(f) for f in Path('launch').glob('*.launch.py'))),
         (f'share/{NAME}/viewers', sorted(str(f) for f in Path('viewers').iterdir())),
     ],
@@ -78,6 +78,7 @@ setup(
             'coverage>=7.4',  # which tests run which line: bench/mutants.py
             'pytest-cov>=5',
             'hypothesis>=6.100',
+            'jsonschema>=4',
             'mypy>=1.11',
             'playwright>=1.45',  # drives the system's Chromium, for the panel's page
             'ruff>=0.6',
