@@ -14,13 +14,13 @@ demo: $(ENV)/demo $(LIBRARIES)
 	@echo 'Both machines on fake boards: about a minute.'
 	@$(BIN)/hexarm demo
 
-check: lint   # all that starts no other program
+check: lint   # all that starts no other program and is quick
 	@echo 'Tests that start no other program: a minute and a half on two quiet cores.'
-	@$(PYTEST) -n auto --dist loadfile -m 'not processes'
+	@$(PYTEST) -n auto --dist loadfile -m 'not processes and not long'
 
 test: check
 	@echo 'Tests that start graphs, a browser, installations: 5 minutes on two quiet cores.'
-	@$(PYTEST) -n auto --dist loadfile -m processes
+	@$(PYTEST) -n auto --dist loadfile -m 'processes or long'
 
 lint: $(ENV)/ready $(LIBRARIES)
 	@echo 'Lint and types: half a minute.'

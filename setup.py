@@ -75,7 +75,7 @@ setup(
         'test': [
             'pytest>=8.2',
             'pytest-xdist>=3.6',
-            'coverage>=7.4',  # which tests run which line: bench/mutants.py
+            'coverage>=7.4',  # which tests run which line: bench/mutants/tests.py
             'pytest-cov>=5',
             'hypothesis>=6.100',
             'jsonschema>=4',
