@@ -32,6 +32,11 @@ def on_files(files: Files, config: Any) -> Files:
     return files
 
 
+def on_page_markdown(markdown: str, **_: Any) -> str:
+    """Links to files that are no pages, as in ../config, become plain words."""
+    return re.sub(r'\[([^\]]*)\]\(\.\./[^)]*\)', r'\1', markdown)
+
+
 def page_text(text: str) -> str:
     """The text of a file above docs/ as a page: its links lead to pages, or are plain words."""
     for name, page in PAGES.items():
