@@ -228,6 +228,15 @@ def test_servos_that_are_too_narrow_alike_are_one_line():
     assert found.endswith('reach [43.81, 196.2] deg, their range in limits is [30, 210] deg')
 
 
+def test_ranges_that_differ_are_not_written_alike_and_less_than_a_count_is_no_difference():
+    lowest = ('centre_us: 1500.0', 'centre_us: 15000.0'), ('us_per_mm: 10.0', 'us_per_mm: 100.0')
+    narrow = changed(STEWART, *lowest, ('[1000.0, 2000.0]', '[10201.0, 19800.0]'))
+    (found,) = [p for p in problems_of(narrow) if ' reach ' in p]
+    assert found.endswith('reach [142.01, 238] mm, their range in limits is [142, 238] mm')
+    narrow = changed(STEWART, *lowest, ('[1000.0, 2000.0]', '[10200.4, 19800.0]'))
+    assert problems_of(narrow) == []
+
+
 def test_park_beyond_a_limit_or_a_pulse_range_is_named():
     park = 'park_deg: [120.0, 120.0, 120.0, 120.0, 120.0, 120.0]'
     low = problems_of(changed(ROBOCAKE, (park, f'park_deg: [{", ".join(["40.0"] * 6)}]')))
