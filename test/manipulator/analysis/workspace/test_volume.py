@@ -1,10 +1,9 @@
-from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from hexapod_control.load import hexapod
-from hexarm.machines import read
+from hexarm.machines import load
 from manipulator.analysis.inside import ranges
 from manipulator.analysis.survey import SomeOrientation, survey
 from manipulator.analysis.volume import Box, bounding_box, volume, with_orientation
@@ -85,9 +84,8 @@ def test_some_orientation_finds_what_home_orientation_reaches_and_admits_what_it
 
 @pytest.fixture(scope='module')
 def precise():
-    """A platform whose legs travel 2 mm each way: it turns by about a degree."""
-    file = read('stewart_6_3')
-    return hexapod(replace(file, limits={**file.limits, 'stroke_range_mm': [188.0, 192.0]}))
+    """A telescope's mirror: it turns by half a degree."""
+    return load(str(Path(__file__).parents[3] / 'hexarm' / 'machines' / 'lsst_m2.yaml'))
 
 
 @pytest.mark.parametrize('name', ['precise', 'robocake'])
