@@ -48,12 +48,8 @@ GENERATED = '<!-- From here on generated: python -m hexarm.machine_keys -->\n'
 def sections_of(kind: str) -> dict[str, Any]:
     """The schema of each section that depends on the kind, and of the bridge's."""
     room = KINDS[kind]
-    return {
-        'geometry': room.geometry,
-        'limits': room.limits,
-        'dynamics': SCHEMAS[kind],
-        **BRIDGE,
-    }
+    own = {'geometry': room.geometry, 'limits': room.limits, 'dynamics': SCHEMAS.get(kind)}
+    return {name: schema for name, schema in own.items() if schema is not None} | BRIDGE
 
 
 @dataclasses.dataclass(frozen=True)
@@ -110,9 +106,8 @@ def tables() -> str:
     """The generated part of docs/machine-files.md."""
     lines = ['## The file', '', *_table(MachineFile, is_flat=True)]
     for kind in KINDS:
-        for name in OF_KINDS:
-            schema = sections_of(kind)[name]
-            for form in forms_of(schema):
+        for name, schema in sections_of(kind).items():
+            for form in forms_of(schema) if name in OF_KINDS else ():
                 lines += [f'### `{name}` of a `{kind}`{_form(form, schema)}', '', *_table(form)]
     for name, schema in {'motion': MotionConfig, **BRIDGE, 'frames': FramesConfig}.items():
         lines += [f'### `{name}`', '', *_table(schema)]
@@ -127,7 +122,7 @@ def json_schema() -> dict[str, Any]:
         top['properties'][name] |= _schema(schema)
     kinds = []
     for kind in KINDS:
-        own = {name: _schema(sections_of(kind)[name]) for name in OF_KINDS}
+        own = {n: _schema(s) for n, s in sections_of(kind).items() if n in OF_KINDS}
         kinds.append(
             {
                 'if': {'properties': {'kind': {'const': kind}}, 'required': ['kind']},

@@ -19,7 +19,7 @@ import yaml
 from yaml.composer import Composer
 
 from manipulator.errors import ConfigError
-from manipulator.formatting import shortened, shown
+from manipulator.formatting import shortened, shown, told_apart
 
 T = TypeVar('T')
 U = TypeVar('U')
@@ -263,8 +263,8 @@ def _check_range(field: Any, value: object, where: str, problems: list[str]) -> 
         for i, entry in enumerate(value):
             _check_range(field, entry, f'{where}[{i}]', problems)
     elif isinstance(value, int | float) and not bounds[0] <= value <= bounds[1]:
-        number = _as_float(value)
-        problems.append(f'{where}: {number:g} outside [{bounds[0]:g}, {bounds[1]:g}]')
+        number, low, high = told_apart([_as_float(value), *bounds])
+        problems.append(f'{where}: {number} outside [{low}, {high}]')
 
 
 def _as_float(value: float) -> float:

@@ -282,6 +282,47 @@ def test_file_that_is_no_machine_file_is_one_line_with_its_name(tmp_path, capsys
             assert len(said) - len(str(path)) < 300, said
 
 
+def hobby_platform(is_hanging):
+    """By docs/machine-files.md: horns that point along a hexagon's sides, level at home."""
+    content = parse_yaml(BY_COORDINATES)
+    at, joint = (np.radians(a) for a in ([40.0, 80.0, 160.0, 200.0, 280.0, 320.0],
+                                         [10.0, 110.0, 130.0, 230.0, 250.0, 350.0]))  # fmt: skip
+    along = at + np.radians([90.0, -90.0] * 3)  # β, where each leg's horn points
+    axes, ends = (radius * np.stack([np.cos(a), np.sin(a), 0 * a], 1)
+                  for radius, a in ((80.0, at), (50.0, joint)))  # fmt: skip
+    horns = np.stack([np.cos(along), np.sin(along), 0 * along], 1)
+    across = np.linalg.norm(axes + 20.0 * horns - ends, axis=1)
+    height = float(np.sqrt(140.0**2 - across[0] ** 2))
+    content['geometry'] = {
+        'crank_centres_mm': axes.tolist(),
+        'crank_tangents': (horns if is_hanging else -horns).tolist(),
+        'platform_joints_mm': ends.tolist(),
+        'crank_length_mm': 20.0,
+        'rod_length_mm': 140.0,
+        'home_height_mm': -height if is_hanging else height,
+    }
+    level = 0.0 if is_hanging else 180.0
+    content['limits'] |= {
+        'crank_range_deg': [level - 80.0, level + 80.0],
+        'minimum_height_mm': -1000.0,
+        'characteristic_length_mm': 50.0,
+    }
+    content['servos']['park_deg'] = [level] * 6
+    for servo in content['servos']['joints']:
+        servo['centre_deg'] = level
+    return content, axes + 20.0 * horns
+
+
+@pytest.mark.parametrize('is_hanging', [False, True])
+def test_a_hobby_platform_by_the_page_has_its_horns_where_they_are(is_hanging):
+    content, tips = hobby_platform(is_hanging)
+    report = report_of(content)
+    assert (report.problems, report.warnings) == ((), ())
+    kinematics = report.machine.kinematics
+    found = kinematics.crank_tips(kinematics.inverse(kinematics.home))
+    np.testing.assert_allclose(1e3 * found, tips, atol=1e-6)
+
+
 def test_long_values_and_names_are_not_repeated_whole():
     long = 'x' * 1000
     text = changed(
@@ -431,6 +472,15 @@ def test_the_kind_of_another_machine_is_one_line():
     assert problems_of(changed(STEWART, ('kind: linear_hexapod', 'kind: serial_arm'))) == [
         "kind: 'serial_arm', but geometry has the keys of a linear_hexapod"
     ]
+
+
+@pytest.mark.parametrize('kind', ['kind: rotary_hexpod', 'kind: 7', '', 'kind: serial_arm'])
+def test_what_else_is_wrong_is_found_whatever_the_kind_says(kind):
+    found = problems_of(
+        changed(ROBOCAKE, ('kind: rotary_hexapod', kind), ('[30.0, 210.0]', '[130.0, 210.0]'))
+    )
+    assert found[0].startswith('kind: ')
+    assert found[1:] == ['limits: home has crank angle 120° on all legs, outside [130, 210]°']
 
 
 def test_faults_of_servos_and_a_home_beyond_limits_come_together():
