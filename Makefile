@@ -9,7 +9,7 @@ PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BI
 ALL_SLOW := test/graph test/install test/firmware
 LIBRARIES := manipulator/_kernel.abi3.so bridge/_board.abi3.so
 
-.PHONY: demo check quick test lint bench soak clean
+.PHONY: demo check quick test lint bench soak docs clean
 
 demo: $(ENV)/demo $(LIBRARIES)
 	@echo 'Both machines on fake boards: about a minute.'
@@ -51,6 +51,9 @@ $(ENV)/demo: setup.py pyproject.toml environment.sh
 
 $(ENV)/ready: $(ENV)/demo
 	@./environment.sh $(ENV) ready
+
+docs: $(ENV)/ready   # the documents as a web site
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build -q --strict && echo build/site/index.html
 
 clean:
 	rm -rf $(ENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
