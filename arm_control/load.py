@@ -42,14 +42,13 @@ class ArmJogger:
         """See `Jogger`; in a corner of the joint ranges the tool slides, so as to get out."""
         limits = self.jog.motion
         wanted = towards(motion.along, twist, limits, dt)
-        change, ticks = ticks_for(np.array((wanted - motion.twist, wanted)), limits, dt).tolist()
-        if change > 1.0 + LAG:
+        ticks = ticks_for(wanted, limits, dt)
+        if ticks_for(wanted - motion.twist, limits, dt) > 1.0 + LAG:
             wanted = towards(motion.twist, twist, limits, dt)
         slowing = SHARE_BEFORE_STOPS / (max(ticks, 1.0) * dt)
         after = self._stepped(motion, wanted, dt, slowing)
-        changes = np.array((after.along - motion.along, after.twist - motion.twist))
-        along, whole = ticks_for(changes, limits, dt).tolist()
-        if along > 1.0 + ROUNDING or whole > 1.0 + LAG:
+        along = ticks_for(after.along - motion.along, limits, dt)
+        if along > 1.0 + ROUNDING or ticks_for(after.twist - motion.twist, limits, dt) > 1.0 + LAG:
             # No part of what is wanted can be reached as gently as the tool asks for.
             straight = towards(motion.twist, np.zeros(6), limits, dt)
             braked = self._stepped(replace(motion, off_line=STRAIGHT), straight, dt)
