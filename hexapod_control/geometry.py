@@ -13,12 +13,14 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array, frozen
 from manipulator.config import quantity
 from manipulator.errors import ConfigError
+from manipulator.motion_limits import SixNumbers
 from manipulator.pose import Pose
 
 LEGS = 6
 Triple: TypeAlias = tuple[float, float, float]
 SixPoints: TypeAlias = tuple[Triple, Triple, Triple, Triple, Triple, Triple]
-SixNumbers: TypeAlias = tuple[float, float, float, float, float, float]
+Range: TypeAlias = tuple[float, float]
+SixRanges: TypeAlias = tuple[Range, Range, Range, Range, Range, Range]
 VERTICAL_TANGENT = 0.999
 
 

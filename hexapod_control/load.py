@@ -48,9 +48,9 @@ def rotary_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
         joints,
         checked.characteristic_length_mm * 1e-3,
         checked.singularity_margin,
-        checked.crank_centre,
+        checked.crank_middles,
     )
-    cranks = np.random.default_rng(1).uniform(*checked.crank_range, (CRANK_SETTINGS, LEGS))
+    cranks = np.random.default_rng(1).uniform(*checked.crank_ranges, (CRANK_SETTINGS, LEGS))
     check_architecture(kinematics.crank_tips(cranks), joints.platform_points)
     return kinematics, checked.constraints(kinematics)
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,9 +14,12 @@ BRAKING_SHARE = 0.3
 """The part of each acceleration limit that plans leave for braking along their path."""
 
 
+SixNumbers: TypeAlias = tuple[float, float, float, float, float, float]
+
+
 @dataclass(frozen=True)
 class MotionConfig:
-    """The `motion` section of a machine file."""
+    """The `motion` section of a machine file; a joint limit is one for all joints, or six."""
 
     linear_speed_mm_s: float = quantity(0.1, 5000)
     linear_acceleration_mm_s2: float = quantity(1, 100_000)
@@ -23,10 +27,10 @@ class MotionConfig:
     angular_speed_deg_s: float = quantity(0.1, 2000)
     angular_acceleration_deg_s2: float = quantity(1, 100_000)
     angular_jerk_deg_s3: float = quantity(10, 1e8)
-    joint_speed_deg_s: float | None = quantity(0.1, 5000, default=None)
-    joint_acceleration_deg_s2: float | None = quantity(1, 1e6, default=None)
-    joint_speed_mm_s: float | None = quantity(0.1, 5000, default=None)
-    joint_acceleration_mm_s2: float | None = quantity(1, 1e6, default=None)
+    joint_speed_deg_s: float | SixNumbers | None = quantity(0.1, 5000, default=None)
+    joint_acceleration_deg_s2: float | SixNumbers | None = quantity(1, 1e6, default=None)
+    joint_speed_mm_s: float | SixNumbers | None = quantity(0.1, 5000, default=None)
+    joint_acceleration_mm_s2: float | SixNumbers | None = quantity(1, 1e6, default=None)
 
 
 @dataclass(frozen=True)
@@ -95,13 +99,13 @@ class MotionLimits:
         degree, millimetre = math.radians(1), 1e-3
         if config.joint_speed_mm_s is not None:
             joint = JointDerivatives.of(
-                config.joint_speed_mm_s * millimetre,
-                (config.joint_acceleration_mm_s2 or math.inf) * millimetre,
+                _scaled(config.joint_speed_mm_s, millimetre),
+                _scaled(config.joint_acceleration_mm_s2, millimetre),
             )
         else:
             joint = JointDerivatives.of(
-                (config.joint_speed_deg_s or math.inf) * degree,
-                (config.joint_acceleration_deg_s2 or math.inf) * degree,
+                _scaled(config.joint_speed_deg_s, degree),
+                _scaled(config.joint_acceleration_deg_s2, degree),
             )
         return cls(
             Derivatives(
@@ -116,3 +120,9 @@ class MotionLimits:
             ),
             joint,
         )
+
+
+def _scaled(limit: float | SixNumbers | None, unit: float) -> Array:
+    """In SI units; ∞ where there is none."""
+    scaled: Array = unit * np.asarray(math.inf if limit is None else limit, dtype=np.float64)
+    return scaled

@@ -28,7 +28,7 @@ class CrankLegs(ctypes.Structure):
         ('end', Vectors),
         ('crank', ctypes.c_float * LEGS),
         ('rod', ctypes.c_float * LEGS),
-        ('middle', ctypes.c_float),
+        ('middle', ctypes.c_float * LEGS),
     )
 
 
@@ -50,8 +50,8 @@ class CrankHexapod(ctypes.Structure):
         ('is_known', ctypes.c_bool),
         ('home_height', ctypes.c_float),
         ('minimum_height', ctypes.c_float),
-        ('crank_lowest', ctypes.c_float),
-        ('crank_highest', ctypes.c_float),
+        ('crank_lowest', ctypes.c_float * LEGS),
+        ('crank_highest', ctypes.c_float * LEGS),
         ('legs', CrankLegs),
         ('servos', CrankServo * LEGS),
     )

@@ -30,7 +30,7 @@ bool kinematics_is_within_limits(const CrankHexapod *hexapod, const float positi
     if (!(position[2] >= hexapod->minimum_height))
         return false;
     for (uint8_t i = 0; i < LEGS; i++)
-        if (!(cranks[i] >= hexapod->crank_lowest && cranks[i] <= hexapod->crank_highest))
+        if (!(cranks[i] >= hexapod->crank_lowest[i] && cranks[i] <= hexapod->crank_highest[i]))
             return false;
     return true;
 }
