@@ -94,7 +94,8 @@ class ParallelPlatform(ABC):
 
     def _lay_out(self, home_rods: Array, home_gains: Array) -> None:
         legs, length = self._legs(), [self.characteristic_length]
-        parameters = frozen(np.concatenate([legs, length, home_rods.T.ravel(), home_gains]))
+        at_home = (home_rods.T.ravel(), home_gains, self.home.rotation.ravel())
+        parameters = frozen(np.concatenate([legs, length, *at_home]))
         self._put('parameters', parameters)
         self._put('legs', parameters[: len(legs)])
         self._put('limits', PlatformLimits(parameters))

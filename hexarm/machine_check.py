@@ -77,6 +77,8 @@ def report_of(content: Mapping[str, Any]) -> Report:
         found.of(partial(Frames.from_config, whole.frames))
     there = {name: part for name, part in content.items() if isinstance(part, Mapping)}
     machine = found.of(lambda: _machine(content.get('kind'), there, whole))
+    if machine is not None and whole is not None:
+        machine = found.of(partial(machine.within, whole.task_space)) or machine
     sections = {
         name: found.of(partial(build, schema, there[name], name))
         for name, schema in BRIDGE.items()

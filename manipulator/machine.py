@@ -1,18 +1,19 @@
 """A machine as the nodes use it: its kinematics, its limits, its jogger."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.errors import InvalidInput
+from manipulator.errors import ConfigError, InvalidInput
 from manipulator.frames import Frames, FramesConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import LimitOf
 from manipulator.limits.machine_limits import JointRange
+from manipulator.limits.task_space import TaskSpaceConfig
 from manipulator.motion_limits import MotionConfig, MotionLimits
 from manipulator.static_deflection import StaticDeflection
 from manipulator.teleop.jogger import Jogger
@@ -38,6 +39,7 @@ class MachineFile:
     simulation: dict[str, Any] | None = None
     dynamics: dict[str, Any] | None = None
     frames: FramesConfig = field(default_factory=FramesConfig)
+    task_space: TaskSpaceConfig = field(default_factory=TaskSpaceConfig)
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,24 @@ class Machine:
         if self.jog_singularity not in JOG_SINGULARITIES:
             known = ' or '.join(map(repr, JOG_SINGULARITIES))
             raise InvalidInput(f'jog_singularity is {self.jog_singularity!r}, needs {known}')
+
+    def within(self, task_space: TaskSpaceConfig) -> 'Machine':
+        """With limits in task space as well; ConfigError names each beyond which home is."""
+        kinematics, constraints = self.kinematics, self.constraints
+        group = constraints.checks[0][0] if constraints.is_one_group else None
+        try:
+            added = task_space.limits(kinematics.home, group)
+        except ConfigError as error:
+            raise ConfigError([f'task_space.{problem}' for problem in error.problems]) from error
+        at_home = kinematics.home, kinematics.inverse(kinematics.home)
+        beyond = Constraints(added).violations(*at_home) if added else []
+        if beyond:
+            raise ConfigError([f'task_space: home has {violation}' for violation in beyond])
+        return replace(
+            self,
+            constraints=Constraints((*constraints.limits, *added)),
+            motion=replace(self.motion, axis_speeds=task_space.speeds),
+        )
 
     @property
     def joint_ranges(self) -> tuple[Array, Array]:

@@ -1,7 +1,7 @@
 """How fast a machine may move: its platform or tool, and each of its joints."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -15,6 +15,13 @@ BRAKING_SHARE = 0.3
 
 
 SixNumbers: TypeAlias = tuple[float, float, float, float, float, float]
+
+
+SPEED_NAMES = (
+    *('platform speed', 'turning speed'),
+    *(f'{kind} {axis} speed' for kind in ('platform', 'turning') for axis in 'xyz'),
+)
+"""Of all of the platform or tool, then along and about each axis."""
 
 
 @dataclass(frozen=True)
@@ -63,11 +70,15 @@ class JointDerivatives:
 
 @dataclass(frozen=True)
 class MotionLimits:
-    """Norm of linear velocity, norm of angular velocity, and every single joint."""
+    """Norm of linear velocity, norm of angular velocity, and every single joint.
+
+    axis_speeds (6,) are along and about the axes of the frame in which poses are, m/s and rad/s.
+    """
 
     linear: Derivatives
     angular: Derivatives
     joint: JointDerivatives
+    axis_speeds: Array = field(default_factory=lambda: frozen(np.full(6, np.inf)), compare=False)
 
     @property
     def for_plans(self) -> 'MotionLimits':
@@ -79,7 +90,13 @@ class MotionLimits:
         joint = JointDerivatives.of(
             self.joint.speed, (1.0 - BRAKING_SHARE) * self.joint.acceleration
         )
-        return MotionLimits(share(self.linear), share(self.angular), joint)
+        return replace(self, linear=share(self.linear), angular=share(self.angular), joint=joint)
+
+    def speed_shares(self, twist: Array) -> Array:
+        """The part of each limit in SPEED_NAMES that twists (..., 6) use: (..., 8)."""
+        norms = np.sqrt((twist.reshape(*twist.shape[:-1], 2, 3) ** 2).sum(axis=-1))
+        limits = np.array((self.linear.speed, self.angular.speed))
+        return np.concatenate([norms / limits, np.abs(twist) / self.axis_speeds], axis=-1)
 
     @property
     def braking_rate(self) -> float:
