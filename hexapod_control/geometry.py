@@ -24,13 +24,44 @@ SixRanges: TypeAlias = tuple[Range, Range, Range, Range, Range, Range]
 VERTICAL_TANGENT = 0.999
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class AtHome:
+    """Where a platform is at home, beside its height: level above the origin, unless given.
+
+    home_xy (2,) in metres, home_rpy (3,) in radians, base frame.
+    """
+
+    home_xy: Array = field(default_factory=lambda: frozen(np.zeros(2)))
+    home_rpy: Array = field(default_factory=lambda: frozen(np.zeros(3)))
+
+    def home_at(self, height: float) -> Pose:
+        """Home, for the platform's height there."""
+        return Pose.from_xyz_rpy([*self.home_xy, height], self.home_rpy)
+
+
+@dataclass(frozen=True, kw_only=True)
+class HomeConfig:
+    """The keys of a `geometry` section by which home is elsewhere than level above the origin."""
+
+    home_xy_mm: tuple[float, float] = quantity(-3000, 3000, default=(0.0, 0.0))
+    home_rpy_deg: Triple = quantity(-360, 360, default=(0.0, 0.0, 0.0))
+
+    @property
+    def at_home(self) -> dict[str, Array]:
+        """The fields of `AtHome`."""
+        return {
+            'home_xy': frozen(1e-3 * np.array(self.home_xy_mm)),
+            'home_rpy': frozen(np.radians(self.home_rpy_deg)),
+        }
+
+
 @dataclass(frozen=True, eq=False)
-class RotaryGeometry:
+class RotaryGeometry(AtHome):
     """Six cranks and rods in metres; see docs/kinematics.md, section 1.
 
     Crank i turns about crank_centres[i] (base frame) in the plane of tangents[i] and ups[i]; its
     angle counts from the tangent towards up. Its rod ends at platform_points[i] (platform frame).
-    normals = tangents × ups. home_height is the platform's height at home, where it is level.
+    normals = tangents × ups. home_height is the platform's height at home, see `AtHome`.
     """
 
     crank_centres: Array
@@ -41,6 +72,11 @@ class RotaryGeometry:
     home_height: float
     ups: Array = field(init=False)
     normals: Array = field(init=False)
+
+    @property
+    def home(self) -> Pose:
+        """T_base_platform at home."""
+        return self.home_at(self.home_height)
 
     def __post_init__(self) -> None:
         """Makes the tangents unit vectors and up what of z is square to them."""
@@ -62,7 +98,7 @@ class RotaryGeometry:
 
 
 @dataclass(frozen=True)
-class HexagonConfig:
+class HexagonConfig(HomeConfig):
     """The `geometry` section by the parameters of Prokopovich 2019, fig. 4, in millimetres."""
 
     body_radius_mm: float = quantity(5, 2000)
@@ -90,11 +126,12 @@ class HexagonConfig:
             crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
             home_height=self.home_height_mm * 1e-3,
+            **self.at_home,
         )
 
 
 @dataclass(frozen=True)
-class JointsConfig:
+class JointsConfig(HomeConfig):
     """The `geometry` section by coordinates, in millimetres: a machine as it was measured.
 
     crank_tangents (no unit, any length) point to where the crank angle is 0.
@@ -116,6 +153,7 @@ class JointsConfig:
             crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
             home_height=self.home_height_mm * 1e-3,
+            **self.at_home,
         )
 
 

@@ -4,22 +4,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hexapod_control.geometry import LEGS, SixPoints, check_architecture
+from hexapod_control.geometry import LEGS, AtHome, HomeConfig, SixPoints, check_architecture
 from manipulator.arrays import Array, frozen
 from manipulator.config import quantity
 from manipulator.errors import InvalidInput
+from manipulator.pose import Pose
 
 
 @dataclass(frozen=True, eq=False)
-class LinearGeometry:
+class LinearGeometry(AtHome):
     """Joint centres (6, 3) in metres: base_points in the base frame, platform_points in its own.
 
-    home_height is the platform's height at home, where it is level.
+    home_height is the platform's height at home, see `AtHome`.
     """
 
     base_points: Array
     platform_points: Array
     home_height: float
+
+    @property
+    def home(self) -> Pose:
+        """T_base_platform at home."""
+        return self.home_at(self.home_height)
 
     def __post_init__(self) -> None:
         """Freezes the points; raises InvalidInput on any other shape."""
@@ -31,7 +37,7 @@ class LinearGeometry:
 
 
 @dataclass(frozen=True)
-class PlatesConfig:
+class PlatesConfig(HomeConfig):
     """The `geometry` section by the parameters of Lapikov et al. 2014, section 3.
 
     Six joints on a circle of each plate, at the angles φ, 2π/3 − φ, 2π/3 + φ, 4π/3 − φ, 4π/3 + φ,
@@ -53,11 +59,11 @@ class PlatesConfig:
         platform = joint_circle(self.platform_radius_mm, np.radians(self.platform_angle_deg))
         base[:, 2] = self.base_joint_height_mm
         platform[:, 2] = -self.platform_joint_height_mm
-        return _checked(base, platform, self.home_height_mm)
+        return _checked(base, platform, self.home_height_mm, self.at_home)
 
 
 @dataclass(frozen=True)
-class PointsConfig:
+class PointsConfig(HomeConfig):
     """The `geometry` section by coordinates, in millimetres: a machine as it was measured."""
 
     base_joints_mm: SixPoints = quantity(-3000, 3000)
@@ -67,7 +73,7 @@ class PointsConfig:
     def geometry(self) -> LinearGeometry:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""
         base, platform = np.array(self.base_joints_mm), np.array(self.platform_joints_mm)
-        return _checked(base, platform, self.home_height_mm)
+        return _checked(base, platform, self.home_height_mm, self.at_home)
 
 
 def joint_circle(radius: float, first_angle: float) -> Array:
@@ -78,7 +84,10 @@ def joint_circle(radius: float, first_angle: float) -> Array:
     return radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(LEGS)])
 
 
-def _checked(base_mm: Array, platform_mm: Array, home_height_mm: float) -> LinearGeometry:
-    geometry = LinearGeometry(base_mm * 1e-3, platform_mm * 1e-3, home_height_mm * 1e-3)
+def _checked(
+    base_mm: Array, platform_mm: Array, home_height_mm: float, at_home: dict[str, Array]
+) -> LinearGeometry:
+    height = home_height_mm * 1e-3
+    geometry = LinearGeometry(base_mm * 1e-3, platform_mm * 1e-3, height, **at_home)
     check_architecture(geometry.base_points, geometry.platform_points)
     return geometry

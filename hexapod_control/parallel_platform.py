@@ -29,10 +29,7 @@ SAME = 0.02
 
 
 class LegGeometry(Protocol):
-    """Where the legs end on the platform (6, 3), platform frame, and how high it stands at home.
-
-    Metres; at home the platform is level, above the base frame's origin.
-    """
+    """Where the legs end on the platform, and where that is at home; metres."""
 
     @property
     def platform_points(self) -> Array:
@@ -40,8 +37,8 @@ class LegGeometry(Protocol):
         ...
 
     @property
-    def home_height(self) -> float:
-        """The platform's z at home."""
+    def home(self) -> Pose:
+        """T_base_platform at home."""
         ...
 
 
@@ -74,7 +71,7 @@ class ParallelPlatform(ABC):
         legs and parameters are the machine as the kernel takes it: crank_legs and platform of
         kernel/crank.h and platform.h.
         """
-        home = Pose(np.array([0.0, 0.0, self.geometry.home_height]), np.eye(3))
+        home = self.geometry.home
         self._put('home', home)
         self._lay_out(np.zeros((LEGS, 3)), np.zeros(LEGS))
         try:

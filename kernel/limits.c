@@ -27,7 +27,12 @@ static struct products products_of(const struct platform *platform, const struct
 {
     struct products p;
     const real(*home)[LEGS] = platform->home_rod, (*normal)[LEGS] = platform->legs.normal;
-    const real *r = rotation;
+    const real *h = platform->home_rotation;
+    real r[9]; /* from home's orientation */
+    for (int i = 0; i < 9; i++) {
+        const real *row = rotation + i / 3 * 3, *of_home = h + i % 3 * 3;
+        r[i] = row[0] * of_home[0] + row[1] * of_home[1] + row[2] * of_home[2];
+    }
     for (int i = 0; i < LEGS; i++) {
         real x = rods->unit[0][i], y = rods->unit[1][i], z = rods->unit[2][i];
         real a = home[0][i], b = home[1][i], c = home[2][i];

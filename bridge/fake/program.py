@@ -48,7 +48,8 @@ class CrankHexapod(ctypes.Structure):
 
     _fields_ = (
         ('is_known', ctypes.c_bool),
-        ('home_height', ctypes.c_float),
+        ('home_position', ctypes.c_float * 3),
+        ('home_rotation', ctypes.c_float * 9),
         ('minimum_height', ctypes.c_float),
         ('crank_lowest', ctypes.c_float * LEGS),
         ('crank_highest', ctypes.c_float * LEGS),

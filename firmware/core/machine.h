@@ -19,7 +19,7 @@ typedef struct {
 
 typedef struct {
     bool is_known; /* false: another kind of machine, and the rest means nothing */
-    float home_height;
+    float home_position[3], home_rotation[9];
     float minimum_height;
     float crank_lowest[LEGS]; /* rad */
     float crank_highest[LEGS];

@@ -24,7 +24,8 @@ def crank_hexapod(machine: Machine, calibration: Calibration) -> CrankHexapod | 
     order = [calibration.names.index(name) for name in kinematics.joint_names]
     return CrankHexapod(
         is_known=True,
-        home_height=kinematics.geometry.home_height,
+        home_position=tuple(kinematics.home.position.tolist()),
+        home_rotation=tuple(kinematics.home.rotation.ravel().tolist()),
         minimum_height=lowest,
         crank_lowest=tuple(cranks.low.tolist()),
         crank_highest=tuple(cranks.high.tolist()),

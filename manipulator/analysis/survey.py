@@ -25,7 +25,7 @@ LAST_SPREAD = 0.03
 
 @dataclass(frozen=True)
 class SomeOrientation:
-    """The positions admitted with some roll, pitch and yaw, each within ±largest (rad).
+    """The positions admitted with some roll, pitch and yaw from home, each within ±largest (rad).
 
     First a few orientations are tried on all positions, then, where none was admitted, `steps`
     random changes of the best one so far, ever smaller. What is found is admitted for certain;
@@ -55,7 +55,8 @@ class SomeOrientation:
     ) -> None:
         """Notes in the last three what the trial angles (N, 3) better."""
         rest = np.flatnonzero(~found)
-        pose = Pose(positions[rest], so3.from_rpy(trial[rest]))
+        turned = so3.from_rpy(trial[rest]) @ self.machine.kinematics.home.rotation
+        pose = Pose(positions[rest], turned)
         joints = self.machine.kinematics.inverse_or_nan(pose)
         inside = keeps_limits(self.machine, pose, joints)
         found[rest[inside]] = True
