@@ -11,7 +11,7 @@ import numpy as np
 from hexapod_control.leg_jacobian import leg_jacobian, smallest_singular_value
 from manipulator import rotation as so3
 from manipulator.arrays import Array, frozen
-from manipulator.config import quantity
+from manipulator.config import PLACE_MM, SIZE_MM, TURN_DEG, quantity
 from manipulator.errors import ConfigError
 from manipulator.motion_limits import SixNumbers
 from manipulator.pose import Pose
@@ -22,6 +22,14 @@ SixPoints: TypeAlias = tuple[Triple, Triple, Triple, Triple, Triple, Triple]
 Range: TypeAlias = tuple[float, float]
 SixRanges: TypeAlias = tuple[Range, Range, Range, Range, Range, Range]
 VERTICAL_TANGENT = 0.999
+
+CRANK_LENGTH = "from a crank's axis to its rod end; one number for all, or six"
+ROD_LENGTH = 'between the joints of a rod; one number for all, or six'
+PLATFORM_JOINTS = "the legs' joints on the platform, platform frame"
+HOME_HEIGHT = 'the platform frame above the base frame at home; below: negative'
+HOME_XY, ORIGIN = "the platform's x and y at home", (0.0, 0.0)
+HOME_RPY, LEVEL = "the platform's roll, pitch and yaw at home", (0.0, 0.0, 0.0)
+"""Meanings of keys that several forms have."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -39,20 +47,12 @@ class AtHome:
         return Pose.from_xyz_rpy([*self.home_xy, height], self.home_rpy)
 
 
-@dataclass(frozen=True, kw_only=True)
-class HomeConfig:
-    """The keys of a `geometry` section by which home is elsewhere than level above the origin."""
-
-    home_xy_mm: tuple[float, float] = quantity(-3000, 3000, default=(0.0, 0.0))
-    home_rpy_deg: Triple = quantity(-360, 360, default=(0.0, 0.0, 0.0))
-
-    @property
-    def at_home(self) -> dict[str, Array]:
-        """The fields of `AtHome`."""
-        return {
-            'home_xy': frozen(1e-3 * np.array(self.home_xy_mm)),
-            'home_rpy': frozen(np.radians(self.home_rpy_deg)),
-        }
+def at_home(xy_mm: tuple[float, float], rpy_deg: Triple) -> dict[str, Array]:
+    """The fields of `AtHome`, by the keys."""
+    return {
+        'home_xy': frozen(1e-3 * np.array(xy_mm)),
+        'home_rpy': frozen(np.radians(rpy_deg)),
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,17 +98,23 @@ class RotaryGeometry(AtHome):
 
 
 @dataclass(frozen=True)
-class HexagonConfig(HomeConfig):
+class HexagonConfig:
     """The `geometry` section by the parameters of Prokopovich 2019, fig. 4, in millimetres."""
 
-    body_radius_mm: float = quantity(5, 2000)
-    crank_offset_mm: float = quantity(-500, 500)
-    crank_shift_mm: float = quantity(-500, 500)
-    crank_length_mm: float | SixNumbers = quantity(1, 1000)
-    rod_length_mm: float | SixNumbers = quantity(2, 3000)
-    joint_inset_mm: float = quantity(-500, 1000)
-    joint_shift_mm: float = quantity(-1000, 1000)
-    home_height_mm: float = quantity(-3000, 3000)
+    body_radius_mm: float = quantity(*SIZE_MM, 'R: from the axis to each side of the body')
+    crank_offset_mm: float = quantity(*PLACE_MM, 'p: how far the cranks are outside that')
+    crank_shift_mm: float = quantity(
+        *PLACE_MM, "q: the cranks' axes from the middle of a side, along it"
+    )
+    crank_length_mm: float | SixNumbers = quantity(*SIZE_MM, CRANK_LENGTH)
+    rod_length_mm: float | SixNumbers = quantity(*SIZE_MM, ROD_LENGTH)
+    joint_inset_mm: float = quantity(*PLACE_MM, "l: how far the platform's joints are inside R")
+    joint_shift_mm: float = quantity(
+        *PLACE_MM, "s: the platform's joints from the middle of a side, along it"
+    )
+    home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
 
     def geometry(self) -> RotaryGeometry:
         """The joints by Prokopovich 2019, eqs (5) and (6), in closed form.
@@ -126,23 +132,29 @@ class HexagonConfig(HomeConfig):
             crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
             home_height=self.home_height_mm * 1e-3,
-            **self.at_home,
+            **at_home(self.home_xy_mm, self.home_rpy_deg),
         )
 
 
 @dataclass(frozen=True)
-class JointsConfig(HomeConfig):
+class JointsConfig:
     """The `geometry` section by coordinates, in millimetres: a machine as it was measured.
 
     crank_tangents (no unit, any length) point to where the crank angle is 0.
     """
 
-    crank_centres_mm: SixPoints = quantity(-3000, 3000)
-    crank_tangents: SixPoints = quantity(-1000, 1000)
-    platform_joints_mm: SixPoints = quantity(-3000, 3000)
-    crank_length_mm: float | SixNumbers = quantity(1, 1000)
-    rod_length_mm: float | SixNumbers = quantity(2, 3000)
-    home_height_mm: float = quantity(-3000, 3000)
+    crank_centres_mm: SixPoints = quantity(
+        *PLACE_MM, "where each crank's axis meets the plane of its rod end, base frame"
+    )
+    crank_tangents: SixPoints = quantity(
+        -1000, 1000, 'where each crank points at angle 0, base frame; of any length'
+    )
+    platform_joints_mm: SixPoints = quantity(*PLACE_MM, PLATFORM_JOINTS)
+    crank_length_mm: float | SixNumbers = quantity(*SIZE_MM, CRANK_LENGTH)
+    rod_length_mm: float | SixNumbers = quantity(*SIZE_MM, ROD_LENGTH)
+    home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
 
     def geometry(self) -> RotaryGeometry:
         """The same joints in metres; ConfigError where a tangent is zero or vertical."""
@@ -153,7 +165,7 @@ class JointsConfig(HomeConfig):
             crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
             home_height=self.home_height_mm * 1e-3,
-            **self.at_home,
+            **at_home(self.home_xy_mm, self.home_rpy_deg),
         )
 
 

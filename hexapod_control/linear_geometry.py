@@ -4,9 +4,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hexapod_control.geometry import LEGS, AtHome, HomeConfig, SixPoints, check_architecture
+from hexapod_control.geometry import (
+    HOME_HEIGHT,
+    HOME_RPY,
+    HOME_XY,
+    LEGS,
+    LEVEL,
+    ORIGIN,
+    PLATFORM_JOINTS,
+    AtHome,
+    Range,
+    SixPoints,
+    Triple,
+    at_home,
+    check_architecture,
+)
 from manipulator.arrays import Array, frozen
-from manipulator.config import quantity
+from manipulator.config import PLACE_MM, SIZE_MM, TURN_DEG, quantity
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
 
@@ -37,7 +51,7 @@ class LinearGeometry(AtHome):
 
 
 @dataclass(frozen=True)
-class PlatesConfig(HomeConfig):
+class PlatesConfig:
     """The `geometry` section by the parameters of Lapikov et al. 2014, section 3.
 
     Six joints on a circle of each plate, at the angles φ, 2π/3 − φ, 2π/3 + φ, 4π/3 − φ, 4π/3 + φ,
@@ -45,13 +59,17 @@ class PlatesConfig(HomeConfig):
     The joint heights are from each plate's plane to its joints, towards the other plate.
     """
 
-    base_radius_mm: float = quantity(5, 3000)
-    base_angle_deg: float = quantity(0, 60)
-    platform_radius_mm: float = quantity(5, 3000)
-    platform_angle_deg: float = quantity(0, 60)
-    base_joint_height_mm: float = quantity(0, 500)
-    platform_joint_height_mm: float = quantity(0, 500)
-    home_height_mm: float = quantity(1, 5000)
+    base_radius_mm: float = quantity(*SIZE_MM, "R: circle of the base's joints")
+    base_angle_deg: float = quantity(0, 60, 'φb: from the x axis to the first joint')
+    platform_radius_mm: float = quantity(*SIZE_MM, "r: circle of the platform's joints")
+    platform_angle_deg: float = quantity(0, 60, 'φmp, likewise; 0 joins them in pairs')
+    base_joint_height_mm: float = quantity(0, PLACE_MM[1], 'h_b: joints above the base plate')
+    platform_joint_height_mm: float = quantity(
+        0, PLACE_MM[1], 'h_mp: joints below the platform plate'
+    )
+    home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
 
     def geometry(self) -> LinearGeometry:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""
@@ -59,21 +77,25 @@ class PlatesConfig(HomeConfig):
         platform = joint_circle(self.platform_radius_mm, np.radians(self.platform_angle_deg))
         base[:, 2] = self.base_joint_height_mm
         platform[:, 2] = -self.platform_joint_height_mm
-        return _checked(base, platform, self.home_height_mm, self.at_home)
+        home = at_home(self.home_xy_mm, self.home_rpy_deg)
+        return _checked(base, platform, self.home_height_mm, home)
 
 
 @dataclass(frozen=True)
-class PointsConfig(HomeConfig):
+class PointsConfig:
     """The `geometry` section by coordinates, in millimetres: a machine as it was measured."""
 
-    base_joints_mm: SixPoints = quantity(-3000, 3000)
-    platform_joints_mm: SixPoints = quantity(-3000, 3000)
-    home_height_mm: float = quantity(1, 5000)
+    base_joints_mm: SixPoints = quantity(*PLACE_MM, "the legs' joints on the base, base frame")
+    platform_joints_mm: SixPoints = quantity(*PLACE_MM, PLATFORM_JOINTS)
+    home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
 
     def geometry(self) -> LinearGeometry:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""
         base, platform = np.array(self.base_joints_mm), np.array(self.platform_joints_mm)
-        return _checked(base, platform, self.home_height_mm, self.at_home)
+        home = at_home(self.home_xy_mm, self.home_rpy_deg)
+        return _checked(base, platform, self.home_height_mm, home)
 
 
 def joint_circle(radius: float, first_angle: float) -> Array:
@@ -85,9 +107,9 @@ def joint_circle(radius: float, first_angle: float) -> Array:
 
 
 def _checked(
-    base_mm: Array, platform_mm: Array, home_height_mm: float, at_home: dict[str, Array]
+    base_mm: Array, platform_mm: Array, home_height_mm: float, home: dict[str, Array]
 ) -> LinearGeometry:
     height = home_height_mm * 1e-3
-    geometry = LinearGeometry(base_mm * 1e-3, platform_mm * 1e-3, height, **at_home)
+    geometry = LinearGeometry(base_mm * 1e-3, platform_mm * 1e-3, height, **home)
     check_architecture(geometry.base_points, geometry.platform_points)
     return geometry

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from manipulator import rotation as so3
 from manipulator.arrays import Array, frozen
-from manipulator.config import quantity
+from manipulator.config import PLACE_MM, RATE, TURN_DEG, quantity
 from manipulator.errors import ConfigError
 from manipulator.limits.limit import Limit, LimitGroup
 from manipulator.pose import Pose
@@ -32,14 +32,22 @@ class TaskSpaceConfig:
     in which motion is commanded.
     """
 
-    x_mm: Range | None = quantity(-10_000, 10_000, default=None)
-    y_mm: Range | None = quantity(-10_000, 10_000, default=None)
-    z_mm: Range | None = quantity(-10_000, 10_000, default=None)
-    tilt_deg: float | None = quantity(0.01, 180, default=None)
-    turn_deg: Range | None = quantity(-180, 180, default=None)
-    upright_rpy_deg: PerAxis | None = quantity(-360, 360, default=None)
-    speeds_mm_s: PerAxis | None = quantity(1e-4, 5000, default=None)
-    turning_speeds_deg_s: PerAxis | None = quantity(1e-4, 2000, default=None)
+    x_mm: Range | None = quantity(*PLACE_MM, "of the platform's origin or the tool", default=None)
+    y_mm: Range | None = quantity(*PLACE_MM, 'likewise', default=None)
+    z_mm: Range | None = quantity(*PLACE_MM, 'likewise', default=None)
+    tilt_deg: float | None = quantity(
+        1e-3, 180, 'most angle of its z axis to where that points at home', default=None
+    )
+    turn_deg: Range | None = quantity(
+        -180, 180, 'rotation about its z axis since home', default=None
+    )
+    upright_rpy_deg: PerAxis | None = quantity(
+        *TURN_DEG, "an arm's orientation from which tilt and turn count, not home's", default=None
+    )
+    speeds_mm_s: PerAxis | None = quantity(
+        *RATE, 'most along the x, y and z axis of the work frame', default=None
+    )
+    turning_speeds_deg_s: PerAxis | None = quantity(*RATE, 'most about them', default=None)
 
     def __post_init__(self) -> None:
         """Raises ConfigError with every range that is empty."""

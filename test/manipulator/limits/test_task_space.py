@@ -232,9 +232,9 @@ def test_check_names_every_fault_at_once():
     )
     assert problems_of(text) == [
         "task_space.tilt: unknown key, did you mean 'tilt_deg'?",
-        'task_space.tilt_deg: 200 outside [0.01, 180] (a factor of 1000: is it in another unit?)',
+        'task_space.tilt_deg: 200 outside [0.001, 180]',
         'task_space.turn_deg: has 3 entries, needs 2',
-        'task_space.speeds_mm_s[1]: 0 outside [0.0001, 5000]',
+        'task_space.speeds_mm_s[1]: 0 outside [1e-06, 1e+09]',
     ]
     assert problems_of(
         text.replace(' tilt_deg: 200, turn_deg: [-9, 9, 1],', '').replace(
