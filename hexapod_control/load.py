@@ -3,6 +3,7 @@
 import numpy as np
 
 from hexapod_control.geometry import LEGS, HexagonConfig, JointsConfig, check_architecture
+from hexapod_control.home import home_problems
 from hexapod_control.leg_limits import LinearLimits, RotaryLimits
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.linear_geometry import PlatesConfig, PointsConfig
@@ -22,14 +23,19 @@ CRANK_SETTINGS = 8
 
 def hexapod(machine_file: MachineFile) -> Machine:
     """The machine of one file; ConfigError names each fault, also a home beyond a limit."""
+    machine = platform(machine_file)
+    beyond = home_problems(machine, 'crank_tangents' in machine_file.geometry)
+    if beyond:
+        raise ConfigError(beyond)
+    return machine
+
+
+def platform(machine_file: MachineFile) -> Machine:
+    """The same, but that its home may be beyond limits."""
     kind = machine_file.kind
     if kind not in KINDS:
         raise ConfigError([f'kind: {shown(kind)} is not one of {sorted(KINDS)}'])
     kinematics, constraints = KINDS[kind].build(machine_file)
-    home = kinematics.home
-    beyond = constraints.violations(home, kinematics.inverse(home))
-    if beyond:
-        raise ConfigError([f'limits: home has {violation}' for violation in beyond])
     motion = MotionLimits.from_config(machine_file.motion)
     return Machine(kinematics, constraints, motion, make_jogger=PlatformJogger)
 

@@ -15,6 +15,7 @@ from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import LimitOf
 from manipulator.limits.machine_limits import JointRange
 from manipulator.limits.task_space import TaskSpaceConfig
+from manipulator.limits.wording import in_words
 from manipulator.motion_limits import MotionConfig, MotionLimits
 from manipulator.static_deflection import StaticDeflection
 from manipulator.teleop.jogger import Jogger
@@ -110,9 +111,9 @@ class Machine:
         except ConfigError as error:
             raise ConfigError([f'task_space.{problem}' for problem in error.problems]) from error
         at_home = kinematics.home, kinematics.inverse(kinematics.home)
-        beyond = Constraints(added).violations(*at_home) if added else []
+        beyond = in_words(Constraints(added).violations(*at_home) if added else [])
         if beyond:
-            raise ConfigError([f'task_space: home has {violation}' for violation in beyond])
+            raise ConfigError([f'task_space: home has {words}' for words in beyond])
         return replace(
             self,
             constraints=Constraints((*constraints.limits, *added)),
