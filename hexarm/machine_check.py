@@ -91,6 +91,7 @@ def report_of(content: Mapping[str, Any]) -> Report:
         machine = found.of(lambda: _machine(kind, content, whole))
     if machine is not None and whole is not None:
         found.of(partial(frames_of, whole, machine.kinematics))
+        machine = found.of(partial(machine.within, whole.task_space)) or machine
     calibration = _calibration(found, sections.get('servos'))
     if machine is not None:
         home = _home_problems(machine, content)
