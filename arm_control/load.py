@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.geometry import FORMS, ArmLimits, placed
+from arm_control.geometry import FORMS, ArmLimits, check_axes, placed
 from arm_control.rate_scaling import AT_ONCE
 from arm_control.resolved_rate import STRAIGHT, JogState, ResolvedRate
 from manipulator.arrays import Array, frozen
@@ -118,6 +118,7 @@ def serial_arm(machine_file: MachineFile) -> SerialArm:
     """The kinematics and joint limits of one file."""
     if machine_file.kind != KIND:
         raise ConfigError([f'kind: {shown(machine_file.kind)} is not {KIND!r}'])
+    check_axes(machine_file.geometry, machine_file.limits)
     told = [form for key, form in FORMS.items() if key in machine_file.geometry]
     if len(told) != 1:
         raise ConfigError([f'geometry: needs one of the keys {list(FORMS)}, has {len(told)}'])
@@ -131,8 +132,8 @@ def serial_arm(machine_file: MachineFile) -> SerialArm:
 
 def jogging(machine_file: MachineFile) -> ResolvedRate:
     """The resolved-rate step of one file's arm, within its joint and motion limits."""
-    limits = build(ArmLimits, machine_file.limits, 'limits')
     kinematics = serial_arm(machine_file)
+    limits = build(ArmLimits, machine_file.limits, 'limits')
     motion = MotionLimits.from_config(machine_file.motion)
     own = kinematics.limits
     motion = replace(motion, joint=motion.joint.tightened(own.speed, own.acceleration))

@@ -74,7 +74,7 @@ def test_every_fault_of_the_limits_is_named(machine_file):
 
 
 ENDS = {
-    'range_deg': (-720.0, 720.0),
+    'range_deg': (-360_000.0, 360_000.0),
     'speed_deg_s': (0.1, 5000.0),
     'acceleration_deg_s2': (1.0, 1e6),
     'characteristic_length_mm': (1.0, 5000.0),
