@@ -74,6 +74,15 @@ def find(name_or_path: str) -> Path:
     )
 
 
+def saved_poses_file(name_or_path: str) -> Path:
+    """Where a machine's saved poses are: beside its file; of a shipped one in the user's data."""
+    path = find(name_or_path)
+    folder = path.parent
+    if path in shipped().values():
+        folder = Path(os.environ.get('XDG_DATA_HOME') or '~/.local/share').expanduser() / 'hexarm'
+    return folder / f'{path.stem}.poses.yaml'
+
+
 def read(name_or_path: str) -> MachineFile:
     """The sections of a machine file; ConfigError lists everything wrong at the top level."""
     path = find(name_or_path)

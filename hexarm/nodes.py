@@ -11,7 +11,7 @@ from functools import cache, partial
 
 from rclpy.node import Node
 
-from hexarm.machines import described, load
+from hexarm.machines import described, load, saved_poses_file
 from manipulator.errors import InvalidInput
 from manipulator.nodes.run import Makers, run_nodes
 
@@ -34,7 +34,7 @@ def _ik(machine: str) -> Node:
 def _pose(machine: str) -> Node:
     from manipulator.nodes.pose_node import PoseNode
 
-    return PoseNode(_loaded, machine)
+    return PoseNode(_loaded, saved_poses_file, machine)
 
 
 def _serial_bridge() -> Node:

@@ -42,6 +42,12 @@ os.environ['ROS_DOMAIN_ID'] = str(random.Random(RUN).sample(DOMAINS, len(DOMAINS
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
 
+@pytest.fixture(scope='session', autouse=True)
+def users_data(tmp_path_factory):
+    """Saved poses of shipped machines are in a folder of this test run, not in the user's."""
+    os.environ['XDG_DATA_HOME'] = str(tmp_path_factory.mktemp('data'))
+
+
 def pytest_collection_modifyitems(items):
     """Marks what starts other programs: graphs, installations, a browser."""
     for item in items:
