@@ -102,7 +102,7 @@ def _machine(kind: object, there: Mapping[str, Any], whole: MachineFile | None) 
         return None
     geometry, limits = (there.get(name, {}) for name in ROOM)
     motion = STAND_IN if whole is None else whole.motion
-    return loader(kind)(MachineFile(kind, geometry, limits, motion, servos={}, link={}))
+    return loader(kind)(MachineFile(kind, geometry, limits, motion, driver='topic'))
 
 
 def _between(machine: Machine, calibration: Calibration) -> Iterator[str]:

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.errors import InvalidInput
+from manipulator.errors import ConfigError, InvalidInput
 from manipulator.frames import Frames, FramesConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
@@ -25,19 +25,33 @@ class MachineFile:
     """The sections of a machine file; each room checks its own against its own schema.
 
     geometry and limits belong to the kind of machine, servos, link and simulation to the bridge,
-    dynamics to hexarm/simulation/.
+    dynamics to hexarm/simulation/. driver: what moves the joints, a board on a serial line
+    (sections servos and link) or other software, by topics (neither).
     """
 
     kind: str
     geometry: dict[str, Any]
     limits: dict[str, Any]
     motion: MotionConfig
-    servos: dict[str, Any]
-    link: dict[str, Any]
+    servos: dict[str, Any] = field(default_factory=dict)
+    link: dict[str, Any] = field(default_factory=dict)
+    driver: Literal['serial', 'topic'] = 'serial'
     description: str = ''
     simulation: dict[str, Any] | None = None
     dynamics: dict[str, Any] | None = None
     frames: FramesConfig = field(default_factory=FramesConfig)
+
+    def __post_init__(self) -> None:
+        """Raises ConfigError for sections of the bridge that are missing, or without a use."""
+        parts = {'servos': self.servos, 'link': self.link}
+        if self.driver == 'serial':
+            problems = [f'{name}: missing' for name, part in parts.items() if not part]
+        else:
+            parts['simulation'] = self.simulation or {}
+            unused = [name for name, part in parts.items() if part]
+            problems = [f'{name}: without a use, driver: topic has no board' for name in unused]
+        if problems:
+            raise ConfigError(problems)
 
 
 @dataclass(frozen=True)
