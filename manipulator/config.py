@@ -24,8 +24,6 @@ MAX_CHARACTERS = 100_000
 MOST_OF_A_REASON = 200
 """Characters of an error of PyYAML, which may repeat the file."""
 
-IMPORTS = 'serial arms are described by dh or screws, see docs/arm-kinematics.md'
-
 
 def quantity(low: float, high: float, **options: Any) -> Any:
     """A dataclass field whose value, or every value of whose list, must lie in [low, high]."""
@@ -255,7 +253,7 @@ def _short(error: Exception) -> str:
 def _markup(text: str) -> str:
     """What a file that begins with < is."""
     if '<robot' in text:
-        return f'is a URDF, which cannot be imported yet: {IMPORTS}'
+        return 'is a URDF: hexarm import FILE makes a machine file of it'
     return 'is XML or HTML, needs YAML'
 
 

@@ -72,7 +72,7 @@ def test_a_jump_from_the_last_command_is_refused(bridged):
     bridged.enable()
     bridged.command(START)
     bridged.now += 0.01
-    with pytest.raises(Refused, match='would jump by .* from the last command'):
+    with pytest.raises(Refused, match=r'would jump by .* from the last command'):
         bridged.command(START - 0.5)
 
 
