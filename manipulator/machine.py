@@ -1,12 +1,13 @@
 """A machine as the nodes use it: its kinematics, its limits, its jogger."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Generic, Literal, TypeVar
 
 import numpy as np
 
 from manipulator.arrays import Array
+from manipulator.config import build_both, key
 from manipulator.errors import ConfigError, InvalidInput
 from manipulator.frames import Frames, FramesConfig
 from manipulator.kinematics import Kinematics
@@ -16,8 +17,10 @@ from manipulator.limits.machine_limits import JointRange
 from manipulator.motion_limits import MotionConfig, MotionLimits
 from manipulator.static_deflection import StaticDeflection
 from manipulator.teleop.jogger import Jogger
+from manipulator.unit_hints import out_of_proportion
 
 JOG_SINGULARITIES = ('stop', 'slide')
+T = TypeVar('T')
 
 
 @dataclass(frozen=True)
@@ -29,17 +32,27 @@ class MachineFile:
     (sections servos and link) or other software, by topics (neither).
     """
 
-    kind: str
-    geometry: dict[str, Any]
-    limits: dict[str, Any]
-    motion: MotionConfig
-    servos: dict[str, Any] = field(default_factory=dict)
-    link: dict[str, Any] = field(default_factory=dict)
-    driver: Literal['serial', 'topic'] = 'serial'
-    description: str = ''
-    simulation: dict[str, Any] | None = None
-    dynamics: dict[str, Any] | None = None
-    frames: FramesConfig = field(default_factory=FramesConfig)
+    kind: str = key('of machine')
+    geometry: dict[str, Any] = key('where the joints are')
+    limits: dict[str, Any] = key('what the machine may not exceed')
+    motion: MotionConfig = key('how fast it may move (docs/motion.md)')
+    driver: Literal['serial', 'topic'] = key(
+        'what moves the joints: a board on a serial line, or other software (docs/your-arm.md)',
+        default='serial',
+    )
+    servos: dict[str, Any] = key(
+        'its servos, and the pulses for their positions; only with driver: serial',
+        default_factory=dict,
+    )
+    link: dict[str, Any] = key(
+        'the serial line to the board; only with driver: serial', default_factory=dict
+    )
+    description: str = key('one line, for lists', default='')
+    simulation: dict[str, Any] | None = key(
+        "what the fake board's servos and battery do", default=None
+    )
+    dynamics: dict[str, Any] | None = key('masses and drives (docs/physics.md)', default=None)
+    frames: FramesConfig = key("the user's frames", default_factory=FramesConfig)
 
     def __post_init__(self) -> None:
         """Raises ConfigError for sections of the bridge that are missing, or without a use."""
@@ -52,6 +65,32 @@ class MachineFile:
             problems = [f'{name}: without a use, driver: topic has no board' for name in unused]
         if problems:
             raise ConfigError(problems)
+
+
+@dataclass(frozen=True)
+class Kind(Generic[T]):
+    """A kind of machine: the schemas of its sections geometry and limits, and what makes it.
+
+    geometry may be a union of forms; make takes both sections as built by the schemas. screen
+    raises ConfigError for sections of which no schema has to tell more.
+    """
+
+    geometry: Any
+    limits: type
+    make: Callable[[Any, Any], T]
+    screen: Callable[[Mapping[str, Any], Mapping[str, Any]], None] = lambda geometry, limits: None
+
+    def build(self, machine_file: MachineFile) -> T:
+        """What a file of this kind makes; ConfigError with all problems of both sections."""
+        self.screen(machine_file.geometry, machine_file.limits)
+        sections: tuple[Any, Any] = build_both(
+            (self.geometry, machine_file.geometry, 'geometry'),
+            (self.limits, machine_file.limits, 'limits'),
+        )
+        doubts = out_of_proportion(*sections)
+        if doubts:
+            raise ConfigError(doubts)
+        return self.make(*sections)
 
 
 @dataclass(frozen=True)

@@ -49,11 +49,17 @@ def users_data(tmp_path_factory):
 
 
 def pytest_collection_modifyitems(items):
-    """Marks what starts other programs: graphs, installations, a browser."""
+    """Marks what starts other programs (graphs, installations, a browser), and what is long.
+
+    The chip is simulated instruction by instruction: the same tests and the same C run on the
+    computer's board in no time.
+    """
     for item in items:
         folder = item.path.relative_to(FOLDER).parts[0]
         if folder in ('graph', 'install') or STARTS_OTHERS & set(item.fixturenames):
             item.add_marker('processes')
+        elif 'chip_tools' in item.fixturenames:
+            item.add_marker('long')
 
 
 @pytest.hookimpl(optionalhook=True)

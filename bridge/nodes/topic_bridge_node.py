@@ -25,17 +25,17 @@ from manipulator.errors import ManipulatorError
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.graph_check import received_by
+from manipulator.nodes.intra_process import IntraProcess
 from manipulator.nodes.late_answers import Call
 from manipulator.nodes.messages import joint_message, known_joints, seconds
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer
-from manipulator.nodes.subscriptions import FilteredCallback, decoded
+from manipulator.nodes.subscriptions import FilteredCallback
 
 FAKE = 'fake'
 """The port of a simulated driver, whose joints are where they are commanded."""
 SENT = 'driver/joint_command'
-MOST_BYTES = 10_000
 PERIOD = 0.02
 """Seconds between two looks at the deadlines, and two joint states of a simulated driver."""
 SHORTEST = 0.008
@@ -45,7 +45,9 @@ SHORTEST = 0.008
 class TopicBridge(Node):
     """Its topics, services and parameters are in docs/interfaces.md."""
 
-    def __init__(self, load: Callable[[str], Machine], default_machine: str) -> None:
+    def __init__(
+        self, load: Callable[[str], Machine], default_machine: str, process: IntraProcess
+    ) -> None:
         super().__init__('serial_bridge')
         name = declare(self, 'machine', default_machine, 'name or path of the machine file')
         port = declare(
@@ -54,7 +56,7 @@ class TopicBridge(Node):
         machine, is_simulated = load(name), port == FAKE
         epoch = time.time() - time.monotonic()
         self._driver = TopicDriver(machine, is_simulated, port, epoch)
-        self._topics = BoardTopics(self, self._driver.names, port)
+        self._topics = BoardTopics(self, self._driver.names, port, process)
         self._lock = threading.RLock()
         self._published_at = self._command_at = float('-inf')
         self._beats_at = 0.0
@@ -62,7 +64,9 @@ class TopicBridge(Node):
         self._joint_states = FilteredCallback(self, port, self._on_joints)
         if not is_simulated:
             self.create_subscription(JointState, port, self._joint_states, qos_profile_sensor_data)
-        self.create_subscription(JointState, 'joint_command', self._on_command, COMMAND, raw=True)
+        process.subscribe_unfiltered(
+            self, JointState, 'joint_command', self._on_command, self._on_bad_command, COMMAND
+        )
         self.create_service(SetBool, '~/enable', self._on_enable)
         self.create_service(Trigger, '~/clear_fault', self._on_clear_fault)
         self._stop_node = StopNode(self, self._stop, self._on_stop)
@@ -87,10 +91,9 @@ class TopicBridge(Node):
                 self._publish_joints(_velocities(message, self._driver.names), now)
             self._publish_state(now)
 
-    def _on_command(self, serialized: bytes) -> None:
+    def _on_command(self, message: JointState) -> None:
         now = time.monotonic()
         try:
-            message = decoded(serialized, JointState, MOST_BYTES)
             stamp = seconds(message.header.stamp) or None
             with self._lock:
                 self._command_at = now
@@ -100,8 +103,11 @@ class TopicBridge(Node):
                     self._sent.publish(command)
                 self._publish_state(now)
         except ManipulatorError as error:
-            self._driver.refuse(str(error))
-            self._topics.warn(f'joint_command refused: {error}')
+            self._on_bad_command(error)
+
+    def _on_bad_command(self, error: ManipulatorError) -> None:
+        self._driver.refuse(str(error))
+        self._topics.warn(f'joint_command refused: {error}')
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> object:
         return self._answered(response, lambda now: self._driver.enable(request.data, now))

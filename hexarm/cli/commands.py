@@ -53,6 +53,8 @@ COMMANDS = (
             'show the diagnostics of the nodes, live', 'monitor hexapod'),
     Command('record', 'hexarm.cli.record',
             "write a machine's messages into an MCAP file", 'record hexapod -o tour.mcap'),
+    Command('foxglove', 'hexarm.cli.foxglove',
+            'serve the messages of a machine to Foxglove, live', 'foxglove hexapod'),
     Command('plot', 'hexarm.cli.plot',
             'draw a recording', 'plot tour.mcap --from 2 --to 8'),
     Command('ik', 'hexarm.cli.ik',

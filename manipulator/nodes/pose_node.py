@@ -27,6 +27,7 @@ from manipulator.kinematics import Kinematics
 from manipulator.links import Link, Stroke
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import OK, WARN, Diagnostics, Report
+from manipulator.nodes.intra_process import IntraProcess
 from manipulator.nodes.messages import (
     BASE_FRAME,
     PIVOT_FRAME,
@@ -158,6 +159,7 @@ class PoseNode(Node):
         load: Callable[[str], Machine],
         saved_poses: Callable[[str], Path],
         default_machine: str,
+        process: IntraProcess,
     ) -> None:
         super().__init__('pose')
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
@@ -165,13 +167,13 @@ class PoseNode(Node):
         self._kinematics, self._frames = machine.kinematics, machine.frames
         self._estimate = PoseEstimate(machine, self.get_logger().info)
         self._states = FilteredCallback(self, 'joint_states', self._on_joint_states)
-        self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
+        self._publisher = process.publisher(self, PoseStamped, 'pose', MEASUREMENT)
         prefix = declare_prefix(self)
         self._markers = Markers(self, prefix)
         self._transforms = Transforms(self, prefix)
         self._pivot_publisher = self.create_publisher(PoseStamped, 'pivot_pose', MEASUREMENT)
         self.create_subscription(PointStamped, 'pivot', self._on_pivot, COMMAND)
-        self.create_subscription(JointState, 'joint_states', self._states, MEASUREMENT)
+        process.subscribe(self, JointState, 'joint_states', self._states, MEASUREMENT)
         self._saved = SavedPoseTopics(self, machine, saved_poses(name))
         self._diagnostics = Diagnostics(self, self._report, ('joint_states', 'pose'))
 
