@@ -118,7 +118,7 @@ def _joint(joint: UrdfJoint, wishes: Wishes) -> str:
         notes += [] if _has_range(joint) else ['range']
     speed = speed_deg_s(joint)
     notes += [] if _is_credible(joint.velocity, CREDIBLE_SPEED, True) else ['speed']
-    acceleration = wishes.acceleration_deg_s2 or round(speed / RAMP, 3)
+    acceleration = wishes.acceleration_deg_s2 or _ramped(speed)
     notes += [] if wishes.acceleration_deg_s2 else ['acceleration']
     words += [f'speed_deg_s: {_number(speed)}', f'acceleration_deg_s2: {_number(acceleration)}']
     return f'    - {{{", ".join(words)}}}' + (f'  # assumed: {", ".join(notes)}' if notes else '')
@@ -126,7 +126,7 @@ def _joint(joint: UrdfJoint, wishes: Wishes) -> str:
 
 def _motion(arm: UrdfArm, wishes: Wishes) -> Iterator[str]:
     fastest = max(speed_deg_s(joint) for joint in arm.joints)
-    acceleration = wishes.acceleration_deg_s2 or round(fastest / RAMP, 3)
+    acceleration = wishes.acceleration_deg_s2 or _ramped(fastest)
     yield 'motion:                            # assumed, all of the tool'
     yield '  linear_speed_mm_s: 250.0         # the speed that ISO 10218 allows beside people'
     yield '  linear_acceleration_mm_s2: 1500.0'
@@ -191,6 +191,11 @@ def speed_deg_s(joint: UrdfJoint) -> float:
     if joint.velocity is None or not _is_credible(joint.velocity, CREDIBLE_SPEED, True):
         return ASSUMED_SPEED
     return math.degrees(joint.velocity)
+
+
+def _ramped(speed: float) -> float:
+    """The acceleration to a speed within RAMP, to three digits."""
+    return float(f'{speed / RAMP:.3g}')
 
 
 def _has_range(joint: UrdfJoint) -> bool:
