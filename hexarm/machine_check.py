@@ -80,6 +80,9 @@ def report_of(content: Mapping[str, Any]) -> Report:
     if other:
         found.problems.append(f'kind: {shown(kind)}, but geometry has the keys of a {other}')
     schemas = sections_of(kind) if kind in KINDS and not other else BRIDGE
+    unfit = _unfit(kind, content)
+    if unfit:
+        return Report(unfit)
     sections = {
         name: found.of(partial(build, schema, content[name], name))
         for name, schema in schemas.items()
@@ -100,6 +103,18 @@ def report_of(content: Mapping[str, Any]) -> Report:
             found.problems += _between(machine, calibration, is_home_good=not home)
     doubts = () if machine is None else warnings_of(machine, calibration)
     return Report(_merged(found.problems), tuple(doubts), machine)
+
+
+def _unfit(kind: str, content: Mapping[str, Any]) -> tuple[str, ...]:
+    """Why a file of this kind need not be looked at any further."""
+    geometry, limits = (content.get(name) for name in ROOM)
+    if kind not in KINDS or not isinstance(geometry, Mapping) or not isinstance(limits, Mapping):
+        return ()
+    try:
+        KINDS[kind].screen(geometry, limits)
+    except ConfigError as error:
+        return error.problems
+    return ()
 
 
 def _kind_by_keys(content: Mapping[str, Any]) -> str:
@@ -144,7 +159,7 @@ def _machine(kind: str, content: Mapping[str, Any], whole: MachineFile | None) -
     geometry, limits = (content.get(name, {}) for name in ROOM)
     motion = STAND_IN if whole is None else whole.motion
     make = hexapods.platform if kind in hexapods.KINDS else loader(kind)
-    return make(MachineFile(kind, geometry, limits, motion, servos={}, link={}))
+    return make(MachineFile(kind, geometry, limits, motion, driver='topic'))
 
 
 def _between(machine: Machine, calibration: Calibration, is_home_good: bool) -> Iterator[str]:

@@ -27,8 +27,6 @@ MAX_CHARACTERS = 100_000
 MOST_OF_A_REASON = 200
 """Characters of an error of PyYAML, which may repeat the file."""
 
-IMPORTS = 'serial arms are described by dh or screws, see docs/arm-kinematics.md'
-
 
 SIZE_MM = (1e-3, 1e6)
 """Of a length that a machine cannot do without; `unit_hints` judges it beside the others."""
@@ -312,7 +310,7 @@ def _short(error: Exception) -> str:
 def _markup(text: str) -> str:
     """What a file that begins with < is."""
     if '<robot' in text:
-        return f'is a URDF, which cannot be imported yet: {IMPORTS}'
+        return 'is a URDF: hexarm import FILE makes a machine file of it'
     return 'is XML or HTML, needs YAML'
 
 
