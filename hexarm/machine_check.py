@@ -77,6 +77,9 @@ def report_of(content: Mapping[str, Any]) -> Report:
     whole = found.of(lambda: build(MachineFile, content))
     kind = _kind(found, content)
     schemas = sections_of(kind) if kind else BRIDGE
+    unfit = _unfit(kind, content)
+    if unfit:
+        return Report(unfit)
     sections = {
         name: found.of(partial(build, schema, content[name], name))
         for name, schema in schemas.items()
@@ -87,6 +90,7 @@ def report_of(content: Mapping[str, Any]) -> Report:
         machine = found.of(lambda: _machine(kind, content, whole))
     if machine is not None and whole is not None:
         found.of(partial(frames_of, whole, machine.kinematics))
+        machine = found.of(partial(machine.within, whole.task_space)) or machine
     calibration = _calibration(found, sections.get('servos'))
     if machine is not None:
         home = _home_problems(kind, machine, content)
@@ -110,6 +114,18 @@ def _kind(found: Findings, content: Mapping[str, Any]) -> str:
         found.problems.append(f'kind: {shown(told)}, but geometry has the keys of a {likely}')
         return likely
     return told
+
+
+def _unfit(kind: str, content: Mapping[str, Any]) -> tuple[str, ...]:
+    """Why a file of this kind need not be looked at any further."""
+    geometry, limits = (content.get(name) for name in ROOM)
+    if kind not in KINDS or not isinstance(geometry, Mapping) or not isinstance(limits, Mapping):
+        return ()
+    try:
+        KINDS[kind].screen(geometry, limits)
+    except ConfigError as error:
+        return error.problems
+    return ()
 
 
 def _kind_by_keys(content: Mapping[str, Any]) -> str:
@@ -156,7 +172,7 @@ def _machine(kind: str, content: Mapping[str, Any], whole: MachineFile | None) -
     geometry, limits = (content.get(name, {}) for name in ROOM)
     motion = STAND_IN if whole is None else whole.motion
     make = hexapods.platform if kind in hexapods.KINDS else loader(kind)
-    return make(MachineFile(kind, geometry, limits, motion, servos={}, link={}))
+    return make(MachineFile(kind, geometry, limits, motion, driver='topic'))
 
 
 def _between(machine: Machine, calibration: Calibration, is_home_good: bool) -> Iterator[str]:

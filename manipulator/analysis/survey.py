@@ -32,7 +32,7 @@ ADMITTED = 1e6
 
 @dataclass(frozen=True, eq=False)
 class SomeOrientation:
-    """The positions admitted with some roll, pitch and yaw, each within ±largest (rad).
+    """The positions admitted with some roll, pitch and yaw from home, each within ±largest (rad).
 
     A search tries a few orientations of the size of own (3,), the machine's own ranges about each
     axis (rad), then, at each position, `steps` random changes of the best one so far, ever
@@ -78,7 +78,8 @@ class SomeOrientation:
     ) -> None:
         """Notes in the last three what the trial angles (N, 3) better."""
         rest = np.flatnonzero(~found)
-        pose = Pose(positions[rest], so3.from_rpy(trial[rest]))
+        turned = so3.from_rpy(trial[rest]) @ self.machine.kinematics.home.rotation
+        pose = Pose(positions[rest], turned)
         joints = self.machine.kinematics.inverse_or_nan(pose)
         inside = keeps_limits(self.machine, pose, joints)
         turned = np.abs(trial[rest]).max(axis=1)

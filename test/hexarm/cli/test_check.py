@@ -262,8 +262,8 @@ def test_command_answers_programs(tmp_path, capsys):
 def test_file_that_is_no_machine_file_is_one_line_with_its_name(tmp_path, capsys):
     urdf = '<?xml version="1.0"?>\n<robot name="arm">' + '<link name="l"/>' * 800 + '</robot>\n'
     files = {
-        'arm.urdf': (urdf.encode(), 'is a URDF, which cannot be imported yet'),
-        'huge.urdf': (urdf.encode() * 20, 'is a URDF, which cannot be imported yet'),
+        'arm.urdf': (urdf.encode(), 'is a URDF: hexarm import FILE makes'),
+        'huge.urdf': (urdf.encode() * 20, 'is a URDF: hexarm import FILE makes'),
         'page.yaml': (b'<html>' + b'x' * 20_000, 'is XML or HTML, needs YAML'),
         'mesh.yaml': (bytes(range(256)) * 100, 'cannot be read: it is no text'),
         'text.yaml': (b'just words ' * 2000, "holds str 'just words"),

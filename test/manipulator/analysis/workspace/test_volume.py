@@ -60,6 +60,7 @@ def test_unturned_volumes_above_the_crank_plane(above_the_cranks, cranks, litres
     assert found.error < 0.01 * found.value
 
 
+@pytest.mark.long
 def test_with_tilts_the_free_cranks_reach_about_three_times_as_much(above_the_cranks):
     machine = above_the_cranks()
     box = bounding_box(
