@@ -105,7 +105,8 @@ def keys_of(schema: Any, place: str = '') -> Iterator[Key]:
 
 def tables() -> str:
     """The generated part of docs/machine-files.md."""
-    lines = ['## The file', '', *_table(MachineFile, is_flat=True)]
+    kinds = ', '.join(f'`{kind}`' for kind in KINDS)
+    lines = ['## The file', '', *_table(MachineFile, is_flat=True), f'Kinds: {kinds}.', '']
     for kind in KINDS:
         for name, schema in sections_of(kind).items():
             for form in forms_of(schema) if name in OF_KINDS else ():
@@ -140,7 +141,7 @@ def _table(schema: Any, is_flat: bool = False) -> list[str]:
     for key in keys_of(schema):
         if is_flat and '.' in key.place:
             continue
-        meaning = key.field.metadata['meaning']
+        meaning = re.sub(r'docs/(\S+\.md)', r'[\1](\1)', key.field.metadata['meaning'])
         cells = (f'`{key.place}`', key.kind, key.unit, key.range, key.default, meaning)
         rows.append(f'| {" | ".join(cells)} |')
     return [*rows, '']

@@ -454,6 +454,13 @@ def test_horns_as_hobbyists_enter_them_are_told_what_to_write():
     assert report_of(bent_the_other_way(naive)).problems == ()
 
 
+def test_ranges_of_each_leg_are_turned_each():
+    naive = bent_the_other_way(parse_yaml(BY_COORDINATES))
+    naive['limits']['crank_range_deg'] = [[-80.0, 80.0]] * 5 + [[-80.0, 70.0]]
+    (problem,) = (p for p in report_of(naive).problems if 'the other way' in p)
+    assert f'crank_range_deg: [{"[100, 260], " * 5}[110, 260]], ' in problem
+
+
 def test_one_wrong_word_in_every_entry_of_a_list_is_one_line():
     assert problems_of(changed(ROBOCAKE, ('centre_deg', 'center_deg'))) == [
         "servos.joints[0, 1, 2, 3, 4, 5].center_deg: unknown key, did you mean 'centre_deg'?"
