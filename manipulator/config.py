@@ -9,17 +9,16 @@ that a section may have; the one with most of the keys is meant.
 import dataclasses
 import difflib
 import math
-import re
 import types
 import typing
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
 import yaml
-from yaml.composer import Composer
 
 from manipulator.errors import ConfigError
 from manipulator.formatting import shortened, shown, told_apart
+from manipulator.strict_yaml import content_of
 
 T = TypeVar('T')
 U = TypeVar('U')
@@ -60,7 +59,7 @@ def parse_yaml(text: str, source: str = '') -> dict[str, Any]:
             [f'{len(text)} characters, a machine file has at most {MAX_CHARACTERS}'], source
         )
     try:
-        content = _content(text)
+        content = content_of(text)
     except yaml.YAMLError as error:
         raise ConfigError([_short(error)], source) from error
     except (ValueError, TypeError, OverflowError) as error:
@@ -94,60 +93,6 @@ def build_both(
     if problems:
         raise ConfigError(problems)
     return typing.cast(tuple[T, U], results)
-
-
-NUMBER = re.compile(r'[-+]?(\.\d+|\d+(\.\d*)?)([eE][-+]?\d+)?$')
-"""As in YAML 1.2; for PyYAML, which knows 1.1, 3e6 is a text."""
-
-
-def _content(text: str) -> object:
-    """What the text holds: read quickly, or else slowly, for an error that shows the line."""
-    try:
-        return yaml.load(text, Loader=_QuickLoader)
-    except (yaml.YAMLError, ValueError, TypeError, OverflowError, RecursionError):
-        return yaml.load(text, Loader=_StrictLoader)
-
-
-class _Strict(Composer):
-    """Refuses aliases (no anchor bombs) and repeated keys."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        if self.check_event(yaml.AliasEvent):  # type: ignore[attr-defined]
-            mark = self.peek_event().start_mark  # type: ignore[attr-defined]
-            raise yaml.YAMLError(f'line {mark.line + 1}: aliases are not allowed')
-        return super().compose_node(parent, index)
-
-    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        seen: set[object] = set()
-        for key_node, _ in node.value:
-            if key_node.value in seen:
-                line = key_node.start_mark.line + 1
-                raise yaml.YAMLError(f'line {line}: key {shown(key_node.value)} is duplicated')
-            if isinstance(key_node.value, str):
-                seen.add(key_node.value)
-        mapping: dict[Any, Any] = super().construct_mapping(node, deep)  # type: ignore[misc]
-        return mapping
-
-
-class _StrictLoader(_Strict, yaml.SafeLoader):
-    """In Python, which gives the best error messages."""
-
-
-_StrictLoader.add_implicit_resolver('tag:yaml.org,2002:float', NUMBER, list('-+.0123456789'))
-
-
-_Events: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
-
-
-class _QuickLoader(_Strict, _Events):  # type: ignore[misc]
-    """On libyaml, where PyYAML has it: several times as fast."""
-
-    def __init__(self, stream: str) -> None:
-        _Events.__init__(self, stream)
-        Composer.__init__(self)
-
-
-_QuickLoader.add_implicit_resolver('tag:yaml.org,2002:float', NUMBER, list('-+.0123456789'))
 
 
 def _convert(expected: Any, value: object, where: str, problems: list[str]) -> Any:
