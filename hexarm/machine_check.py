@@ -1,6 +1,5 @@
 """Everything that is wrong with a machine file: in each section, and between them."""
 
-import difflib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -14,9 +13,10 @@ from bridge.servo_config import ServosConfig
 from hexapod_control import load as hexapods
 from hexapod_control.home import home_problems
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
+from hexarm.machine_spelling import corrected
 from hexarm.machine_warnings import warnings_of
 from hexarm.machines import frames_of, loader
-from manipulator.config import build, forms_of, parse_yaml
+from manipulator.config import build, forms_of, nearest, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
 from manipulator.formatting import shown, told_apart
 from manipulator.limits.wording import in_words
@@ -74,9 +74,15 @@ def report_of(content: Mapping[str, Any]) -> Report:
     as both are good: home, names, units, ranges, speeds and the park position.
     """
     found = Findings()
-    whole = found.of(lambda: build(MachineFile, content))
+    content = dict(corrected(MachineFile, content, '', found.problems))
     kind = _kind(found, content)
     schemas = sections_of(kind) if kind else BRIDGE
+    content = content | {
+        name: corrected(schema, content[name], name, found.problems)
+        for name, schema in schemas.items()
+        if name in content
+    }
+    whole = found.of(lambda: build(MachineFile, content))
     unfit = _unfit(kind, content)
     if unfit:
         return Report(unfit)
@@ -177,20 +183,22 @@ def _machine(kind: str, content: Mapping[str, Any], whole: MachineFile | None) -
 
 def _between(machine: Machine, calibration: Calibration, is_home_good: bool) -> Iterator[str]:
     """Contradictions between servos and machine; where home is wrong, park can hardly be right."""
-    expected, names = machine.kinematics.joint_names, calibration.names
-    missing = [name for name in expected if name not in names]
-    for name in missing:
-        near = difflib.get_close_matches(name, set(names) - set(expected), n=1)
-        yield f'servos.joints: none is called {name!r}{f", but {near[0]!r}" if near else ""}'
+    expected, names = machine.kinematics.joint_names, list(calibration.names)
+    for name in (name for name in expected if name not in names):
+        near = nearest(name, [other for other in names if other not in expected])
+        yield f'servos.joints: none is called {name!r}{f", but {near!r}" if near else ""}'
+        if near:
+            names[names.index(near)] = name
     if calibration.unit != machine.kinematics.joint_unit:
         unit = 'millimetres' if calibration.unit == 'm' else 'degrees'
         yield f'servos.joints: in {unit}, which are not what the joints of this kind are in'
-    elif not missing:
+        return
+    yield from _slow_servos(machine, calibration)
+    if {*expected} <= {*names}:
         order = [names.index(name) for name in expected]
         yield from _narrow_servos(machine, calibration, order)
         if is_home_good:
             yield from _park_problems(machine, calibration, order)
-        yield from _slow_servos(machine, calibration)
 
 
 def _narrow_servos(machine: Machine, calibration: Calibration, order: list[int]) -> Iterator[str]:

@@ -135,15 +135,25 @@ def _fitting(kinds: list[Any], value: object) -> Any:
 def _convert_form(
     forms: list[Any], value: Mapping[Any, Any], where: str, problems: list[str]
 ) -> Any:
-    """By the form that has most of the keys in `value`."""
-    names = [[f.name for f in dataclasses.fields(form)] for form in forms]
-    shared = [len({*of_form} & {*value}) for of_form in names]
-    best = max(shared)
-    if shared.count(best) > 1:
-        firsts = [of_form[0] for of_form in names]
+    form = fitting_form(forms, value)
+    if form is None:
+        firsts = [dataclasses.fields(form)[0].name for form in forms]
         problems.append(f'{where}: has the keys of no form or of two, needs one of {firsts}')
         return None
-    return _convert_section(forms[shared.index(best)], value, where, problems)
+    return _convert_section(form, value, where, problems)
+
+
+def fitting_form(forms: list[Any], value: Mapping[Any, Any]) -> Any:
+    """The dataclass that has most of the keys in `value`; None where two have as many."""
+    shared = [len({f.name for f in dataclasses.fields(form)} & {*value}) for form in forms]
+    best = max(shared)
+    return forms[shared.index(best)] if shared.count(best) == 1 else None
+
+
+def unknown_key(where: str, name: object, known: list[str]) -> tuple[str, str]:
+    """The known key that is nearest, empty where none is near; and the problem in words."""
+    near = nearest(str(name), known)
+    return near, f'{_join(where, name)}: unknown key{_did_you_mean(near)}'
 
 
 def _convert_section(schema: Any, value: object, where: str, problems: list[str]) -> Any:
@@ -154,9 +164,9 @@ def _convert_section(schema: Any, value: object, where: str, problems: list[str]
     before, meant = len(problems), set()
     for name in value:
         if name not in fields:
-            near = nearest(str(name), list(fields))
+            near, problem = unknown_key(where, name, list(fields))
             meant.add(near)
-            problems.append(f'{_join(where, name)}: unknown key{_did_you_mean(near)}')
+            problems.append(problem)
     hints = typing.get_type_hints(schema)
     arguments = {}
     for name, field in fields.items():

@@ -3,6 +3,7 @@
 import json
 import re
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from unittest.mock import ANY
 
@@ -246,7 +247,8 @@ def test_command_prints_each_problem_on_a_line_and_fails(tmp_path, capsys):
     assert main(['check', str(bad)]) == 2
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == f'{bad}: 1 problem'
-    assert len(lines) == 2
+    assert lines[1].startswith('geometry.rod_lenght_mm: unknown key')
+    assert lines[2].startswith('joints at home: ')
 
 
 def test_command_answers_programs(tmp_path, capsys):
@@ -488,6 +490,29 @@ def test_what_else_is_wrong_is_found_whatever_the_kind_says(kind):
     )
     assert found[0].startswith('kind: ')
     assert found[1:] == ['limits: home has crank angle 120° on all legs, outside [130, 210]°']
+
+
+MISTAKES = (
+    ('kind: rotary_hexapod', 'kind: rotry_hexapod'),
+    ('rod_length_mm: 58.0', 'rod_lenght_mm: 58.0'),
+    ('singularity_margin: 0.3', 'singularity_margin: 2.0'),
+    ('name: crank_3', 'name: crnk_3'),
+    ('on_link_loss: hold', 'on_link_loss: hope'),
+    ('hysteresis_deg', 'histeresis_deg'),
+    ('joint_speed_deg_s: 480', 'joint_speed_deg_s: 700'),
+    ('thickness_mm: 4.0', 'thicknes_mm: 4.0'),
+    ('speed_deg_s: 600.0', 'sped_deg_s: 600.0'),
+    ('link:\n', 'lnk:\n'),
+)
+
+
+def test_no_mistake_hides_another():
+    alone = {mistake: set(problems_of(changed(ROBOCAKE, mistake))) for mistake in MISTAKES}
+    for first, second in combinations(MISTAKES, 2):
+        found = problems_of(changed(ROBOCAKE, first, second))
+        assert set(found) == alone[first] | alone[second], (first, second)
+    whole = problems_of(changed(ROBOCAKE, *MISTAKES))
+    assert set(whole) == set().union(*alone.values())
 
 
 def test_faults_of_servos_and_a_home_beyond_limits_come_together():
