@@ -22,6 +22,7 @@ ROBOCAKE = (CONFIG / 'robocake.yaml').read_text()
 ARM = (CONFIG / 'arm_6r.yaml').read_text()
 STEWART = (CONFIG / 'stewart_6_3.yaml').read_text()
 UR5 = (CONFIG / 'ur5.yaml').read_text()
+BY_COORDINATES = (CONFIG / 'reachy_mini.yaml').read_text()
 
 
 def changed(text, *replacements):
@@ -85,6 +86,7 @@ def test_rod_shorter_than_its_gap_reports_by_how_much():
         (ROBOCAKE, 'rod_length_mm: 58.0', 0.058),
         (ROBOCAKE, 'rod_length_mm: 58.0', 58000.0),
         (ROBOCAKE, 'home_height_mm: 41.19', 41190.0),
+        (BY_COORDINATES, 'home_height_mm: 177.0', 0.177),
         (ROBOCAKE, 'characteristic_length_mm: 70.0', 0.07),
         (STEWART, 'base_radius_mm: 100.0', 0.1),
         (STEWART, 'stroke_range_mm: [142.0, 238.0]', [0.142, 0.238]),
@@ -211,6 +213,8 @@ def test_servos_that_are_too_narrow_alike_are_one_line():
     (found,) = problems_of(changed(ROBOCAKE, ('[550.0, 2450.0]', '[700.0, 2300.0]')))
     assert found.startswith('servos.joints: crank_1, crank_2, crank_3, crank_4, crank_5, crank_6 ')
     assert found.endswith('reach [43.81, 196.2] deg, their range in limits is [30, 210] deg')
+    report = report_of(parse_yaml(changed(ROBOCAKE, ('[30.0, 210.0]', '[-30.0, 210.0]'))))
+    assert (len(report.problems), report.warnings) == (1, ())
 
 
 def test_ranges_that_differ_are_not_written_alike_and_less_than_a_count_is_no_difference():
@@ -428,9 +432,6 @@ def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
     assert margins.startswith('smallest margins at home: rod shortfall 12.43 mm (leg ')
     assert main(['check', 'stewart_6_6']) == 0
     assert '0.190000  0.190000 m' in capsys.readouterr().out
-
-
-BY_COORDINATES = (CONFIG / 'reachy_mini.yaml').read_text()
 
 
 def bent_the_other_way(content):
