@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.geometry import ArmGeometry, ArmLimits, placed
+from arm_control.geometry import ArmGeometry, ArmLimits, check_axes, placed
 from arm_control.rate_scaling import AT_ONCE
 from arm_control.resolved_rate import STRAIGHT, JogState, ResolvedRate
 from manipulator.arrays import Array, frozen
@@ -75,14 +75,13 @@ class ArmJogger:
         """The step, with no limits but those of the joints."""
         limits = self.jog.motion
         wanted = towards(motion.along, twist, limits, dt)
-        change, ticks = ticks_for(np.array((wanted - motion.twist, wanted)), limits, dt).tolist()
-        if change > 1.0 + LAG:
+        ticks = ticks_for(wanted, limits, dt)
+        if ticks_for(wanted - motion.twist, limits, dt) > 1.0 + LAG:
             wanted = towards(motion.twist, twist, limits, dt)
         slowing = SHARE_BEFORE_STOPS / (max(ticks, 1.0) * dt)
         after = self._stepped(motion, wanted, dt, slowing)
-        changes = np.array((after.along - motion.along, after.twist - motion.twist))
-        along, whole = ticks_for(changes, limits, dt).tolist()
-        if along > 1.0 + ROUNDING or whole > 1.0 + LAG:
+        along = ticks_for(after.along - motion.along, limits, dt)
+        if along > 1.0 + ROUNDING or ticks_for(after.twist - motion.twist, limits, dt) > 1.0 + LAG:
             # No part of what is wanted can be reached as gently as the tool asks for.
             straight = towards(motion.twist, np.zeros(6), limits, dt)
             braked = self._stepped(replace(motion, off_line=STRAIGHT), straight, dt)
@@ -166,13 +165,13 @@ def _serial_arm(geometry: ArmGeometry, limits: ArmLimits) -> SerialArm:
     return SerialArm(placed(geometry.chain()), limits.joint_limits(), length, rest)
 
 
-KINDS = {KIND: Kind(ArmGeometry, ArmLimits, _serial_arm)}
+KINDS = {KIND: Kind(ArmGeometry, ArmLimits, _serial_arm, check_axes)}
 
 
 def jogging(machine_file: MachineFile) -> ResolvedRate:
     """The resolved-rate step of one file's arm, within its joint and motion limits."""
-    limits = build(ArmLimits, machine_file.limits, 'limits')
     kinematics = serial_arm(machine_file)
+    limits = build(ArmLimits, machine_file.limits, 'limits')
     motion = MotionLimits.from_config(machine_file.motion)
     own = kinematics.limits
     motion = replace(motion, joint=motion.joint.tightened(own.speed, own.acceleration))

@@ -9,6 +9,7 @@ that a section may have; the one with most of the keys is meant.
 import dataclasses
 import difflib
 import math
+import re
 import types
 import typing
 from collections.abc import Mapping
@@ -25,8 +26,6 @@ U = TypeVar('U')
 MAX_CHARACTERS = 100_000
 MOST_OF_A_REASON = 200
 """Characters of an error of PyYAML, which may repeat the file."""
-
-IMPORTS = 'serial arms are described by dh or screws, see docs/arm-kinematics.md'
 
 
 SIZE_MM = (1e-3, 1e6)
@@ -97,6 +96,10 @@ def build_both(
     return typing.cast(tuple[T, U], results)
 
 
+NUMBER = re.compile(r'[-+]?(\.\d+|\d+(\.\d*)?)([eE][-+]?\d+)?$')
+"""As in YAML 1.2; for PyYAML, which knows 1.1, 3e6 is a text."""
+
+
 def _content(text: str) -> object:
     """What the text holds: read quickly, or else slowly, for an error that shows the line."""
     try:
@@ -130,6 +133,9 @@ class _StrictLoader(_Strict, yaml.SafeLoader):
     """In Python, which gives the best error messages."""
 
 
+_StrictLoader.add_implicit_resolver('tag:yaml.org,2002:float', NUMBER, list('-+.0123456789'))
+
+
 _Events: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 
 
@@ -139,6 +145,9 @@ class _QuickLoader(_Strict, _Events):  # type: ignore[misc]
     def __init__(self, stream: str) -> None:
         _Events.__init__(self, stream)
         Composer.__init__(self)
+
+
+_QuickLoader.add_implicit_resolver('tag:yaml.org,2002:float', NUMBER, list('-+.0123456789'))
 
 
 def _convert(expected: Any, value: object, where: str, problems: list[str]) -> Any:
@@ -301,7 +310,7 @@ def _short(error: Exception) -> str:
 def _markup(text: str) -> str:
     """What a file that begins with < is."""
     if '<robot' in text:
-        return f'is a URDF, which cannot be imported yet: {IMPORTS}'
+        return 'is a URDF: hexarm import FILE makes a machine file of it'
     return 'is XML or HTML, needs YAML'
 
 

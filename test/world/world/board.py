@@ -8,7 +8,7 @@ from bridge.protocol import ResetCause
 from world.timeline import Link, Process
 
 STEP = 0.01
-"""Seconds between two looks at the servos."""
+"""Seconds; the pulses are looked at so often, twice a period."""
 
 
 class Cable:
