@@ -60,7 +60,7 @@ def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pla
     Raises Unreachable when the goal itself is out of reach, and Refused when the path there is,
     cannot be slowed down enough, or costs more `effort` than a plan may.
     """
-    _refuse_absurd(machine, goal.pose)
+    refuse_absurd(machine, goal.pose)
     if goal.motion is Motion.JOINT:
         return _plan_joints(machine, start, goal, effort)
     flowing = (
@@ -112,7 +112,7 @@ def compared(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Comp
     return ComparedPlan(plan, durations, float(rated.max()))
 
 
-def _refuse_absurd(machine: Machine, pose: Pose) -> None:
+def refuse_absurd(machine: Machine, pose: Pose) -> None:
     """Refused for a pose, finite as it is, that is farther away than any machine is large."""
     kinematics = machine.kinematics
     away = float(np.abs(pose.position - kinematics.home.position).max())

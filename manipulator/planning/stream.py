@@ -57,7 +57,7 @@ class Stream:
             self._recent.append(goal)
         if len(self._recent) < 3:
             self._due = -np.inf
-            return goal
+            return replace(goal, flow=None)
         first, middle, _ = self._recent
         before, gap = middle.stamp - first.stamp, goal.stamp - middle.stamp
         start = first.pose.twist_to(middle.pose) / before

@@ -32,10 +32,11 @@ TIMED = TimedPath, JointTrajectory
 
 @dataclass
 class ActivePlan:
-    """A plan, the stamp of the goal that it came from, and how far its own time has come."""
+    """A plan, stamp and note of the goal that it came from, and how far its own time has come."""
 
     plan: Plan
     stamp: float = 0.0
+    note: str = ''
     time: float = 0.0
 
     @property

@@ -14,11 +14,13 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused, Unreachable
 from manipulator.machine import Machine
-from manipulator.planning.goal import Goal
+from manipulator.planning.goal import Goal, OnUnreachable
+from manipulator.planning.nearest_goal import NearestGoal
 from manipulator.planning.plan import MotionState, Plan
 from manipulator.planning.planner import Start, plan_goal
 from manipulator.planning.stream import Stream
 from manipulator.planning.worker import Effort, InPlace, Job, TooLong, Worker
+from manipulator.pose import Pose
 from manipulator.trajectory.active_plan import ActivePlan
 
 LEADS = (3, 12, 50)
@@ -81,6 +83,7 @@ class Planning:
         self._machine, self._dt, self._worker = machine, dt, worker
         self._quick = InPlace(TICK_POSES) if machine.kinematics.is_explicit else None
         self._stream = Stream(0.0 if self._quick else LEADS[0] * dt)
+        self._nearest = NearestGoal(machine)
         self._now = 0.0
         self._newest: Goal | None = None
         self._request: Planned | None = None
@@ -98,8 +101,10 @@ class Planning:
         """Whether a plan has just become worth a report, by how long it takes."""
         return self._request is not None and self._ticks == NOTABLE
 
-    def request(self, goal: Goal) -> None:
-        """Plans a goal at the next `step`."""
+    def request(self, goal: Goal, pose: Pose, joints: Array) -> None:
+        """Plans a goal at the next `step`; the machine is at `pose`, with joints (n,)."""
+        if goal.on_unreachable is OnUnreachable.NEAREST:
+            goal = self._nearest.reached(goal, pose, joints)
         self._newest = self._stream.continued(goal, self._now)
 
     def cancel(self) -> None:
