@@ -31,9 +31,10 @@ def _other_bend(machine: Machine, kinematics: RotaryHexapod, has_tangents: bool)
     is_other = ((joints < low) | (joints > high)) & (other >= low) & (other <= high)
     if not is_other.all():
         return ''
-    ends = ', '.join(f'{180.0 - end:.6g}' for end in np.degrees([high[0], low[0]]))
+    ranges = [f'[{180.0 - b:.6g}, {180.0 - a:.6g}]' for a, b in np.degrees([low, high]).T]
+    written = ranges[0] if len(set(ranges)) == 1 else f'[{", ".join(ranges)}]'
     write = (
-        f'negate the crank_tangents and count the angles from there: crank_range_deg: [{ends}], '
+        f'negate the crank_tangents and count the angles from there: crank_range_deg: {written}, '
         'centre_deg and park_deg 180 minus what they are, and each sign the other'
     )
     if not has_tangents:

@@ -26,6 +26,9 @@ MOST_STEPS = 30
 LEAST_SIGMA = 0.1
 """σmin of an arm that goes as far as it reaches: it can still be driven there."""
 
+ARM_JOINTS = 6
+"""As many as the kernel's search has variables: other machines' goals stay as they are."""
+
 LONGEST_STEP = 0.3
 """rad of any joint."""
 
@@ -46,6 +49,8 @@ class NearestGoal:
         Raises Refused for a goal that is farther away than any machine is large.
         """
         refuse_absurd(self._machine, goal.pose)
+        if not self._machine.constraints.is_one_group and len(joints) != ARM_JOINTS:
+            return goal
         try:
             check_goal(self._machine, goal.pose, joints)
         except Unreachable as error:
