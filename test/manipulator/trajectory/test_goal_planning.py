@@ -317,7 +317,7 @@ def test_a_goal_during_a_joint_move_is_planned_from_the_joints_that_the_move_has
 def test_what_three_plans_were_too_late_for_may_still_be_planned_from_rest():
     arm = load('arm_6r')
     begin = arm.kinematics.inverse(arm.kinematics.home)
-    move = plan_joint_move(arm, arm.kinematics.home, begin, begin + [1.5, 0, 0, 0, 0, 0])
+    move = plan_joint_move(arm, arm.kinematics.home, begin, begin + 1.5 * np.eye(6)[0])
     active, worker = ActivePlan(move), Later(LEADS[-1] + 1)
     planning = Planning(replace(arm, kinematics=Costly(arm.kinematics)), DT, worker)
     planning.request(Goal(arm.kinematics.home, 1.0))
