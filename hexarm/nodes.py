@@ -12,7 +12,7 @@ from importlib import import_module
 
 from rclpy.node import Node
 
-from hexarm.machines import described, load
+from hexarm.machines import described, load, saved_poses_file
 from manipulator.errors import InvalidInput
 from manipulator.nodes.intra_process import IntraProcess
 from manipulator.nodes.run import Makers, run_nodes
@@ -36,7 +36,7 @@ def _ik(machine: str, process: IntraProcess) -> Node:
 def _pose(machine: str, process: IntraProcess) -> Node:
     from manipulator.nodes.pose_node import PoseNode
 
-    return PoseNode(_loaded, machine, process)
+    return PoseNode(_loaded, saved_poses_file, machine, process)
 
 
 def _serial_bridge(process: IntraProcess) -> Node:

@@ -58,6 +58,7 @@ def within_speed(twist: Array, motion: MotionLimits) -> tuple[Array, float]:
     part = max(
         math.hypot(*parts[:3]) / motion.linear.speed,
         math.hypot(*parts[3:]) / motion.angular.speed,
+        *(abs(part) / most for part, most in zip(parts, motion.axis_speeds.tolist(), strict=True)),
         1.0,
     )
     return target / part, 1.0 / part
