@@ -56,7 +56,7 @@ def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pla
     cannot be slowed down enough, or costs more `effort` than a plan may.
     """
     _refuse_absurd(machine, goal.pose)
-    if goal.motion is Motion.JOINT:
+    if goal.motion in (Motion.JOINT, Motion.UNWIND):
         return _plan_joints(machine, start, goal, effort)
     try:
         return _plan_line(machine, start, goal, effort)
@@ -138,7 +138,8 @@ def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> 
     joints = goal.joints
     if joints is None:
         check_goal(machine, goal.pose, start.joints)
-        joints = machine.kinematics.inverse(goal.pose, start.joints)
+        near = None if goal.motion is Motion.UNWIND else start.joints
+        joints = machine.kinematics.inverse(goal.pose, near)
     joints = _off_the_stops(machine, joints)
 
     def move(limits: MotionLimits, slowdown: float) -> Plan:
