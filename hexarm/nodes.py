@@ -8,40 +8,58 @@ functions.
 import signal
 import sys
 from functools import cache, partial
+from importlib import import_module
 
 from rclpy.node import Node
 
-from hexarm.machines import described, load
+from hexarm.machines import described, load, read, saved_poses_file
 from manipulator.errors import InvalidInput
+from manipulator.nodes.intra_process import IntraProcess
 from manipulator.nodes.run import Makers, run_nodes
 
 HEXAPOD, ARM = 'robocake', 'arm_6r'
 """The machines of the executables where none is named."""
 
 
-def _trajectory(machine: str) -> Node:
+def _trajectory(machine: str, process: IntraProcess) -> Node:
     from manipulator.nodes.trajectory_node import TrajectoryNode
 
-    return TrajectoryNode(_loaded, machine)
+    return TrajectoryNode(_loaded, machine, process)
 
 
-def _ik(machine: str) -> Node:
+def _ik(machine: str, process: IntraProcess) -> Node:
     from manipulator.nodes.ik_node import IkNode
 
-    return IkNode(_loaded, machine)
+    return IkNode(_loaded, machine, process)
 
 
-def _pose(machine: str) -> Node:
+def _pose(machine: str, process: IntraProcess) -> Node:
     from manipulator.nodes.pose_node import PoseNode
 
-    return PoseNode(_loaded, machine)
+    return PoseNode(_loaded, saved_poses_file, machine, process)
 
 
-def _serial_bridge() -> Node:
+def _serial_bridge(process: IntraProcess) -> Node:
+    """The node with a board, or without one: the machine file says which."""
+    if read(_parameter('serial_bridge', 'machine', HEXAPOD)).driver == 'topic':
+        from bridge.nodes.topic_bridge_node import TopicBridge
+
+        return TopicBridge(_loaded, HEXAPOD, process)
     from bridge.nodes.serial_bridge_node import SerialBridge
     from hexarm.machines import board_config
 
-    return SerialBridge(board_config)
+    return SerialBridge(board_config, process)
+
+
+def _parameter(node: str, name: str, default: str) -> str:
+    """A parameter that a node of this process will have; rclpy tells it to a node alone."""
+    from manipulator.nodes.parameters import declare
+
+    reader = Node(node, enable_rosout=False, start_parameter_services=False)
+    try:
+        return str(declare(reader, name, default, ''))
+    finally:
+        reader.destroy_node()
 
 
 _loaded = cache(load)
@@ -50,7 +68,16 @@ _loaded = cache(load)
 
 def machine_nodes() -> Makers:
     """What makes the four nodes of a machine: trajectory, ik, pose, serial_bridge."""
-    return [*(partial(part, HEXAPOD) for part in (_trajectory, _ik, _pose)), _serial_bridge]
+    process = IntraProcess()
+    parts = (partial(part, HEXAPOD, process) for part in (_trajectory, _ik, _pose))
+    return [*parts, partial(_serial_bridge, process)]
+
+
+def import_machine_nodes() -> None:
+    """Imports what the four nodes of a machine consist of, so that making them takes less."""
+    for name in ('trajectory', 'ik', 'pose'):
+        import_module(f'manipulator.nodes.{name}_node')
+    import_module('bridge.nodes.serial_bridge_node')
 
 
 def machine() -> int:
@@ -60,17 +87,17 @@ def machine() -> int:
 
 def trajectory(default_machine: str = HEXAPOD) -> int:
     """Runs the trajectory node."""
-    return run_nodes([partial(_trajectory, default_machine)], described)
+    return run_nodes([partial(_trajectory, default_machine, IntraProcess())], described)
 
 
 def ik(default_machine: str = HEXAPOD) -> int:
     """Runs the inverse kinematics node."""
-    return run_nodes([partial(_ik, default_machine)], described)
+    return run_nodes([partial(_ik, default_machine, IntraProcess())], described)
 
 
 def pose(default_machine: str = HEXAPOD) -> int:
     """Runs the forward kinematics node."""
-    return run_nodes([partial(_pose, default_machine)], described)
+    return run_nodes([partial(_pose, default_machine, IntraProcess())], described)
 
 
 arm_trajectory, arm_ik, arm_pose = (partial(run, ARM) for run in (trajectory, ik, pose))
@@ -78,7 +105,7 @@ arm_trajectory, arm_ik, arm_pose = (partial(run, ARM) for run in (trajectory, ik
 
 def serial_bridge() -> int:
     """Runs the node between the graph and the board."""
-    return run_nodes([_serial_bridge], described)
+    return run_nodes([partial(_serial_bridge, IntraProcess())], described)
 
 
 def fake_hardware() -> int:

@@ -1,5 +1,6 @@
 """What tests of every folder may ask for, and what keeps those of several workers apart."""
 
+import gc
 import importlib.util
 import os
 import random
@@ -10,13 +11,14 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from hexarm.board import build as firmware_build
-from sampling import IS_THOROUGH
+from sampling import IS_THOROUGH, enough
 
 # How long a computer takes is no verdict. A run tries the same as the last one, but for thorough
 # runs, which look for what no run has tried yet.
 settings.register_profile(
     'patient',
     deadline=None,
+    max_examples=enough(40, 200),
     derandomize=not IS_THOROUGH,
     suppress_health_check=[HealthCheck.too_slow],
 )
@@ -42,12 +44,29 @@ os.environ['ROS_DOMAIN_ID'] = str(random.Random(RUN).sample(DOMAINS, len(DOMAINS
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
 
+@pytest.fixture(scope='session', autouse=True)
+def users_data(tmp_path_factory):
+    """Saved poses of shipped machines are in a folder of this test run, not in the user's."""
+    os.environ['XDG_DATA_HOME'] = str(tmp_path_factory.mktemp('data'))
+
+
 def pytest_collection_modifyitems(items):
-    """Marks what starts other programs: graphs, installations, a browser."""
+    """Marks what starts other programs (graphs, installations, a browser), and what is long.
+
+    The chip is simulated instruction by instruction: the same tests and the same C run on the
+    computer's board in no time.
+    """
     for item in items:
         folder = item.path.relative_to(FOLDER).parts[0]
         if folder in ('graph', 'install') or STARTS_OTHERS & set(item.fixturenames):
             item.add_marker('processes')
+        elif 'chip_tools' in item.fixturenames:
+            item.add_marker('long')
+
+
+def pytest_collection_finish():
+    """What is there by now stays: every garbage collection of every test would search it again."""
+    gc.freeze()
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -8,6 +8,7 @@ from bridge.fake.board_thread import FakeMachine
 from bridge.protocol import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
+from hexarm.board.kinematics import crank_hexapod
 from manipulator.planning.joint_points import joint_points
 from manipulator.planning.path import Tolerance
 from manipulator.planning.path_timing import PathRequest
@@ -40,7 +41,8 @@ class World:
         self.bridge = None
         self.user = Process(self.timeline)
         play = config.hysteresis if hysteresis is None else hysteresis
-        fake = FakeMachine.from_config(config, boot_s, hysteresis=play)
+        hexapod = crank_hexapod(self.machine, self.calibration)
+        fake = FakeMachine.from_config(config, boot_s, hysteresis=play, hexapod=hexapod)
         self.board = BoardProcess(self.timeline, fake)
         self.cable = self.board.cable = Cable(self.timeline, self.board)
         nobody = self.user
