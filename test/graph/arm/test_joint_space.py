@@ -1,5 +1,6 @@
 """Joint space through the graph: the topics, and the action by which MoveIt drives an arm."""
 
+import json
 import os
 import sys
 
@@ -11,6 +12,8 @@ from rclpy.action import ActionClient
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from hexarm import Robot
+from hexarm.cli.main import main
 from hexarm.client import time_message
 from hexarm.machines import load
 from manipulator.errors import Refused
@@ -220,5 +223,24 @@ def test_what_ends_an_action_is_told_by_its_code(arm, actions):
         assert (replaced[0], replaced[1].error_code) == (ABORTED, code.INVALID_GOAL)
         assert replaced[1].error_string == 'replaced by a newer trajectory'
         assert actions.result(second)[0] == SUCCEEDED
+
+    arm.persist(go)
+
+
+def test_a_program_and_the_command_line_move_and_jog_joints(arm, capsys):
+    def go():
+        with Robot('/arm') as robot:
+            robot.move_joints({'joint_6': 0.2}, joint_1=-0.1)
+            assert robot.joints['joint_6'] == pytest.approx(0.2, abs=NEAR)
+            robot.jog_joints(joint_6=-0.3, seconds=0.5)
+            assert robot.joints['joint_6'] < 0.15
+            assert robot.joints['joint_1'] == pytest.approx(-0.1, abs=NEAR)
+            with pytest.raises(Refused, match=r'joint 2: joint angle .* outside'):
+                robot.move_joints(joint_2=3.0)
+        assert main(['joints', 'arm', '--set', 'joint_6=10', '--units', 'mm', '--json']) == 0
+        measured = json.loads(capsys.readouterr().out)['joints']
+        assert measured['positions'][5] == pytest.approx(np.radians(10.0), abs=NEAR)
+        assert main(['joints', 'arm', '--set', 'elbow=1']) == 2
+        assert "--set 'elbow=1': needs NAME=Q, with one of joint_1" in capsys.readouterr().err
 
     arm.persist(go)
