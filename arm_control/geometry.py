@@ -11,7 +11,7 @@ from arm_control.chain import Chain
 from manipulator.arrays import Array, frozen
 from manipulator.config import PLACE_MM, RATE, SIZE_MM, TURN_DEG, key, quantity
 from manipulator.errors import ConfigError
-from manipulator.formatting import length, shown
+from manipulator.formatting import counted, length, shown
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.machine_limits import JointRange
 from manipulator.pose import Pose
@@ -168,7 +168,8 @@ def check_axes(geometry: Mapping[str, Any], limits: Mapping[str, Any]) -> None:
 
 def other_axes(count: int) -> str:
     """What is said of an arm with `count` axes, which are not six."""
-    return f'{count} axes, arms with 6 are supported; 5 and 7 are planned'
+    there = counted(count, 'axis', 'axes')
+    return f'{there}, arms with 6 are supported; 5 and 7 are planned'
 
 
 def placed(chain: Chain) -> Chain:

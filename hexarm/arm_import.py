@@ -95,8 +95,10 @@ def _geometry(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
     if wishes.home_deg is not None:
         yield f'  home_deg: {_list(wishes.home_deg)}'
         return
-    home = np.degrees(home_of(arm, length))
-    yield f'  home_deg: {_list(np.round(home, 3))}  # assumed: not near a singular posture'
+    exact, (low, high) = np.degrees(home_of(arm, length)), np.degrees(_ends(arm))
+    rounded = np.round(exact, 3)
+    home = np.where((low <= rounded) & (rounded <= high), rounded, exact)
+    yield f'  home_deg: {_list(home)}  # assumed: not near a singular posture'
 
 
 def _limits(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
