@@ -18,6 +18,7 @@ from manipulator.arrays import Array
 from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError
 from manipulator.formatting import shortened
+from manipulator.rotation import EXACTLY, to_rpy
 
 ASSUMED_SPEED, ASSUMED_RANGE, ASSUMED_TORQUE = 90.0, 180.0, 50.0
 """deg/s, degrees either way, N·m: of joints whose file gives none."""
@@ -91,7 +92,8 @@ def _geometry(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
     for joint, axis, point in zip(arm.joints, chain.axes, chain.points, strict=True):
         yield f'    - {{axis: {_list(axis)}, point_mm: {_list(1e3 * point)}}}  # {joint.name}'
     yield f'  tool_position_mm: {_list(1e3 * chain.home.position)}'
-    yield f'  tool_rpy_deg: {_list(np.degrees(chain.home.rpy))}'
+    rpy = to_rpy(chain.home.rotation, EXACTLY)
+    yield f'  tool_rpy_deg: {_list(np.degrees(rpy))}'
     if wishes.home_deg is not None:
         yield f'  home_deg: {_list(wishes.home_deg)}'
         return

@@ -67,6 +67,7 @@ def random_urdf(rng):
 
     def place():
         angles = rng.choice(QUARTERS, 3) if rng.random() < 0.5 else rng.uniform(-4, 4, 3)
+        angles = angles + rng.choice([0.0, 1e-6, 5e-12, 2e-15])  # as in 1.5708 and 1.57079632679
         return {'xyz': rng.uniform(-0.4, 0.4, 3), 'rpy': angles}
 
     for i in range(6):
