@@ -19,8 +19,8 @@ Three = tuple[float, float, float]
 LONG_LINK, SHORTEST_ARM, LONGEST_ARM = 5.0, 0.02, 200.0
 """Metres: between two joints, and from the base through all of them to the tool."""
 
-PROPORTION = 50.0
-"""Of the longest link to the others: beyond it, one of both is in another unit."""
+PROPORTION = 150.0
+"""Of the longest link to the next: beyond it, one of both is in another unit."""
 
 HOME_ANGLES = 'joint angles at home'
 FAR_MM = 1e8
@@ -188,10 +188,10 @@ def _check_size(places: Array) -> None:
     links = np.linalg.norm(np.diff(places, axis=0), axis=1)
     names = ['the base', *(f'joint {i}' for i in range(1, len(links))), 'the tool']
     longest = int(np.argmax(links))
-    usual = float(np.median(links[links > 0.0])) if links.any() else 0.0
-    if links[longest] > PROPORTION * usual:
+    next_long = float(np.sort(links)[-2])
+    if links[longest] > PROPORTION * next_long > 0.0:
         gap = f'{names[longest + 1]} is {length(links[longest])} from {names[longest]}'
-        others = f'the others are about {length(usual)} long'
+        others = f'the next link is {length(next_long)} long'
         raise ConfigError([f'geometry: {gap}, {others}: is it in another unit?'])
     if not SHORTEST_ARM <= links.sum() <= LONGEST_ARM:
         whole = f'all links together are {length(links.sum())}'

@@ -16,6 +16,7 @@ from hexapod_control.home import home_problems
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
 from hexarm.machine_warnings import warnings_of
 from hexarm.machines import frames_of, loader
+from manipulator.arrays import Array
 from manipulator.config import build, forms_of, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
 from manipulator.formatting import shown
@@ -93,6 +94,7 @@ def report_of(content: Mapping[str, Any]) -> Report:
         machine = found.of(lambda: _machine(kind, content, whole))
     if machine is not None and whole is not None:
         found.of(partial(frames_of, whole, machine.kinematics))
+        machine = found.of(partial(machine.within, whole.task_space)) or machine
     calibration = _calibration(found, sections.get('servos'))
     if machine is not None:
         home = _home_problems(machine, content)
@@ -183,14 +185,25 @@ def _narrow_servos(machine: Machine, calibration: Calibration, order: list[int])
     narrow: dict[tuple[str, str], list[str]] = {}
     for i, low, high in zip(order, *machine.joint_ranges, strict=True):
         lowest, highest = calibration.range_of(i)
-        if lowest > low + 1e-6 or highest < high - 1e-6:
-            reach = f'[{lowest * factor:.4g}, {highest * factor:.4g}] {unit}'
-            span = f'[{low * factor:.4g}, {high * factor:.4g}] {unit}'
-            narrow.setdefault((reach, span), []).append(calibration.names[i])
+        count = 1.0 / abs(float(calibration.scale[i]))
+        if lowest > low + count or highest < high - count:
+            ends = np.array([lowest, highest, low, high]) * factor
+            narrow.setdefault(_told_apart(ends, unit), []).append(calibration.names[i])
     for (reach, span), some in narrow.items():
         reaches, whose = ('reach', 'their') if len(some) > 1 else ('reaches', 'its')
         names = ', '.join(some)
         yield f'servos.joints: {names} {reaches} {reach}, {whose} range in limits is {span}'
+
+
+def _told_apart(ends: Array, unit: str) -> tuple[str, str]:
+    """Two intervals, with as many digits as tell them apart."""
+    for digits in range(4, 13):
+        reach, span = (
+            f'[{low:.{digits}g}, {high:.{digits}g}] {unit}' for low, high in (ends[:2], ends[2:])
+        )
+        if reach != span:
+            break
+    return reach, span
 
 
 def _park_problems(machine: Machine, calibration: Calibration, order: list[int]) -> Iterator[str]:

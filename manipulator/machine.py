@@ -1,7 +1,7 @@
 """A machine as the nodes use it: its kinematics, its limits, its jogger."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Generic, Literal, TypeVar
 
 import numpy as np
@@ -14,6 +14,8 @@ from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import LimitOf
 from manipulator.limits.machine_limits import JointRange
+from manipulator.limits.task_space import TaskSpaceConfig
+from manipulator.limits.wording import in_words
 from manipulator.motion_limits import MotionConfig, MotionLimits
 from manipulator.static_deflection import StaticDeflection
 from manipulator.teleop.jogger import Jogger
@@ -53,6 +55,10 @@ class MachineFile:
     )
     dynamics: dict[str, Any] | None = key('masses and drives (docs/physics.md)', default=None)
     frames: FramesConfig = key("the user's frames", default_factory=FramesConfig)
+    task_space: TaskSpaceConfig = key(
+        'limits on position, orientation and speed of platform or tool',
+        default_factory=TaskSpaceConfig,
+    )
 
     def __post_init__(self) -> None:
         """Raises ConfigError for sections of the bridge that are missing, or without a use."""
@@ -120,6 +126,24 @@ class Machine:
         if self.jog_singularity not in JOG_SINGULARITIES:
             known = ' or '.join(map(repr, JOG_SINGULARITIES))
             raise InvalidInput(f'jog_singularity is {self.jog_singularity!r}, needs {known}')
+
+    def within(self, task_space: TaskSpaceConfig) -> 'Machine':
+        """With limits in task space as well; ConfigError names each beyond which home is."""
+        kinematics, constraints = self.kinematics, self.constraints
+        group = constraints.checks[0][0] if constraints.is_one_group else None
+        try:
+            added = task_space.limits(kinematics.home, group)
+        except ConfigError as error:
+            raise ConfigError([f'task_space.{problem}' for problem in error.problems]) from error
+        at_home = kinematics.home, kinematics.inverse(kinematics.home)
+        beyond = in_words(Constraints(added).violations(*at_home) if added else [])
+        if beyond:
+            raise ConfigError([f'task_space: home has {words}' for words in beyond])
+        return replace(
+            self,
+            constraints=Constraints((*constraints.limits, *added)),
+            motion=replace(self.motion, axis_speeds=task_space.speeds),
+        )
 
     @property
     def joint_ranges(self) -> tuple[Array, Array]:

@@ -75,6 +75,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 def run(arguments: argparse.Namespace) -> int:
     """Runs the graph; status 0 after Ctrl-C, 1 when a part of it ended or did not get ready."""
     from hexarm.client import Client  # noqa: PLC0415 (needs ROS, which `hexarm ik` does not)
+    from hexarm.nodes import import_machine_nodes  # noqa: PLC0415 (as above)
 
     machine = arguments.machine or MACHINES.get(arguments.name, arguments.name)
     check(arguments.name, machine, arguments.namespace)
@@ -90,6 +91,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     with parts, Client(namespace, interrupt) as client:
         parts.start_processes([*parts.board, *pages])
+        if not arguments.separate:
+            import_machine_nodes()  # while this node finds the others
         client.refuse_second()
         print(described(machine), flush=True)
         parts.start_nodes(arguments.separate)

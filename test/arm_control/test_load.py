@@ -170,11 +170,14 @@ def test_calibrated_arm_whose_distances_along_axes_cancel_is_taken_whole(machine
             lambda i, a, d: (1e-3 * a, 1e-3 * d),
             'all links together are 1.*, 20 mm to 200 m fit',
         ),
-        (lambda i, a, d: (a, 1e3 * d if i == 0 else d), 'joint 2 is 89.16 m from joint 1'),
+        (
+            lambda i, a, d: (a, 1e3 * d if i == 0 else d),
+            'joint 2 is 89.16 m from joint 1, the next link is 425 mm',
+        ),
         (lambda i, a, d: (a, 133e3 if i == 1 else d), 'joint 5 is 133.1 m from joint 4'),
         (
             lambda i, a, d: (1e3 * a, d),
-            'joint 3 is 425 m from joint 2, the others are about .* mm',
+            'all links together are 81.* m, 20 mm to 200 m fit',
         ),
     ],
 )
