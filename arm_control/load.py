@@ -5,7 +5,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.geometry import ArmGeometry, ArmLimits, check_axes, placed
+from arm_control.geometry import ArmGeometry, check_axes, placed
+from arm_control.joint_limits import ArmLimits
 from arm_control.rate_scaling import AT_ONCE
 from arm_control.resolved_rate import STRAIGHT, JogState, ResolvedRate
 from manipulator.arrays import Array, frozen
