@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from arm_control.geometry import ArmLimits
+from arm_control.joint_limits import ArmLimits
 from hexapod_control.geometry import LEGS
 from hexarm.simulation.arm_model import arm_model
 from hexarm.simulation.drives import Drives, pushing, servo_speeds, turning
