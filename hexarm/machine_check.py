@@ -10,15 +10,18 @@ import numpy as np
 
 from bridge.calibration import Calibration
 from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
+from hexapod_control.stack_kinematics import StackKinematics
 from hexarm.machine_warnings import warnings_of
 from hexarm.machines import loader
 from hexarm.simulation.dynamics_config import SCHEMAS
+from manipulator.arrays import Array
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
 from manipulator.frames import Frames
 from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionConfig
+from manipulator.pose import Pose
 
 T = TypeVar('T')
 ROOM = ('geometry', 'limits')
@@ -26,6 +29,10 @@ BRIDGE = {'servos': ServosConfig, 'link': LinkConfig, 'simulation': SimulationCo
 
 STAND_IN = MotionConfig(1.0, 1.0, 10.0, 1.0, 1.0, 10.0)
 """For a motion section with faults of its own, so that the others are looked at all the same."""
+
+
+PARK_SHARE = 1e-4
+"""m or rad by which a stack's park position may be off the rule that shares its motion."""
 
 
 class Findings:
@@ -85,6 +92,8 @@ def report_of(content: Mapping[str, Any]) -> Report:
     kind = content.get('kind')
     if 'dynamics' in there and isinstance(kind, str) and kind in SCHEMAS:
         found.of(partial(build, SCHEMAS[kind], there['dynamics'], 'dynamics'))
+    elif 'dynamics' in there and machine is not None:
+        found.problems.append(f'dynamics: a {kind} has no model of its masses')
     servos, calibration = sections.get('servos'), None
     if isinstance(servos, ServosConfig):
         calibration = found.of(lambda: Calibration.from_config(servos))
@@ -146,6 +155,22 @@ def _park_problems(machine: Machine, calibration: Calibration, order: list[int])
         return
     for violation in machine.constraints.violations(pose, park):
         yield f'servos.park_{unit}: {violation}'
+    if isinstance(machine.kinematics, StackKinematics):
+        yield from _unshared_park(machine.kinematics, pose, park, unit)
+
+
+def _unshared_park(
+    kinematics: StackKinematics, pose: Pose, park: Array, unit: str
+) -> Iterator[str]:
+    """Of a stack, whose joints at a pose are those of a rule: it would jump when it is enabled."""
+    joints = kinematics.inverse_or_nan(pose, park)
+    worst = int(np.argmax(np.abs(joints - park)))
+    if not np.abs(joints - park)[worst] < PARK_SHARE:
+        yield (
+            f'servos.park_{unit}: not where the sections share the pose of the end '
+            f'(docs/kinematics.md, 9): {kinematics.joint_names[worst]} would be at '
+            f'{joints[worst]:.5g} {kinematics.joint_unit}'
+        )
 
 
 def _slow_servos(machine: Machine, calibration: Calibration) -> Iterator[str]:

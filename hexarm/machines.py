@@ -33,10 +33,17 @@ def _arm(machine_file: MachineFile) -> Machine:
     return arm(machine_file)
 
 
+def _stack(machine_file: MachineFile) -> Machine:
+    from hexapod_control.load_stack import stack  # noqa: PLC0415
+
+    return stack(machine_file)
+
+
 KINDS: dict[str, Callable[[MachineFile], Machine]] = {
     'rotary_hexapod': _hexapod,
     'linear_hexapod': _hexapod,
     'serial_arm': _arm,
+    'stack': _stack,
 }
 
 

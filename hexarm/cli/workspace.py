@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from arm_control.arm import SerialArm
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.cli.progress import progress
 from hexarm.machines import load
@@ -23,7 +22,7 @@ from manipulator.pose import Pose
 
 POINTS, FEWER_POINTS, FEWEST_POINTS = 1_000_000, 20_000, 1000
 SLOW_POINTS = 2000
-"""For arms that are solved numerically: a millisecond and more a pose."""
+"""For stacks, and arms that are solved numerically: up to a millisecond and more a pose."""
 TABLE_POINTS = 100_000
 TILT = 0.5
 COLUMNS = ('x', 'y', 'z', 'admitted', 'sigma_min', 'joint_speed')
@@ -36,7 +35,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument(
         '--points', type=int, metavar='N',
         help=f'positions for the volume (default {POINTS}, for serial arms {FEWER_POINTS}, '
-        f'without closed form {SLOW_POINTS})',
+        f'without closed form, and stacks {SLOW_POINTS})',
     )  # fmt: skip
     parser.add_argument(
         '--tilt', type=float, default=TILT, metavar='RAD',
@@ -74,8 +73,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
 
 def default_points(machine: Machine) -> int:
     """As many positions as take a minute or two."""
-    arm = machine.kinematics
-    if isinstance(arm, SerialArm) and not arm.is_explicit:
+    if not machine.kinematics.is_explicit:
         return SLOW_POINTS
     return FEWER_POINTS if is_joint_box(machine) else POINTS
 

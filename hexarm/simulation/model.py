@@ -29,6 +29,8 @@ def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dy
 
     Raises ConfigError where it is missing or wrong, or a payload is negative or not finite.
     """
+    if machine_file.kind not in SCHEMAS:
+        raise ConfigError([f'dynamics: a {machine_file.kind} has no model of its masses'])
     if machine_file.dynamics is None:
         raise ConfigError(
             ['dynamics: missing, the model needs masses and drives (see docs/physics.md)']

@@ -17,6 +17,7 @@ from manipulator.planning.plan import MotionState
 from manipulator.planning.point_to_point import Profile, profile_within
 from manipulator.pose import Pose
 
+POSE_NUMBERS = 6
 KNOTS = 64
 """Poses along the move that are known beforehand: forward kinematics begin at the nearest."""
 
@@ -97,8 +98,13 @@ def plan_joint_move(
     """The quickest move from joints `begin`, at pose `start`, to joints `goal` (n,).
 
     slowdown k ≥ 1 makes it take k times as long. Raises Refused where the joints between fix no
-    pose, as beyond a platform's forward singularities.
+    pose, as beyond a platform's forward singularities, and for a machine with more joints than a
+    pose has numbers: setpoints are poses, and other joints than these would follow from them.
     """
+    if len(begin) > POSE_NUMBERS:
+        raise Refused(
+            f'{len(begin)} joints have no joint move: a rule gives them for each pose; use a line'
+        )
     rows = between(begin, goal, np.linspace(0.0, 1.0, KNOTS + 1))
     try:
         knots = machine.kinematics.forward_along(rows, start)

@@ -73,3 +73,8 @@ def test_every_servo_machine_has_a_program_that_fits_a_quarter_of_the_chip(machi
     assert sections.flash <= 64 * 1024
     # What is left for the stack.
     assert sections.ram <= 8192 - 1024
+
+
+def test_more_joints_than_the_chip_has_channels_are_refused():
+    with pytest.raises(ConfigError, match='18 joints, the board has 8 channels'):
+        header_of('stack_6_6')
