@@ -9,7 +9,7 @@ from hexapod_control.stack import Stack
 from hexapod_control.stack_inverse import MOST_SECTIONS
 from hexapod_control.stack_kinematics import StackKinematics
 from hexapod_control.stack_limits import constraints_of
-from manipulator.config import build_both, quantity
+from manipulator.config import build, build_both, quantity
 from manipulator.errors import ConfigError
 from manipulator.formatting import counted
 from manipulator.machine import Machine, MachineFile
@@ -34,12 +34,17 @@ class NextConfig:
 
 @dataclass(frozen=True)
 class SectionConfig:
-    """One platform; geometry and limits are those of a machine file of its kind."""
+    """One platform; geometry, limits and dynamics are those of a machine file of its kind.
+
+    machine: the file that they were taken from, '' where the section has them itself.
+    """
 
     kind: str
     geometry: dict[str, Any]
     limits: dict[str, Any]
     next: NextConfig = NextConfig()
+    dynamics: dict[str, Any] | None = None
+    machine: str = ''
 
 
 @dataclass(frozen=True)
@@ -49,11 +54,15 @@ class StackConfig:
     sections: tuple[SectionConfig, ...]
 
     def __post_init__(self) -> None:
-        """Raises ConfigError for no sections, or more than the kernel knows."""
-        count = len(self.sections)
-        if not 1 <= count <= MOST_SECTIONS:
-            sections = counted(count, 'section')
-            raise ConfigError([f'sections: {sections}, needs 1 to {MOST_SECTIONS}'])
+        """Raises ConfigError for too few or too many sections."""
+        check_count(len(self.sections))
+
+
+def check_count(count: int) -> None:
+    """Raises ConfigError for sections that are no stack, or more than the kernel knows."""
+    if not 2 <= count <= MOST_SECTIONS:
+        sections = counted(count, 'section')
+        raise ConfigError([f'sections: {sections}, a stack has 2 to {MOST_SECTIONS}'])
 
 
 @dataclass(frozen=True)
@@ -70,11 +79,7 @@ def stack(machine_file: MachineFile) -> Machine:
         (StackLimitsConfig, machine_file.limits, 'limits'),
     )
     sections = _sections(config, machine_file)
-    units = [machine.kinematics.joint_unit for machine in sections]
-    if len(set(units)) > 1:
-        raise ConfigError(
-            [f'geometry.sections: their joints are in {units}, one machine has one unit']
-        )
+    _check_units(sections)
     transforms = tuple(section.next.pose for section in config.sections)
     kinematics = StackKinematics(
         Stack(sections, transforms), limits.characteristic_length_mm * 1e-3
@@ -83,31 +88,58 @@ def stack(machine_file: MachineFile) -> Machine:
     return Machine(kinematics, constraints_of(kinematics), motion, make_jogger=PlatformJogger)
 
 
+def section_files(machine_file: MachineFile) -> tuple[MachineFile, ...]:
+    """Each section as a machine file of its own kind, without servos; ConfigError as `stack`."""
+    return tuple(
+        _machine_file(section, machine_file)
+        for section in build(StackConfig, machine_file.geometry, 'geometry').sections
+    )
+
+
+def _check_units(sections: tuple[Machine, ...]) -> None:
+    first, *others = (machine.kinematics.joint_unit for machine in sections)
+    for i, unit in enumerate(others, 1):
+        if unit != first:
+            raise ConfigError(
+                [
+                    f'geometry.sections[{i}]: its joints are in {unit}, those of sections[0] in '
+                    f'{first}; all joints of a machine have one unit'
+                ]
+            )
+
+
 def _sections(config: StackConfig, machine_file: MachineFile) -> tuple[Machine, ...]:
     """Each section as a machine; those that are described alike are one."""
-    made: list[tuple[SectionConfig, Machine]] = []
+    made: list[tuple[MachineFile, Machine]] = []
     sections, problems = [], []
     for i, section in enumerate(config.sections):
-        alike = (m for c, m in made if (c.kind, c.geometry, c.limits) == _content(section))
-        machine = next(alike, None)
+        file = _machine_file(section, machine_file)
+        machine = next((m for other, m in made if other == file), None)
         if machine is None:
             try:
-                machine = load.hexapod(_machine_file(section, machine_file))
+                machine = load.hexapod(file)
             except ConfigError as error:
-                problems += [f'geometry.sections[{i}].{problem}' for problem in error.problems]
+                problems += [_of_section(i, section, problem) for problem in error.problems]
                 continue
-            made.append((section, machine))
+            made.append((file, machine))
         sections.append(machine)
     if problems:
         raise ConfigError(problems)
     return tuple(sections)
 
 
-def _content(section: SectionConfig) -> tuple[str, dict[str, Any], dict[str, Any]]:
-    return section.kind, section.geometry, section.limits
+def _of_section(index: int, section: SectionConfig, problem: str) -> str:
+    source = f' (of {section.machine})' if section.machine else ''
+    return f'geometry.sections[{index}].{problem}{source}'
 
 
 def _machine_file(section: SectionConfig, whole: MachineFile) -> MachineFile:
     return MachineFile(
-        section.kind, section.geometry, section.limits, whole.motion, servos={}, link={}
+        section.kind,
+        section.geometry,
+        section.limits,
+        whole.motion,
+        servos={},
+        link={},
+        dynamics=section.dynamics,
     )

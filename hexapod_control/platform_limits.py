@@ -37,14 +37,14 @@ class PlatformLimits:
     def ranges(self, bounds: Sequence[Bounds]) -> Array:
         """See `LimitGroup`."""
         ranges = np.empty(RANGES)
-        _kernel.limit_ranges(self.parameters, *lowest_and_highest(bounds), ranges)
+        _kernel.limit_ranges(self.parameters, *_lowest_and_highest(bounds), ranges)
         return ranges
 
     def descended(self, search: Search, bounds: Sequence[Bounds], start: Pose) -> Pose:
         """See `LimitGroup`."""
         target, position, rotation = search.target, np.empty(3), np.empty((3, 3))
         _kernel.descended(
-            self.parameters, *lowest_and_highest(bounds), search.pivot,
+            self.parameters, *_lowest_and_highest(bounds), search.pivot,
             np.array([search.clearance, search.most_steps]), target.position, target.rotation,
             start.position, start.rotation, position, rotation,
         )  # fmt: skip
@@ -68,7 +68,7 @@ class PlatformLimits:
         return np.asarray(kept != 0.0)
 
 
-def lowest_and_highest(bounds: Sequence[Bounds]) -> tuple[Array, Array]:
+def _lowest_and_highest(bounds: Sequence[Bounds]) -> tuple[Array, Array]:
     """The strictest of all limited values (38,), ±∞ where there is none."""
     low, high = np.full(VALUES, -np.inf), np.full(VALUES, np.inf)
     for columns, least, most in bounds:

@@ -17,6 +17,11 @@ from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachabl
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
+AXES = ('along x', 'along y', 'along z', 'about x', 'about y', 'about z')
+LEAST_RANGE = 1e-6
+"""Metres or radians."""
+FAR = 'the sections find no common way to this pose of the end: it is far from all they reach'
+
 
 @dataclass(frozen=True, eq=False)
 class StackPose:
@@ -47,7 +52,7 @@ class Stack:
     rule: NearestToHome = field(init=False)
 
     def __post_init__(self) -> None:
-        """Measures the ranges of the sections."""
+        """Measures the ranges of the sections; ConfigError for one that cannot move from home."""
         if not self.sections or len(self.sections) != len(self.transforms):
             raise ConfigError(
                 [f'{len(self.sections)} sections and {len(self.transforms)} transforms of a stack']
@@ -56,6 +61,7 @@ class Stack:
         object.__setattr__(self, 'transforms', tuple(self.transforms))
         found = {id(m): [np.ptp(axis_range(m, a)) / 2 for a in range(6)] for m in self.sections}
         object.__setattr__(self, 'ranges', frozen([found[id(m)] for m in self.sections]))
+        _check_ranges(self.ranges)
         homes = [m.kinematics.home for m in self.sections]
         object.__setattr__(self, 'home', self.end_of(homes))
         rule = NearestToHome(self.sections, self.transforms, self.ranges)
@@ -88,30 +94,14 @@ class Stack:
     def inverse(self, end: Pose) -> StackPose:
         """Of all ways to put the end to one pose, the one that stays nearest to all homes.
 
-        That is the least sum over sections and axes of (twist from home / range)², and of what
-        limits ask for where they are near. Found from home by a descent: a local minimum. Raises
-        Unreachable, naming section and limit, where it breaks one, or no free path from home
-        leads there.
+        That is the least sum over sections and axes of (twist from home / range)². Raises
+        Unreachable, naming section and limit, where a section cannot be so: other shares might
+        still reach the pose. So it is, too, where no free path from home leads there.
         """
         sections = self.rule.sections_at(end)
         if np.isnan(sections[-1].position).any():
-            raise self.refusal(end)
+            raise Unreachable(FAR)
         return self._checked(sections)
-
-    def refusal(self, end: Pose) -> Unreachable:
-        """Why the descent did not settle: what the sections would break to be nearest to home.
-
-        end may be an array (...), of which the first is meant that cannot be.
-        """
-        rows = Pose(end.position.reshape(-1, 3), end.rotation.reshape(-1, 3, 3))
-        bad = int(np.argmax(np.isnan(self.rule.sections_at(rows)[-1].position).any(axis=-1)))
-        for i, pose in enumerate(self.rule.unlimited_at(rows[bad])):
-            machine = self.sections[i]
-            try:
-                machine.constraints.check(pose, machine.kinematics.inverse(pose))
-            except Unreachable as error:
-                return Unreachable(f'section {i + 1}: {error}', error.leg)
-        return Unreachable('the sections find no common way to this pose of the end')
 
     def distance(self, sections: Sequence[Pose]) -> float:
         """How far one pose of each section is from home, relative to the ranges."""
@@ -129,3 +119,11 @@ class Stack:
             if not is_connected(machine, pose):
                 raise Unreachable(f'section {i + 1}: no way found from home within the limits')
         return StackPose(poses, frozen(np.stack(joints)), self.end_of(poses), self.distance(poses))
+
+
+def _check_ranges(ranges: Array) -> None:
+    """The rule divides by them."""
+    for section, axis in np.argwhere(ranges < LEAST_RANGE):
+        raise ConfigError(
+            [f'section {section + 1} cannot move from home {AXES[axis]} within its limits']
+        )

@@ -7,7 +7,7 @@ import numpy as np
 
 from hexapod_control.geometry import LEGS
 from hexapod_control.parallel_platform import ParallelPlatform
-from hexapod_control.stack import Stack
+from hexapod_control.stack import FAR, Stack
 from manipulator import rotation as so3
 from manipulator.arrays import Array
 from manipulator.errors import ConfigError, NoSolution, Unreachable
@@ -64,7 +64,7 @@ class StackKinematics:
         """See `Kinematics`; the descent starts at the sections of `near`."""
         sections = self._shared(pose, near)
         if np.isnan(sections[-1].position).any():
-            raise self.stack.refusal(pose)
+            raise Unreachable(FAR)
         joints = []
         for i, (platform, at) in enumerate(zip(self.platforms, sections, strict=True), 1):
             try:
@@ -82,7 +82,7 @@ class StackKinematics:
         start = self.sections_or_nan(np.asarray(near, dtype=np.float64))
         if any(np.isnan(at.position).any() for at in start):
             return self.inverse_or_nan(poses)
-        return self._joints_at(self.stack.rule.sections_along(poses, start))
+        return self._joints_at(self.stack.rule.sections_at(poses, start, is_row=True))
 
     def forward(self, joints: Array, near: Pose | None = None) -> ForwardSolution:
         """See `Kinematics`; iterations of all sections, the worst residual and margin of one.

@@ -4,6 +4,7 @@ import difflib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -12,7 +13,7 @@ from bridge.calibration import Calibration
 from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
 from hexapod_control.stack_kinematics import StackKinematics
 from hexarm.machine_warnings import warnings_of
-from hexarm.machines import loader
+from hexarm.machines import loader, with_sections
 from hexarm.simulation.dynamics_config import SCHEMAS
 from manipulator.arrays import Array
 from manipulator.config import build, parse_yaml
@@ -64,10 +65,10 @@ class Report:
     machine: Machine | None = None
 
 
-def problems_of(text: str) -> list[str]:
-    """All problems of a machine file's text, none for a good one."""
+def problems_of(text: str, folder: Path = Path()) -> list[str]:
+    """All problems of the text of a machine file in a folder, none for a good one."""
     try:
-        return list(report_of(parse_yaml(text)).problems)
+        return list(report_of(with_sections(parse_yaml(text), folder)).problems)
     except ConfigError as error:
         return list(error.problems)
 

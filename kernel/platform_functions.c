@@ -161,21 +161,23 @@ static Py_ssize_t call_limited_values(real *const *a, Py_ssize_t items)
 FUNCTION(limited_values, {WHOLE, NUMBERS(struct platform)}, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, LEGS},
          {WRITTEN, VALUES})
 
+/* Stack; whether each end begins where the one before came to, all of the row then ending with the
+   first that does not settle; ends; free twists; sections; whether they settled. */
 static Py_ssize_t call_stack_sections(real *const *a, Py_ssize_t items)
 {
+    const struct stack *stack = (const struct stack *)a[0];
     for (Py_ssize_t i = 0; i < items; i++) {
         struct placement end, sections[MOST_SECTIONS];
-        const struct stack *stack = (const struct stack *)a[0];
-        memcpy(end.position, a[2] + 3 * i, sizeof end.position);
-        memcpy(end.rotation, a[3] + 9 * i, sizeof end.rotation);
         real *free = a[4] + 6 * MOST_SECTIONS * i;
-        if (i > 0 && *a[1] == ALONG) {
-            a[7][i] = 0;
+        a[7][i] = 0;
+        if (i > 0 && *a[1] != 0) {
             if (a[7][i - 1] == 0)
                 continue;
             memcpy(free, free - 6 * MOST_SECTIONS, 6 * MOST_SECTIONS * sizeof(real));
         }
-        a[7][i] = stack_sections(stack, &end, (enum stack_start)*a[1], free, sections);
+        memcpy(end.position, a[2] + 3 * i, sizeof end.position);
+        memcpy(end.rotation, a[3] + 9 * i, sizeof end.rotation);
+        a[7][i] = stack_sections(stack, &end, free, sections);
         for (int k = 0; k < (int)stack->count; k++) {
             memcpy(a[5] + 3 * (MOST_SECTIONS * i + k), sections[k].position, 3 * sizeof(real));
             memcpy(a[6] + 9 * (MOST_SECTIONS * i + k), sections[k].rotation, 9 * sizeof(real));

@@ -67,7 +67,7 @@ def limited_values(
 
 def stack_sections(
     stack: Array,
-    start: Array,
+    is_row: Array,
     position: Array,
     rotation: Array,
     free: Array,
