@@ -14,7 +14,7 @@ from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
 from hexapod_control.stack_kinematics import StackKinematics
 from hexarm.machine_warnings import warnings_of
 from hexarm.machines import loader, with_sections
-from hexarm.simulation.dynamics_config import SCHEMAS
+from hexarm.simulation.dynamics_config import OF_SECTIONS, SCHEMAS
 from manipulator.arrays import Array
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
@@ -91,10 +91,7 @@ def report_of(content: Mapping[str, Any]) -> Report:
         if name in there
     }
     kind = content.get('kind')
-    if 'dynamics' in there and isinstance(kind, str) and kind in SCHEMAS:
-        found.of(partial(build, SCHEMAS[kind], there['dynamics'], 'dynamics'))
-    elif 'dynamics' in there and machine is not None:
-        found.problems.append(f'dynamics: a {kind} has no model of its masses')
+    _check_dynamics(found, kind, there)
     servos, calibration = sections.get('servos'), None
     if isinstance(servos, ServosConfig):
         calibration = found.of(lambda: Calibration.from_config(servos))
@@ -113,6 +110,22 @@ def _machine(kind: object, there: Mapping[str, Any], whole: MachineFile | None) 
     geometry, limits = (there.get(name, {}) for name in ROOM)
     motion = STAND_IN if whole is None else whole.motion
     return loader(kind)(MachineFile(kind, geometry, limits, motion, servos={}, link={}))
+
+
+def _check_dynamics(found: Findings, kind: object, there: Mapping[str, Any]) -> None:
+    """The section itself; of a stack, those of its sections."""
+    if 'dynamics' in there and isinstance(kind, str):
+        if kind in SCHEMAS:
+            found.of(partial(build, SCHEMAS[kind], there['dynamics'], 'dynamics'))
+        elif kind == 'stack':
+            found.problems.append(OF_SECTIONS)
+    sections = there.get('geometry', {}).get('sections') if kind == 'stack' else None
+    for i, section in enumerate(sections if isinstance(sections, list) else ()):
+        if isinstance(section, Mapping) and section.get('kind') in SCHEMAS:
+            where = f'geometry.sections[{i}].dynamics'
+            if section.get('dynamics') is not None:
+                schema = SCHEMAS[section['kind']]
+                found.of(partial(build, schema, section['dynamics'], where))
 
 
 def _between(machine: Machine, calibration: Calibration) -> Iterator[str]:

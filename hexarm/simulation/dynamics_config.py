@@ -169,3 +169,5 @@ SCHEMAS: dict[str, type[RotaryDynamicsConfig | LinearDynamicsConfig | ArmDynamic
     'serial_arm': ArmDynamicsConfig,
 }
 """What the section must hold, by the machine's kind."""
+
+OF_SECTIONS = 'dynamics: a stack has no masses and drives but those of its sections'
