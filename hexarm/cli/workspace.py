@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from hexapod_control.stack_kinematics import StackKinematics
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.cli.progress import progress
 from hexarm.machines import load
@@ -68,7 +69,11 @@ def answer(arguments: argparse.Namespace) -> Answer:
             written += draw(machine, found, arguments.picture, arguments.machine)
             on_progress('pictures', 1.0)
     files = [str(path) for path in written]
-    return {**_for_programs(found), 'files': files}, [*_in_words(found), *files]
+    return {**_for_programs(found), 'files': files}, [
+        *_in_words(found),
+        _sampling(machine, found),
+        *files,
+    ]
 
 
 def default_points(machine: Machine) -> int:
@@ -117,6 +122,20 @@ def _in_words(found: Survey) -> list[str]:
         f'  roll, pitch, yaw each within ±{found.tilt:g} rad; a lower bound: the second half of '
         f'the search found {1e3 * found.search_gain:.3g} dm³ of it'
     )
+    return lines
+
+
+def _sampling(machine: Machine, found: Survey) -> str:
+    """How the volumes were sampled."""
+    sides = ' × '.join(f'{1e3 * side:.4g}' for side in found.box.high - found.box.low)
+    lines = (
+        f'sampled at {counted(found.constant_orientation.points, "position")} spread evenly over '
+        f'{sides} mm, and at {found.some_orientation.points} where orientations are tried'
+    )
+    if isinstance(machine.kinematics, StackKinematics):
+        lines += (
+            '; sections share each pose as docs/kinematics.md, 9, says, others might reach more'
+        )
     return lines
 
 

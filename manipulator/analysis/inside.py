@@ -16,6 +16,9 @@ AXES = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
 BISECTIONS = 30
 FARTHEST = 30  # characteristic lengths
 RANK = 1e-9
+POSE_NUMBERS = 6
+DIFFERENCE = 1e-5
+"""Metres and radians."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,10 +47,25 @@ def conditions(machine: Machine, poses: Pose) -> Conditions:
 
 
 def joint_rates(machine: Machine, poses: Pose) -> Array:
-    """(..., n, 6): the joint rates of a unit twist, at poses that are admitted."""
+    """(..., n, 6): the joint rates of a unit twist, at poses that are admitted.
+
+    Of a machine with more joints than a pose has numbers: of the joints that its inverse chooses.
+    """
     joints = machine.kinematics.inverse_or_nan(poses)
+    if joints.shape[-1] > POSE_NUMBERS:
+        return _chosen_rates(machine, poses)
     jacobian = machine.kinematics.jacobian(poses, joints)
     return np.asarray(np.linalg.pinv(jacobian, rcond=RANK), dtype=np.float64)
+
+
+def _chosen_rates(machine: Machine, poses: Pose) -> Array:
+    inverse = machine.kinematics.inverse_or_nan
+    columns = [
+        (inverse(poses.moved(DIFFERENCE * unit)) - inverse(poses.moved(-DIFFERENCE * unit)))
+        / (2.0 * DIFFERENCE)
+        for unit in np.eye(POSE_NUMBERS)
+    ]
+    return np.stack(columns, axis=-1)
 
 
 def ranges(
