@@ -1,7 +1,6 @@
 """A stack of three sections on one board of 18 channels: a goal, a jog into a limit, a stop."""
 
 import numpy as np
-import pytest
 
 from bridge.protocol import Setpoint
 
