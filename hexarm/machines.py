@@ -138,9 +138,8 @@ def _section(section: object, folder: Path) -> object:
         raise ConfigError([f'{shown(name)} is neither a name nor a path'])
     own = sorted(set(section) & set(OF_A_SECTION))
     if own:
-        raise ConfigError(
-            [f'{shown(name)} says {" and ".join(own)}, this section may not as well']
-        )
+        problem = f'{shown(name)} gives {" and ".join(own)}, and so does this section'
+        raise ConfigError([problem])
     is_path = '/' in name or name.endswith(('.yaml', '.yml'))
     file = find(str(folder / name) if is_path else name)
     content = parse_yaml(text_of(file), str(file))
