@@ -1,21 +1,18 @@
 """From a machine file's sections to a parallel platform that the nodes can use."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
 from hexapod_control.geometry import LEGS, HexagonConfig, JointsConfig, check_architecture
+from hexapod_control.home import home_problems
 from hexapod_control.leg_limits import LinearLimits, RotaryLimits
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.linear_geometry import PlatesConfig, PointsConfig
 from hexapod_control.rotary import RotaryHexapod
-from manipulator.config import build_both
 from manipulator.errors import ConfigError
 from manipulator.formatting import shown
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
-from manipulator.machine import Machine, MachineFile
+from manipulator.machine import Kind, Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
 from manipulator.teleop.platform_jogger import PlatformJogger
 
@@ -26,48 +23,46 @@ CRANK_SETTINGS = 8
 
 def hexapod(machine_file: MachineFile) -> Machine:
     """The machine of one file; ConfigError names each fault, also a home beyond a limit."""
+    machine = platform(machine_file)
+    beyond = home_problems(machine, 'crank_tangents' in machine_file.geometry)
+    if beyond:
+        raise ConfigError(beyond)
+    return machine
+
+
+def platform(machine_file: MachineFile) -> Machine:
+    """The same, but that its home may be beyond limits."""
     kind = machine_file.kind
     if kind not in KINDS:
         raise ConfigError([f'kind: {shown(kind)} is not one of {sorted(KINDS)}'])
-    kinematics, constraints = KINDS[kind](machine_file.geometry, machine_file.limits)
-    home = kinematics.home
-    beyond = constraints.violations(home, kinematics.inverse(home))
-    if beyond:
-        raise ConfigError([f'limits: home has {violation}' for violation in beyond])
+    kinematics, constraints = KINDS[kind].build(machine_file)
     motion = MotionLimits.from_config(machine_file.motion)
     return Machine(kinematics, constraints, motion, make_jogger=PlatformJogger)
 
 
-def rotary_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
+def rotary_hexapod(geometry: JointsConfig | HexagonConfig, limits: RotaryLimits) -> Parts:
     """A crank platform; its geometry by the paper's parameters, or by joint coordinates."""
-    schema: type[JointsConfig | HexagonConfig]
-    schema = JointsConfig if 'crank_centres_mm' in geometry else HexagonConfig
-    told, checked = build_both((schema, geometry, 'geometry'), (RotaryLimits, limits, 'limits'))
-    joints = told.geometry()
+    joints = geometry.geometry()
     kinematics = RotaryHexapod(
         joints,
-        checked.characteristic_length_mm * 1e-3,
-        checked.singularity_margin,
-        checked.crank_centre,
+        limits.characteristic_length_mm * 1e-3,
+        limits.singularity_margin,
+        limits.crank_centre,
     )
-    cranks = np.random.default_rng(1).uniform(*checked.crank_range, (CRANK_SETTINGS, LEGS))
+    cranks = np.random.default_rng(1).uniform(*limits.crank_range, (CRANK_SETTINGS, LEGS))
     check_architecture(kinematics.crank_tips(cranks), joints.platform_points)
-    return kinematics, checked.constraints(kinematics)
+    return kinematics, limits.constraints(kinematics)
 
 
-def linear_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
+def linear_hexapod(geometry: PointsConfig | PlatesConfig, limits: LinearLimits) -> Parts:
     """A platform on linear legs; its geometry by the paper's parameters, or by coordinates."""
-    schema: type[PointsConfig | PlatesConfig]
-    schema = PointsConfig if 'base_joints_mm' in geometry else PlatesConfig
-    told, checked = build_both((schema, geometry, 'geometry'), (LinearLimits, limits, 'limits'))
-    joints = told.geometry()
     kinematics = LinearPlatform(
-        joints, checked.characteristic_length_mm * 1e-3, checked.singularity_margin
+        geometry.geometry(), limits.characteristic_length_mm * 1e-3, limits.singularity_margin
     )
-    return kinematics, checked.constraints(kinematics)
+    return kinematics, limits.constraints(kinematics)
 
 
-KINDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], Parts]] = {
-    'rotary_hexapod': rotary_hexapod,
-    'linear_hexapod': linear_hexapod,
+KINDS = {
+    'rotary_hexapod': Kind(HexagonConfig | JointsConfig, RotaryLimits, rotary_hexapod),
+    'linear_hexapod': Kind(PlatesConfig | PointsConfig, LinearLimits, linear_hexapod),
 }

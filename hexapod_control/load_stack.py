@@ -1,7 +1,9 @@
 """From a machine file of kind `stack` to a machine that the nodes can use."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from hexapod_control import load
@@ -9,10 +11,10 @@ from hexapod_control.stack import Stack
 from hexapod_control.stack_inverse import MOST_SECTIONS
 from hexapod_control.stack_kinematics import StackKinematics
 from hexapod_control.stack_limits import constraints_of
-from manipulator.config import build, build_both, quantity
+from manipulator.config import PLACE_MM, SIZE_MM, TURN_DEG, build, key, quantity
 from manipulator.errors import ConfigError
 from manipulator.formatting import counted
-from manipulator.machine import Machine, MachineFile
+from manipulator.machine import Kind, Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
 from manipulator.teleop.platform_jogger import PlatformJogger
@@ -22,8 +24,12 @@ from manipulator.teleop.platform_jogger import PlatformJogger
 class NextConfig:
     """Where the next section's base, or the end, is in a platform's frame."""
 
-    xyz_mm: tuple[float, float, float] = quantity(-3000, 3000, default=(0.0, 0.0, 0.0))
-    rpy_deg: tuple[float, float, float] = quantity(-360, 360, default=(0.0, 0.0, 0.0))
+    xyz_mm: tuple[float, float, float] = quantity(
+        *PLACE_MM, 'from the platform', default=(0.0, 0.0, 0.0)
+    )
+    rpy_deg: tuple[float, float, float] = quantity(
+        *TURN_DEG, 'roll, pitch, yaw', default=(0.0, 0.0, 0.0)
+    )
 
     @property
     def pose(self) -> Pose:
@@ -34,24 +40,35 @@ class NextConfig:
 
 @dataclass(frozen=True)
 class SectionConfig:
-    """One platform; geometry, limits and dynamics are those of a machine file of its kind.
+    """One platform; kind, geometry, limits and dynamics are those of a machine file of its kind.
 
-    machine: the file that they were taken from, '' where the section has them itself.
+    They are there, too, where they were taken from the file that `machine` names.
     """
 
-    kind: str
-    geometry: dict[str, Any]
-    limits: dict[str, Any]
-    next: NextConfig = NextConfig()
-    dynamics: dict[str, Any] | None = None
-    machine: str = ''
+    machine: str = key(
+        'a shipped name, or a path from the folder of this file: gives the next four',
+        default='',
+    )
+    kind: str = key('of platform', default='')
+    geometry: dict[str, Any] = key('as in a file of this kind', default_factory=dict)
+    limits: dict[str, Any] = key('as in a file of this kind', default_factory=dict)
+    dynamics: dict[str, Any] | None = key('as in a file of this kind', default=None)
+    next: NextConfig = key(
+        'the next section’s base, or the end, on this platform', default_factory=NextConfig
+    )
+
+    def __post_init__(self) -> None:
+        """Raises ConfigError for what is missing."""
+        missing = [name for name in ('kind', 'geometry', 'limits') if not getattr(self, name)]
+        if missing:
+            raise ConfigError([f'{name}: missing' for name in missing])
 
 
 @dataclass(frozen=True)
 class StackConfig:
     """The `geometry` section: from the ground up."""
 
-    sections: tuple[SectionConfig, ...]
+    sections: tuple[SectionConfig, ...] = key('platforms, from the ground up')
 
     def __post_init__(self) -> None:
         """Raises ConfigError for too few or too many sections."""
@@ -69,15 +86,17 @@ def check_count(count: int) -> None:
 class StackLimitsConfig:
     """The `limits` section: each section has its own limits beside its geometry."""
 
-    characteristic_length_mm: float = quantity(1, 3000)
+    characteristic_length_mm: float = quantity(
+        *SIZE_MM, 'scales rotations in distances between poses of the end'
+    )
 
 
 def stack(machine_file: MachineFile) -> Machine:
     """The machine of one file; ConfigError names each fault with its section, from 0."""
-    config, limits = build_both(
-        (StackConfig, machine_file.geometry, 'geometry'),
-        (StackLimitsConfig, machine_file.limits, 'limits'),
-    )
+    return KIND.build(machine_file)(machine_file)
+
+
+def _stack(config: StackConfig, limits: StackLimitsConfig, machine_file: MachineFile) -> Machine:
     sections = _sections(config, machine_file)
     _check_units(sections)
     transforms = tuple(section.next.pose for section in config.sections)
@@ -86,6 +105,11 @@ def stack(machine_file: MachineFile) -> Machine:
     )
     motion = MotionLimits.from_config(machine_file.motion)
     return Machine(kinematics, constraints_of(kinematics), motion, make_jogger=PlatformJogger)
+
+
+KIND: Kind[Callable[[MachineFile], Machine]] = Kind(
+    StackConfig, StackLimitsConfig, lambda config, limits: partial(_stack, config, limits)
+)
 
 
 def section_files(machine_file: MachineFile) -> tuple[MachineFile, ...]:

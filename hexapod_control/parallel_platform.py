@@ -17,9 +17,8 @@ from hexapod_control.leg_jacobian import (
 from hexapod_control.platform_limits import PlatformLimits
 from manipulator import _kernel
 from manipulator.arrays import Array, Mask, frozen, stretched
-from manipulator.continuity import first_jump
 from manipulator.errors import ConfigError, NoSolution, Unreachable
-from manipulator.kinematics import ForwardSolution
+from manipulator.kinematics import ForwardSolution, first_jump
 from manipulator.links import PLATFORM, Link, Stroke, outline
 from manipulator.pose import Pose
 

@@ -42,7 +42,7 @@ class GraphClient:
         self._owns_context = not rclpy.ok()
         if self._owns_context:
             rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-        self.node = Node('hexarm', namespace=namespace)
+        self.node = Node('hexarm', namespace=namespace, start_parameter_services=False)
         self.machine_state = DiagnosticStatus(message=UNKNOWN)
         self.motion_status = DiagnosticStatus()
         self.diagnostics: dict[str, DiagnosticStatus] = {}

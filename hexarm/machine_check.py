@@ -1,8 +1,9 @@
 """Everything that is wrong with a machine file: in each section, and between them."""
 
 import difflib
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -10,23 +11,29 @@ from typing import Any, TypeVar
 import numpy as np
 
 from bridge.calibration import Calibration
-from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
+from bridge.servo_config import ServosConfig
+from hexapod_control import load as hexapods
+from hexapod_control.home import home_problems
+from hexapod_control.load_stack import StackConfig
 from hexapod_control.stack_kinematics import StackKinematics
+from hexarm.machine_keys import BRIDGE, KINDS, sections_of
 from hexarm.machine_warnings import warnings_of
-from hexarm.machines import loader, with_sections
-from hexarm.simulation.dynamics_config import OF_SECTIONS, SCHEMAS
+from hexarm.machines import frames_of, loader, with_sections
+from hexarm.simulation.dynamics_config import SCHEMAS
 from manipulator.arrays import Array
-from manipulator.config import build, parse_yaml
+from manipulator.config import build, forms_of, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
-from manipulator.frames import Frames
-from manipulator.limits.machine_limits import JointRange
+from manipulator.formatting import shown
+from manipulator.limits.wording import in_words
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionConfig
 from manipulator.pose import Pose
 
 T = TypeVar('T')
 ROOM = ('geometry', 'limits')
-BRIDGE = {'servos': ServosConfig, 'link': LinkConfig, 'simulation': SimulationConfig}
+FEW = 2
+"""So many times more keys of another kind than of its own: that kind is meant."""
+INDEX = re.compile(r'\[(\d+)\]')
 
 STAND_IN = MotionConfig(1.0, 1.0, 10.0, 1.0, 1.0, 10.0)
 """For a motion section with faults of its own, so that the others are looked at all the same."""
@@ -55,10 +62,7 @@ class Findings:
 
 @dataclass(frozen=True)
 class Report:
-    """What is wrong with a machine file, what is doubtful, and the machine where it can be made.
-
-    Only a file without problems has warnings.
-    """
+    """What is wrong with a machine file, what is doubtful, and the machine if one can be made."""
 
     problems: tuple[str, ...]
     warnings: tuple[str, ...] = ()
@@ -76,60 +80,93 @@ def problems_of(text: str, folder: Path = Path()) -> list[str]:
 def report_of(content: Mapping[str, Any]) -> Report:
     """Of a machine file that could be read.
 
-    The sections first, each as far as it is there; then, between those that are good, what one
-    contains about another: names, units, ranges, speeds and the park position.
+    The sections first, each as far as it is there; then what one contains about another, as far
+    as both are good: home, names, units, ranges, speeds and the park position.
     """
     found = Findings()
     whole = found.of(lambda: build(MachineFile, content))
-    if whole is not None:
-        found.of(partial(Frames.from_config, whole.frames))
-    there = {name: part for name, part in content.items() if isinstance(part, Mapping)}
-    machine = found.of(lambda: _machine(content.get('kind'), there, whole))
+    kind, other = str(content.get('kind')), _kind_by_keys(content)
+    if other:
+        found.problems.append(f'kind: {shown(kind)}, but geometry has the keys of a {other}')
+    schemas = sections_of(kind) if kind in KINDS and not other else BRIDGE
     sections = {
-        name: found.of(partial(build, schema, there[name], name))
-        for name, schema in BRIDGE.items()
-        if name in there
+        name: found.of(partial(build, schema, content[name], name))
+        for name, schema in schemas.items()
+        if isinstance(content.get(name), Mapping)
     }
-    kind = content.get('kind')
-    _check_dynamics(found, kind, there)
-    servos, calibration = sections.get('servos'), None
-    if isinstance(servos, ServosConfig):
-        calibration = found.of(lambda: Calibration.from_config(servos))
-        if machine is not None and calibration is not None:
-            found.problems.extend(_between(machine, calibration))
-    absent = tuple(f'{name}.' for name in ROOM if name not in there)
-    problems = tuple(problem for problem in found.problems if not problem.startswith(absent))
-    doubts = () if problems or machine is None else warnings_of(machine, calibration)
-    return Report(problems, tuple(doubts), machine)
+    is_whole = all(sections.get(name) for name in ROOM if name in schemas)
+    if kind == 'stack':
+        _check_sections(found, sections.get('geometry'))
+    machine = None
+    if isinstance(content.get('kind'), str) and is_whole and not other:
+        machine = found.of(lambda: _machine(kind, content, whole))
+    if machine is not None and whole is not None:
+        found.of(partial(frames_of, whole, machine.kinematics))
+    calibration = _calibration(found, sections.get('servos'))
+    if machine is not None:
+        home = _home_problems(machine, content)
+        found.problems += home
+        if calibration is not None:
+            found.problems += _between(machine, calibration, is_home_good=not home)
+    doubts = () if machine is None else warnings_of(machine, calibration)
+    return Report(_merged(found.problems), tuple(doubts), machine)
 
 
-def _machine(kind: object, there: Mapping[str, Any], whole: MachineFile | None) -> Machine | None:
-    """What the sections geometry and limits make; None where the kind is no text."""
-    if not isinstance(kind, str):
+def _kind_by_keys(content: Mapping[str, Any]) -> str:
+    """The kind whose keys the section geometry has, where it has none of the kind that is told."""
+    geometry, told = content.get('geometry'), content.get('kind')
+    if not isinstance(geometry, Mapping) or not isinstance(told, str) or told not in KINDS:
+        return ''
+    shared = {
+        kind: max(len({f.name for f in fields(form)} & {*geometry}) for form in forms_of(room))
+        for kind, room in ((name, KINDS[name].geometry) for name in KINDS)
+    }
+    likely = max(shared, key=shared.__getitem__)
+    return likely if shared[likely] > FEW * max(shared[told], 1) else ''
+
+
+def _calibration(found: Findings, servos: object) -> Calibration | None:
+    if not isinstance(servos, ServosConfig):
         return None
-    geometry, limits = (there.get(name, {}) for name in ROOM)
+    return found.of(lambda: Calibration.from_config(servos))
+
+
+def _home_problems(machine: Machine, content: Mapping[str, Any]) -> list[str]:
+    if content['kind'] not in hexapods.KINDS:
+        return []
+    return home_problems(machine, 'crank_tangents' in content['geometry'])
+
+
+def _merged(problems: Sequence[str]) -> tuple[str, ...]:
+    """Each that several entries of a list have once, with all their numbers."""
+    groups: dict[str, list[str]] = {}
+    for problem in dict.fromkeys(problems):
+        where, colon, what = problem.partition(': ')
+        groups.setdefault(INDEX.sub('[]', where, count=1) + colon + what, []).append(where)
+    return tuple(
+        text.replace('[]', f'[{", ".join(INDEX.findall(" ".join(places)))}]', 1)
+        for text, places in groups.items()
+    )
+
+
+def _machine(kind: str, content: Mapping[str, Any], whole: MachineFile | None) -> Machine:
+    """What the sections geometry and limits make, even if home is beyond limits."""
+    geometry, limits = (content.get(name, {}) for name in ROOM)
     motion = STAND_IN if whole is None else whole.motion
-    return loader(kind)(MachineFile(kind, geometry, limits, motion, servos={}, link={}))
+    make = hexapods.platform if kind in hexapods.KINDS else loader(kind)
+    return make(MachineFile(kind, geometry, limits, motion, servos={}, link={}))
 
 
-def _check_dynamics(found: Findings, kind: object, there: Mapping[str, Any]) -> None:
-    """The section itself; of a stack, those of its sections."""
-    if 'dynamics' in there and isinstance(kind, str):
-        if kind in SCHEMAS:
-            found.of(partial(build, SCHEMAS[kind], there['dynamics'], 'dynamics'))
-        elif kind == 'stack':
-            found.problems.append(OF_SECTIONS)
-    sections = there.get('geometry', {}).get('sections') if kind == 'stack' else None
-    for i, section in enumerate(sections if isinstance(sections, list) else ()):
-        if isinstance(section, Mapping) and section.get('kind') in SCHEMAS:
+def _check_sections(found: Findings, geometry: object) -> None:
+    """What the sections of a stack say of their masses and drives."""
+    for i, section in enumerate(geometry.sections if isinstance(geometry, StackConfig) else ()):
+        if section.dynamics is not None and section.kind in SCHEMAS:
             where = f'geometry.sections[{i}].dynamics'
-            if section.get('dynamics') is not None:
-                schema = SCHEMAS[section['kind']]
-                found.of(partial(build, schema, section['dynamics'], where))
+            found.of(partial(build, SCHEMAS[section.kind], section.dynamics, where))
 
 
-def _between(machine: Machine, calibration: Calibration) -> Iterator[str]:
-    """Contradictions between servos and machine."""
+def _between(machine: Machine, calibration: Calibration, is_home_good: bool) -> Iterator[str]:
+    """Contradictions between servos and machine; where home is wrong, park can hardly be right."""
     expected, names = machine.kinematics.joint_names, calibration.names
     missing = [name for name in expected if name not in names]
     for name in missing:
@@ -141,22 +178,24 @@ def _between(machine: Machine, calibration: Calibration) -> Iterator[str]:
     elif not missing:
         order = [names.index(name) for name in expected]
         yield from _narrow_servos(machine, calibration, order)
-        yield from _park_problems(machine, calibration, order)
+        if is_home_good:
+            yield from _park_problems(machine, calibration, order)
         yield from _slow_servos(machine, calibration)
 
 
 def _narrow_servos(machine: Machine, calibration: Calibration, order: list[int]) -> Iterator[str]:
     factor, unit = _file_unit(calibration)
-    for limit in machine.constraints.limits:
-        if not isinstance(limit, JointRange):
-            continue
-        for i, low, high in zip(order, limit.low, limit.high, strict=True):
-            lowest, highest = calibration.range_of(i)
-            if lowest > low + 1e-6 or highest < high - 1e-6:
-                reach = f'[{lowest * factor:.4g}, {highest * factor:.4g}] {unit}'
-                span = f'[{low * factor:.4g}, {high * factor:.4g}] {unit}'
-                name = calibration.names[i]
-                yield f'servos.joints[{i}]: {name} reaches {reach}, its range in limits is {span}'
+    narrow: dict[tuple[str, str], list[str]] = {}
+    for i, low, high in zip(order, *machine.joint_ranges, strict=True):
+        lowest, highest = calibration.range_of(i)
+        if lowest > low + 1e-6 or highest < high - 1e-6:
+            reach = f'[{lowest * factor:.4g}, {highest * factor:.4g}] {unit}'
+            span = f'[{low * factor:.4g}, {high * factor:.4g}] {unit}'
+            narrow.setdefault((reach, span), []).append(calibration.names[i])
+    for (reach, span), some in narrow.items():
+        reaches, whose = ('reach', 'their') if len(some) > 1 else ('reaches', 'its')
+        names = ', '.join(some)
+        yield f'servos.joints: {names} {reaches} {reach}, {whose} range in limits is {span}'
 
 
 def _park_problems(machine: Machine, calibration: Calibration, order: list[int]) -> Iterator[str]:
@@ -167,8 +206,8 @@ def _park_problems(machine: Machine, calibration: Calibration, order: list[int])
     except NoSolution as error:
         yield f'servos.park_{unit}: no pose that can be trusted: {error}'
         return
-    for violation in machine.constraints.violations(pose, park):
-        yield f'servos.park_{unit}: {violation}'
+    for words in in_words(machine.constraints.violations(pose, park)):
+        yield f'servos.park_{unit}: {words}'
     if isinstance(machine.kinematics, StackKinematics):
         yield from _unshared_park(machine.kinematics, pose, park, unit)
 

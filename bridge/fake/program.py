@@ -129,7 +129,7 @@ def _declare(library: ctypes.PyDLL) -> None:
         ('host_new', host, (ctypes.POINTER(Wires),)),
         ('host_free', None, (host,)),
         ('host_reset', None, (host, u8)),
-        ('host_run', None, (host, u32)),
+        ('host_run', u32, (host, u32)),
         ('host_feed', None, (host, text, u32)),
         ('host_receive', None, (host, text, u32)),
         ('host_take', u32, (host, text, u32)),

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from arm_control.load import arm
-from arm_control.workspace import sample as sample_arm
 from hexapod_control.load import hexapod
 from hexapod_control.load_stack import stack
 from hexapod_control.workspace import sample
@@ -37,6 +36,12 @@ def sample_stack(machine, count, generator):
     stack = machine.kinematics.stack
     ends = stack.end_of([sample(section, 2 * count, generator) for section in stack.sections])
     return ends[machine.constraints.admits(ends, machine.kinematics.inverse(ends))][:count]
+
+
+def sample_arm(machine: Machine, count: int, rng: np.random.Generator) -> Pose:
+    """Poses of joint angles that are uniform within the joint ranges."""
+    chain, limits = machine.kinematics.chain, machine.kinematics.limits
+    return chain.forward(rng.uniform(limits.low, limits.high, (count, 6)))
 
 
 CASES = [

@@ -81,7 +81,7 @@ def test_the_transform_to_the_next_section_turns_it():
         ),
         (
             lambda g: g['sections'][2]['limits'].update(stroke_range_mm=[142.0, 180.0]),
-            'geometry.sections[2].limits: home has leg 1: leg length',
+            'geometry.sections[2].limits: home has leg length 190 mm on all legs',
         ),
         (
             lambda g: g['sections'][0].update(next={'xyz_mm': [0.0, 0.0]}),
@@ -102,12 +102,6 @@ def test_a_park_position_that_is_not_the_rules_is_named():
     content['servos']['park_mm'] = [195.0] * 6 + [190.0] * 6 + [185.0] * 6
     (problem,) = report_of(content).problems
     assert problem.startswith('servos.park_mm: not where the sections share the pose of the end')
-
-
-def test_a_dynamics_section_is_refused():
-    content = copy.deepcopy(CONTENT)
-    content['dynamics'] = {}
-    assert list(report_of(content).problems) == ['dynamics: a stack has no model of its masses']
 
 
 def test_a_jog_keeps_every_limit_stops_at_one_and_comes_back():

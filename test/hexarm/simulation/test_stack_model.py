@@ -59,8 +59,8 @@ def test_a_section_without_masses_is_named():
 
 def test_masses_are_checked_with_their_section():
     raw = content('stewart_6_6', {})
-    raw['dynamics'] = {}
+    raw['dynamics'] = {'drive': {}}
     raw['geometry']['sections'][0]['dynamics'] = {'mass': 1.0}
     problems = report_of(raw).problems
-    assert 'dynamics: a stack has no masses and drives but those of its sections' in problems
+    assert 'dynamics.drive: unknown key' in problems
     assert any(p.startswith('geometry.sections[0].dynamics.mass: unknown key') for p in problems)

@@ -1,0 +1,42 @@
+"""What is wrong with a platform's home, in the words and units of its machine file."""
+
+import numpy as np
+
+from hexapod_control.rotary import RotaryHexapod
+from manipulator.limits.wording import degrees_in_words, in_words
+from manipulator.machine import Machine
+
+PAGE = 'docs/machine-files.md, Cranks bent the other way'
+
+
+def home_problems(machine: Machine, has_tangents: bool = True) -> list[str]:
+    """One sentence for each limit that home is beyond, and one for cranks bent the other way.
+
+    has_tangents: the file has the key crank_tangents.
+    """
+    kinematics = machine.kinematics
+    home = kinematics.home
+    found = machine.constraints.violations(home, kinematics.inverse(home))
+    problems = [f'limits: home has {words}' for words in in_words(found)]
+    if isinstance(kinematics, RotaryHexapod) and problems:
+        problems[0] += _other_bend(machine, kinematics, has_tangents)
+    return problems
+
+
+def _other_bend(machine: Machine, kinematics: RotaryHexapod, has_tangents: bool) -> str:
+    """What to write for cranks that are out of range, and in it if bent the other way."""
+    low, high = machine.joint_ranges
+    bends = kinematics.inverse_all(kinematics.home)
+    joints, other = bends[0], bends[-1]
+    is_other = ((joints < low) | (joints > high)) & (other >= low) & (other <= high)
+    if not is_other.all():
+        return ''
+    ends = ', '.join(f'{180.0 - end:.6g}' for end in np.degrees([high[0], low[0]]))
+    write = (
+        f'negate the crank_tangents and count the angles from there: crank_range_deg: [{ends}], '
+        'centre_deg and park_deg 180 minus what they are, and each sign the other'
+    )
+    if not has_tangents:
+        write = 'give the geometry by coordinates, with crank_tangents'
+    angles = degrees_in_words(other)
+    return f'; bent the other way it is {angles} on all legs: {write} ({PAGE})'
