@@ -163,7 +163,6 @@ def _machine_file(section: SectionConfig, whole: MachineFile) -> MachineFile:
         section.geometry,
         section.limits,
         whole.motion,
-        servos={},
-        link={},
+        driver='topic',
         dynamics=section.dynamics,
     )

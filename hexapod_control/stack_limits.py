@@ -14,6 +14,7 @@ from manipulator.errors import ManipulatorError
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import Bounds, BrakingPaths, Grouped, Limit, Search
 from manipulator.limits.machine_limits import JointRange
+from manipulator.limits.task_space import QUANTITIES, pose_values
 from manipulator.pose import Pose
 
 A_LIMIT, A_SPEED, AN_ACCELERATION = 1, 2, 3
@@ -46,9 +47,15 @@ class SectionLimit:
 
 @dataclass(frozen=True, eq=False)
 class StackLimits:
-    """The `LimitGroup` of a stack: its joints (6n), then each section's values, (..., 44n)."""
+    """The `LimitGroup` of a stack: the joints (6n), each section's values, those of the end."""
 
     kinematics: StackKinematics
+
+    @property
+    def of_pose(self) -> slice:
+        """See `LimitGroup`: of the end."""
+        first = (LEGS + VALUES) * len(self.kinematics.platforms)
+        return slice(first, first + len(QUANTITIES))
 
     def limited_values(self, pose: Pose, joints: Array) -> Array:
         """See `LimitGroup`; the joints alone say where the sections are."""
@@ -61,11 +68,13 @@ class StackLimits:
         for i, (platform, at) in enumerate(platforms):
             own = given[..., LEGS * i : LEGS * (i + 1)]
             parts.append(platform.limits.limited_values(at, own))
+        of_end = pose_values(pose, self.kinematics.home.rotation)
+        parts.append(np.broadcast_to(of_end, (*shape, len(QUANTITIES))))
         return np.concatenate(parts, axis=-1)
 
     def ranges(self, bounds: Sequence[Bounds]) -> Array:
-        """See `LimitGroup`: least and most (2, 44n), ±∞ where there is none."""
-        count = (LEGS + VALUES) * len(self.kinematics.platforms)
+        """See `LimitGroup`: least and most, (2, K) ±∞ where there is none."""
+        count = self.of_pose.stop
         ranges = np.stack([np.full(count, -np.inf), np.full(count, np.inf)])
         for columns, low, high in bounds:
             ranges[0, columns] = np.maximum(ranges[0, columns], low)

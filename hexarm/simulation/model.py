@@ -5,11 +5,12 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from arm_control.geometry import ArmLimits
 from hexapod_control.geometry import LEGS
 from hexapod_control.load_stack import section_files
 from hexapod_control.stack_kinematics import StackKinematics
 from hexarm.simulation.arm_model import arm_model
-from hexarm.simulation.drives import Drives, pushing, turning
+from hexarm.simulation.drives import Drives, pushing, servo_speeds, turning
 from hexarm.simulation.dynamics_config import (
     SCHEMAS,
     ArmDynamicsConfig,
@@ -48,13 +49,21 @@ def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dy
 
 
 def drives_of(dynamics: Dynamics, machine_file: MachineFile) -> Drives:
-    """The servos of a machine, in the order of its joints."""
+    """The drives of a machine, in the order of its joints.
+
+    An arm without servos of ours has drives as fast as its joints may turn.
+    """
     servos = machine_file.servos
     if isinstance(dynamics, LinearDynamicsConfig):
         return pushing(dynamics.drive, LEGS, servos)
     if isinstance(dynamics, RotaryDynamicsConfig):
-        return turning((dynamics.drive,) * LEGS, servos)
-    return turning(tuple(link.drive for link in dynamics.links), servos)
+        return turning((dynamics.drive,) * LEGS, servo_speeds(servos, LEGS))
+    drives = tuple(link.drive for link in dynamics.links)
+    if machine_file.driver == 'topic':
+        return turning(
+            drives, build(ArmLimits, machine_file.limits, 'limits').joint_limits().speed
+        )
+    return turning(drives, servo_speeds(servos, len(drives)))
 
 
 def mechanism(
@@ -91,7 +100,9 @@ def _sections(
     parts, last = [], len(kinematics.platforms) - 1
     files = zip(section_files(machine_file), kinematics.platforms, strict=True)
     for i, (file, platform) in enumerate(files):
-        own = replace(file, servos=machine_file.servos)
+        own = replace(
+            file, driver=machine_file.driver, servos=machine_file.servos, link=machine_file.link
+        )
         load = payload_g if i == last else 0.0
         try:
             parts.append(mechanism(f'section_{i + 1}', own, platform, load, torque))

@@ -104,6 +104,18 @@ def test_a_park_position_that_is_not_the_rules_is_named():
     assert problem.startswith('servos.park_mm: not where the sections share the pose of the end')
 
 
+def test_task_space_limits_are_those_of_the_end():
+    content = copy.deepcopy(CONTENT)
+    content['task_space'] = {'z_mm': [500.0, 600.0], 'turn_deg': [-20.0, 20.0]}
+    machine = report_of(content).machine
+    for twist, quantity in (((0, 0, 0.05, 0, 0, 0), 'position z'), ((0, 0, 0, 0, 0, 0.5), 'turn')):
+        pose = machine.kinematics.home.moved(twist)
+        joints = machine.kinematics.inverse(pose)
+        assert not machine.constraints.admits(pose, joints)
+        (violation,) = machine.constraints.violations(pose, joints)
+        assert violation.quantity == quantity
+
+
 def test_a_jog_keeps_every_limit_stops_at_one_and_comes_back():
     machine = report_of(CONTENT).machine
     kinematics, jogger = machine.kinematics, machine.make_jogger(machine)

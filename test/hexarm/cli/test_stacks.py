@@ -30,7 +30,7 @@ def stack(tmp_path):
 
 def written(folder, geometry):
     path = folder / 'stack.yaml'
-    tail = TAIL[: TAIL.index('\nservos:')] + '\nservos: {}\nlink: {}\n'
+    tail = TAIL[: TAIL.index('\nservos:')] + '\ndriver: topic\n'
     path.write_text(HEAD + geometry + tail)
     return str(path)
 
