@@ -9,6 +9,7 @@ from manipulator.analysis.free_paths import admits
 from manipulator.analysis.readings import CHECKS_PER_LENGTH
 from manipulator.analysis.travel import travel
 from manipulator.arrays import Array, Mask
+from manipulator.kinematics import POSE_NUMBERS, chosen_rates
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
@@ -16,9 +17,6 @@ AXES = ('x', 'y', 'z', 'roll', 'pitch', 'yaw')
 BISECTIONS = 30
 FARTHEST = 30  # characteristic lengths
 RANK = 1e-9
-POSE_NUMBERS = 6
-DIFFERENCE = 1e-5
-"""Metres and radians."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,19 +51,11 @@ def joint_rates(machine: Machine, poses: Pose) -> Array:
     """
     joints = machine.kinematics.inverse_or_nan(poses)
     if joints.shape[-1] > POSE_NUMBERS:
-        return _chosen_rates(machine, poses)
+        units = np.eye(POSE_NUMBERS)
+        columns = [chosen_rates(machine.kinematics, poses, joints, unit) for unit in units]
+        return np.stack(columns, axis=-1)
     jacobian = machine.kinematics.jacobian(poses, joints)
     return np.asarray(np.linalg.pinv(jacobian, rcond=RANK), dtype=np.float64)
-
-
-def _chosen_rates(machine: Machine, poses: Pose) -> Array:
-    inverse = machine.kinematics.inverse_or_nan
-    columns = [
-        (inverse(poses.moved(DIFFERENCE * unit)) - inverse(poses.moved(-DIFFERENCE * unit)))
-        / (2.0 * DIFFERENCE)
-        for unit in np.eye(POSE_NUMBERS)
-    ]
-    return np.stack(columns, axis=-1)
 
 
 def ranges(

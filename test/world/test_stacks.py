@@ -1,4 +1,4 @@
-"""A stack of three sections on one board of 18 channels: a goal, a jog into a limit, a stop."""
+"""A stack of three sections on one board: a goal, a path, a jog into a limit, a stop."""
 
 import numpy as np
 
@@ -19,13 +19,16 @@ def joints_at(world, counts):
     return joints[:, order]
 
 
-def test_a_stack_reaches_a_goal_jogs_into_a_limit_and_stops(make_world):
+def test_a_stack_reaches_a_goal_follows_a_path_jogs_into_a_limit_and_stops(make_world):
     world = make_world('stack_6_6')
     machine, kinematics, since = world.machine, world.machine.kinematics, world.now
     goal = kinematics.home.moved([0.02, -0.01, 0.13, 0.05, 0.1, 0.1])
     assert world.go_to(goal).result == 'reached'
     world.run(0.3)
     assert np.abs(world.pose.twist_to(goal)).max() < SLACK
+    along = np.linspace(0.0, 1.0, 9)[:, None] * np.array([-0.01, 0.01, -0.01, 0.0, 0.05, 0.0])
+    assert world.end_of(world.send_path(goal.moved(along))).result == 'reached'
+    assert world.go_to(goal).result == 'reached'
     world.jog(UP, 2.0)
     assert 'section' in world.status.reason
     world.run(0.5)
