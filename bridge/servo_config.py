@@ -89,12 +89,21 @@ class ServosConfig:
             problems.append(f'joints: duplicate names in {names}')
         if sum(joint.is_gripper for joint in self.joints) > 1:
             problems.append('joints: more than one is the gripper')
-        channels = [joint.channel for joint in self.joints]
-        if sorted(channels) != list(range(len(channels))):
-            problems.append(f'joints: channels {channels} are not 0 to {len(channels) - 1}')
+        problems += self._channel_problems()
         problems += self._unit_problems()
         if problems:
             raise ConfigError(problems)
+
+    def _channel_problems(self) -> list[str]:
+        channels = [joint.channel for joint in self.joints]
+        if sorted(channels) == list(range(len(channels))):
+            return []
+        problem = f'joints: channels {channels} are not 0 to {len(channels) - 1}'
+        for channel in sorted(set(channels)):
+            users = [joint.name for joint in self.joints if joint.channel == channel]
+            if len(users) > 1:
+                problem += f'; {channel} is that of {" and ".join(users)}'
+        return [problem]
 
     def _unit_problems(self) -> list[str]:
         if len({joint.is_linear for joint in self.joints}) > 1:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -12,16 +13,21 @@ from bridge.calibration import Calibration
 from bridge.servo_config import ServosConfig
 from hexapod_control import load as hexapods
 from hexapod_control.home import home_problems
+from hexapod_control.load_stack import StackConfig
+from hexapod_control.stack_kinematics import StackKinematics
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
 from hexarm.machine_spelling import corrected
 from hexarm.machine_warnings import warnings_of
-from hexarm.machines import frames_of, loader
+from hexarm.machines import frames_of, loader, with_sections
+from hexarm.simulation.dynamics_config import SCHEMAS
+from manipulator.arrays import Array
 from manipulator.config import build, forms_of, nearest, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
 from manipulator.formatting import shown, told_apart
 from manipulator.limits.wording import in_words
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionConfig
+from manipulator.pose import Pose
 
 T = TypeVar('T')
 ROOM = ('geometry', 'limits')
@@ -31,6 +37,10 @@ INDEX = re.compile(r'\[(\d+)\]')
 
 STAND_IN = MotionConfig(1.0, 1.0, 10.0, 1.0, 1.0, 10.0)
 """For a motion section with faults of its own, so that the others are looked at all the same."""
+
+
+PARK_SHARE = 1e-4
+"""m or rad by which a stack's park position may be off the rule that shares its motion."""
 
 
 class Findings:
@@ -59,10 +69,10 @@ class Report:
     machine: Machine | None = None
 
 
-def problems_of(text: str) -> list[str]:
-    """All problems of a machine file's text, none for a good one."""
+def problems_of(text: str, folder: Path = Path()) -> list[str]:
+    """All problems of the text of a machine file in a folder, none for a good one."""
     try:
-        return list(report_of(parse_yaml(text)).problems)
+        return list(report_of(with_sections(parse_yaml(text), folder)).problems)
     except ConfigError as error:
         return list(error.problems)
 
@@ -91,6 +101,8 @@ def report_of(content: Mapping[str, Any]) -> Report:
         for name, schema in schemas.items()
         if isinstance(content.get(name), Mapping)
     }
+    if kind == 'stack':
+        _check_sections(found, sections.get('geometry'))
     machine = None
     if kind and all(sections.get(name) for name in ROOM):
         machine = found.of(lambda: _machine(kind, content, whole))
@@ -181,6 +193,14 @@ def _machine(kind: str, content: Mapping[str, Any], whole: MachineFile | None) -
     return make(MachineFile(kind, geometry, limits, motion, driver='topic'))
 
 
+def _check_sections(found: Findings, geometry: object) -> None:
+    """What the sections of a stack say of their masses and drives."""
+    for i, section in enumerate(geometry.sections if isinstance(geometry, StackConfig) else ()):
+        if section.dynamics is not None and section.kind in SCHEMAS:
+            where = f'geometry.sections[{i}].dynamics'
+            found.of(partial(build, SCHEMAS[section.kind], section.dynamics, where))
+
+
 def _between(machine: Machine, calibration: Calibration, is_home_good: bool) -> Iterator[str]:
     """Contradictions between servos and machine; where home is wrong, park can hardly be right."""
     expected, names = machine.kinematics.joint_names, list(calibration.names)
@@ -227,6 +247,22 @@ def _park_problems(machine: Machine, calibration: Calibration, order: list[int])
         return
     for words in in_words(machine.constraints.violations(pose, park)):
         yield f'servos.park_{unit}: {words}'
+    if isinstance(machine.kinematics, StackKinematics):
+        yield from _unshared_park(machine.kinematics, pose, park, unit)
+
+
+def _unshared_park(
+    kinematics: StackKinematics, pose: Pose, park: Array, unit: str
+) -> Iterator[str]:
+    """Of a stack, whose joints at a pose are those of a rule: it would jump when it is enabled."""
+    joints = kinematics.inverse_or_nan(pose, park)
+    worst = int(np.argmax(np.abs(joints - park)))
+    if not np.abs(joints - park)[worst] < PARK_SHARE:
+        yield (
+            f'servos.park_{unit}: not where the sections share the pose of the end '
+            f'(docs/kinematics.md, 9): {kinematics.joint_names[worst]} would be at '
+            f'{joints[worst]:.5g} {kinematics.joint_unit}'
+        )
 
 
 def _slow_servos(machine: Machine, calibration: Calibration) -> Iterator[str]:

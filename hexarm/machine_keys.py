@@ -17,14 +17,15 @@ from typing import Any
 from arm_control import load as arms
 from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
 from hexapod_control import load as hexapods
-from hexarm.simulation.dynamics_config import SCHEMAS
+from hexapod_control import load_stack
+from hexarm.simulation.dynamics_config import SCHEMAS, StackDynamicsConfig
 from manipulator.config import forms_of, is_required
 from manipulator.frames import FramesConfig
 from manipulator.limits.task_space import TaskSpaceConfig
 from manipulator.machine import Kind, MachineFile
 from manipulator.motion_limits import MotionConfig
 
-KINDS: dict[str, Kind[Any]] = {**hexapods.KINDS, **arms.KINDS}
+KINDS: dict[str, Kind[Any]] = {**hexapods.KINDS, **arms.KINDS, 'stack': load_stack.KIND}
 OF_KINDS = ('geometry', 'limits', 'dynamics')
 BRIDGE: dict[str, Any] = {
     'servos': ServosConfig,
@@ -49,8 +50,12 @@ GENERATED = '<!-- From here on generated: python -m hexarm.machine_keys -->\n'
 def sections_of(kind: str) -> dict[str, Any]:
     """The schema of each section that depends on the kind, and of the bridge's."""
     room = KINDS[kind]
-    own = {'geometry': room.geometry, 'limits': room.limits, 'dynamics': SCHEMAS.get(kind)}
-    return {name: schema for name, schema in own.items() if schema is not None} | BRIDGE
+    return {
+        'geometry': room.geometry,
+        'limits': room.limits,
+        'dynamics': SCHEMAS.get(kind, StackDynamicsConfig),
+        **BRIDGE,
+    }
 
 
 @dataclasses.dataclass(frozen=True)
@@ -108,8 +113,9 @@ def tables() -> str:
     kinds = ', '.join(f'`{kind}`' for kind in KINDS)
     lines = ['## The file', '', *_table(MachineFile, is_flat=True), f'Kinds: {kinds}.', '']
     for kind in KINDS:
-        for name, schema in sections_of(kind).items():
-            for form in forms_of(schema) if name in OF_KINDS else ():
+        for name in OF_KINDS:
+            schema = sections_of(kind)[name]
+            for form in filter(dataclasses.fields, forms_of(schema)):
                 lines += [f'### `{name}` of a `{kind}`{_form(form, schema)}', '', *_table(form)]
     others = {'frames': FramesConfig, 'task_space': TaskSpaceConfig}
     for name, schema in {'motion': MotionConfig, **BRIDGE, **others}.items():

@@ -196,6 +196,11 @@ class ArmDynamicsConfig:
     compensation: bool = key(COMPENSATION, default=False)
 
 
+@dataclass(frozen=True)
+class StackDynamicsConfig:
+    """A stack has no masses and drives but those of its sections."""
+
+
 SCHEMAS: dict[str, type[RotaryDynamicsConfig | LinearDynamicsConfig | ArmDynamicsConfig]] = {
     'rotary_hexapod': RotaryDynamicsConfig,
     'linear_hexapod': LinearDynamicsConfig,

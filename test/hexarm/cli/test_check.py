@@ -13,7 +13,7 @@ import pytest
 from hexapod_control.geometry import HexagonConfig
 from hexarm.cli.main import main
 from hexarm.machine_check import problems_of, report_of
-from hexarm.machines import load
+from hexarm.machines import content_of, load
 from manipulator.config import build, parse_yaml
 
 CONFIG = Path(__file__).parents[3] / 'config'
@@ -49,7 +49,7 @@ def section_without(text, name):
 @pytest.mark.parametrize('file', sorted(CONFIG.glob('*.yaml')), ids=lambda file: file.stem)
 def test_shipped_files_are_good(file):
     if 'kind:' in file.read_text():
-        report = report_of(parse_yaml(file.read_text()))
+        report = report_of(content_of(file))
         assert (report.problems, report.warnings) == ((), ())
 
 
