@@ -72,13 +72,13 @@ class Report:
 def problems_of(text: str, folder: Path = Path()) -> list[str]:
     """All problems of the text of a machine file in a folder, none for a good one."""
     try:
-        return list(report_of(with_sections(parse_yaml(text), folder)).problems)
+        return list(report_of(parse_yaml(text), folder).problems)
     except ConfigError as error:
         return list(error.problems)
 
 
-def report_of(content: Mapping[str, Any]) -> Report:
-    """Of a machine file that could be read.
+def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
+    """Of a machine file that could be read; folder: where it is, unless `with_sections` was there.
 
     The sections first, each as far as it is there; then what one contains about another, as far
     as both are good: home, names, units, ranges, speeds and the park position.
@@ -93,6 +93,9 @@ def report_of(content: Mapping[str, Any]) -> Report:
         if name in content
     }
     whole = found.of(lambda: build(MachineFile, content))
+    if folder is not None:
+        full = found.of(partial(with_sections, content | {'kind': kind}, folder))
+        content = content | {'geometry': None} if full is None else full
     unfit = _unfit(kind, content)
     if unfit:
         return Report(unfit)

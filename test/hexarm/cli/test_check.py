@@ -22,6 +22,7 @@ ROBOCAKE = (CONFIG / 'robocake.yaml').read_text()
 ARM = (CONFIG / 'arm_6r.yaml').read_text()
 STEWART = (CONFIG / 'stewart_6_3.yaml').read_text()
 UR5 = (CONFIG / 'ur5.yaml').read_text()
+STACK = (CONFIG / 'stack_6_6.yaml').read_text()
 BY_COORDINATES = (CONFIG / 'reachy_mini.yaml').read_text()
 
 
@@ -470,7 +471,7 @@ def test_one_wrong_word_in_every_entry_of_a_list_is_one_line():
     ]
 
 
-@pytest.mark.parametrize('text', [ROBOCAKE, STEWART, UR5])
+@pytest.mark.parametrize('text', [ROBOCAKE, STEWART, UR5, STACK])
 def test_one_wrong_letter_is_one_line(text):
     text = re.sub('#.*|^description.*', '', re.sub('".*?"', 'x', text), flags=re.MULTILINE)
     for word in sorted({*re.findall(r'(\w{4,}):', text), *re.findall(r'^kind: (\w+)', text)}):
