@@ -92,7 +92,9 @@ def report_of(content: Mapping[str, Any]) -> Report:
             found.problems.extend(_between(machine, calibration))
     absent = tuple(f'{name}.' for name in ROOM if name not in there)
     problems = tuple(problem for problem in found.problems if not problem.startswith(absent))
-    doubts = () if problems or machine is None else warnings_of(machine, calibration)
+    doubts: list[str] = []
+    if machine is not None and not problems:
+        doubts = warnings_of(machine, calibration, there.get('geometry', {}))
     return Report(problems, tuple(doubts), machine)
 
 

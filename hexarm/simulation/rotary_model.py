@@ -82,8 +82,12 @@ def _universals(kinematics: RotaryHexapod) -> tuple[UniversalJoint, ...]:
 def _add_body(
     root: ET.Element, kinematics: RotaryHexapod, config: RotaryDynamicsConfig, lid: float
 ) -> None:
-    """The fixed body, a hexagonal prism up to the lid (m), and a servo behind each crank."""
+    """The fixed body, a hexagonal prism up to the lid (m), and a servo behind each crank.
+
+    Behind is where the crank's axis leads towards the body, away from the platform's side.
+    """
     geometry, world = kinematics.geometry, child(root, 'worldbody')
+    middle = 2 * geometry.crank_centres.mean(axis=0) - kinematics.home.position
     reach = np.linalg.norm(geometry.crank_centres[:, :2], axis=1).min()
     body = add(world, 'body', name='body')
     servo = config.servo
@@ -92,7 +96,7 @@ def _add_body(
     add_hexagon(root, body, 'body', reach - length, (bottom, lid), METAL)
     for leg in range(LEGS):
         centre, normal = geometry.crank_centres[leg], geometry.normals[leg]
-        inward = normal if normal @ centre < 0 else -normal
+        inward = normal if normal @ (centre - middle) < 0 else -normal
         case = rod(1e-3 * servo.mass_g, radius, centre, centre + length * inward)
         held = add(body, 'body', name=f'servo_{leg + 1}')
         inertial(held, case, np.zeros(3))

@@ -1,0 +1,8 @@
+"""Machine files of kinds of legs that no shipped machine has."""
+
+from pathlib import Path
+
+FOLDER = Path(__file__).parent / 'machines'
+TILTED_CRANKS, FLAT_CRANKS = (
+    str(FOLDER / f'{name}.yaml') for name in ('tilted_cranks', 'flat_cranks')
+)
