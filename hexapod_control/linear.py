@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hexapod_control.geometry import LEGS
+from hexapod_control.legs import LegKind, Legs
 from hexapod_control.linear_geometry import LinearGeometry
 from hexapod_control.parallel_platform import ParallelPlatform
-from manipulator import _kernel
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution
 from manipulator.pose import Pose
@@ -35,14 +35,8 @@ class LinearPlatform(ParallelPlatform):
         return 'm'
 
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
-        """Leg lengths (..., 6), Lapikov et al. 2014, section 2.1; `near` changes nothing."""
+        """Leg lengths (..., 6), Lapikov et al. 2014, section 2.1; no leg fails to close."""
         return self.inverse_or_nan(pose, near)
-
-    def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
-        """As `inverse`: no leg fails to close."""
-        lengths = np.empty((*pose.position.shape[:-1], LEGS))
-        _kernel.linear_inverse(self.legs, pose.position, pose.rotation, lengths)
-        return lengths
 
     def rod_lengths(self, joints: Array) -> Array:
         """The joints themselves; NoSolution where one is not above 0."""
@@ -51,16 +45,5 @@ class LinearPlatform(ParallelPlatform):
             raise NoSolution(f'leg {leg + 1}: length {joints[leg]:.4g} m is not above 0')
         return joints
 
-    def joint_gains(self, pose: Pose, joints: Array) -> Array:
-        """1 for every leg."""
-        return np.ones(np.shape(joints))
-
-    def leverage(self, pose: Pose, joints: Array) -> Array:
-        """1 for every leg: linear legs have no inverse singularity."""
-        return np.ones(np.shape(joints))
-
-    def _legs(self) -> Array:
-        """Cranks of length 0: the base points stand still, whatever the joints."""
-        g, nothing = self.geometry, np.zeros(3 * LEGS)
-        ends = (nothing, nothing, nothing, g.platform_points.T.ravel())
-        return np.concatenate([g.base_points.T.ravel(), *ends, np.zeros(2 * LEGS + 1)])
+    def _legs(self) -> Legs:
+        return Legs.of(LegKind.LINEAR, self.geometry.base_points, self.geometry.platform_points)

@@ -12,8 +12,8 @@ static struct rods rods_at(const struct platform *platform, const real position[
                            const real rotation[9], const real joints[LEGS])
 {
     real base[3][LEGS];
-    base_points(&platform->legs, joints, base);
-    return rods_of(base, platform->legs.end, position, rotation);
+    leg_points(&platform->legs, joints, base);
+    return rods_of(base, platform->legs.shape.end, position, rotation);
 }
 
 /* Products with the unit rods, one a leg: the sines of their angles to the cranks' planes, and the
@@ -26,7 +26,7 @@ static struct products products_of(const struct platform *platform, const struct
                                    const real rotation[9])
 {
     struct products p;
-    const real(*home)[LEGS] = platform->home_rod, (*normal)[LEGS] = platform->legs.normal;
+    const real(*home)[LEGS] = platform->home_rod, (*normal)[LEGS] = platform->legs.shape.normal;
     const real *r = rotation;
     for (int i = 0; i < LEGS; i++) {
         real x = rods->unit[0][i], y = rods->unit[1][i], z = rods->unit[2][i];
@@ -45,7 +45,7 @@ static real home_tilt(const struct platform *platform, int leg)
 {
     real sine = 0;
     for (int k = 0; k < 3; k++)
-        sine += platform->home_rod[k][leg] * platform->legs.normal[k][leg];
+        sine += platform->home_rod[k][leg] * platform->legs.shape.normal[k][leg];
     return real_asin(fmax(-1, fmin(1, sine)));
 }
 
@@ -54,34 +54,13 @@ static real clipped(real cosine)
     return cosine > 1 ? 1 : cosine < -1 ? -1 : cosine;
 }
 
-/* How far a rod is from the shortest and the longest that would close its leg: (2.3). */
-static void put_misfits(const struct crank_legs *legs, const real position[3],
-                        const real rotation[9], real values[VALUES])
-{
-    real gap[3][LEGS];
-    leg_gaps(legs, position, rotation, gap);
-    for (int i = 0; i < LEGS; i++) {
-        real across = 0, along = 0, up = 0, r = legs->crank[i];
-        for (int k = 0; k < 3; k++) {
-            across += legs->normal[k][i] * gap[k][i];
-            along += legs->tangent[k][i] * gap[k][i];
-            up += legs->up[k][i] * gap[k][i];
-        }
-        real in_plane = real_sqrt(along * along + up * up);
-        values[SHORTFALL + i] =
-            real_sqrt(across * across + (in_plane - r) * (in_plane - r)) - legs->rod[i];
-        values[SURPLUS + i] =
-            legs->rod[i] - real_sqrt(across * across + (in_plane + r) * (in_plane + r));
-    }
-}
-
 void limited_values(const struct platform *platform, const real position[3],
                     const real rotation[9], const real joints[LEGS], real values[VALUES])
 {
     struct rods rods = rods_at(platform, position, rotation, joints);
     struct products p = products_of(platform, &rods, rotation);
     real columns[6][6];
-    put_misfits(&platform->legs, position, rotation, values);
+    leg_misfits(&platform->legs, position, rotation, values + SHORTFALL, values + SURPLUS);
     for (int i = 0; i < LEGS; i++) {
         values[JOINT + i] = joints[i];
         values[TILT + i] = real_asin(clipped(p.tilt_sine[i])) - home_tilt(platform, i);
