@@ -1,4 +1,4 @@
-"""The `limits` sections of machine files: of crank hexapods and of linear platforms.
+"""The `limits` sections of machine files: of each kind of parallel platform.
 
 Passive joints are limited as docs/kinematics.md, section 6, says: a rod end turns freely about
 its bolt, and tilts only as far as its housing lets it.
@@ -22,6 +22,7 @@ from hexapod_control.platform_limits import (
     TILT,
     PlatformLimits,
 )
+from hexapod_control.rails import RailPlatform
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.arrays import Array, frozen
 from manipulator.config import quantity
@@ -50,7 +51,7 @@ class PlatformLimit:
         return self.group.limited_values(pose, joints)[..., self.columns]
 
 
-def rod_closure(kinematics: RotaryHexapod, is_surplus: bool = False) -> PlatformLimit:
+def rod_closure(kinematics: ParallelPlatform, is_surplus: bool = False) -> PlatformLimit:
     """How much too short (or too long) each rod is to close its leg, in metres: at most 0.
 
     Depends on the pose alone and so has a value where the joints have none.
@@ -73,7 +74,7 @@ def platform_joint_swing(kinematics: ParallelPlatform, largest: float) -> Platfo
 
 
 def base_joint_swing(kinematics: ParallelPlatform, largest: float) -> PlatformLimit:
-    """A linear leg's angle (rad) to its direction at home, as the base sees it: a cone."""
+    """The rod's angle (rad) to its direction at home, as the base sees it: a cone."""
     return _each_leg(kinematics, LEANING, 'base joint swing', 'rad', -np.inf, largest)
 
 
@@ -168,6 +169,49 @@ class LinearLimits:
             (
                 JointRange(
                     low, high, LEG_NAMES, 'leg length', 'm', group=kinematics.limits, columns=JOINT
+                ),
+                base_joint_swing(kinematics, cone),
+                platform_joint_swing(kinematics, cone),
+                singularity_margin(kinematics, self.singularity_margin),
+            )
+        )
+
+
+@dataclass(frozen=True)
+class RailLimits:
+    """What a platform on rails may not exceed, in the units of its machine file.
+
+    The rail range is of the carriages' positions. The passive cone is how far a strut may swing,
+    at either end, from its direction at home.
+    """
+
+    rail_range_mm: tuple[float, float] = quantity(-10_000, 10_000)
+    passive_cone_deg: float = quantity(1, 180)
+    singularity_margin: float = quantity(0.001, 2)
+    characteristic_length_mm: float = quantity(1, 3000)
+
+    def __post_init__(self) -> None:
+        """Raises ConfigError for a range that is empty."""
+        low, high = self.rail_range_mm
+        if not low < high:
+            raise ConfigError([f'rail_range_mm: [{low:g}, {high:g}] is no range'])
+
+    @property
+    def travel(self) -> tuple[float, float]:
+        """The rail range in metres."""
+        low, high = self.rail_range_mm
+        return 1e-3 * low, 1e-3 * high
+
+    def constraints(self, kinematics: RailPlatform) -> Constraints:
+        """The limits, cheapest first."""
+        low, high = (np.full(LEGS, end) for end in self.travel)
+        cone, group = float(np.radians(self.passive_cone_deg)), kinematics.limits
+        names, columns = LEG_NAMES, JOINT
+        return Constraints(
+            (
+                rod_closure(kinematics),
+                JointRange(
+                    low, high, names, 'carriage position', 'm', group=group, columns=columns
                 ),
                 base_joint_swing(kinematics, cone),
                 platform_joint_swing(kinematics, cone),

@@ -6,9 +6,11 @@ from typing import Any
 import numpy as np
 
 from hexapod_control.geometry import LEGS, HexagonConfig, JointsConfig, check_architecture
-from hexapod_control.leg_limits import LinearLimits, RotaryLimits
+from hexapod_control.leg_limits import LinearLimits, RailLimits, RotaryLimits
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.linear_geometry import PlatesConfig, PointsConfig
+from hexapod_control.parallel_platform import ParallelPlatform
+from hexapod_control.rails import RailPlatform, RailsConfig
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.config import build_both
 from manipulator.errors import ConfigError
@@ -20,8 +22,8 @@ from manipulator.motion_limits import MotionLimits
 from manipulator.teleop.platform_jogger import PlatformJogger
 
 Parts = tuple[Kinematics, Constraints]
-CRANK_SETTINGS = 8
-"""How many settings of the cranks must all be singular for the architecture to be so."""
+SETTINGS = 8
+"""How many settings of the joints must all be singular for the architecture to be so."""
 
 
 def hexapod(machine_file: MachineFile) -> Machine:
@@ -50,8 +52,7 @@ def rotary_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
         checked.singularity_margin,
         checked.crank_centre,
     )
-    cranks = np.random.default_rng(1).uniform(*checked.crank_range, (CRANK_SETTINGS, LEGS))
-    check_architecture(kinematics.crank_tips(cranks), joints.platform_points)
+    _check_architecture(kinematics, checked.crank_range)
     return kinematics, checked.constraints(kinematics)
 
 
@@ -67,7 +68,28 @@ def linear_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
     return kinematics, checked.constraints(kinematics)
 
 
+def rail_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
+    """A platform on struts whose lower ends slide on rails."""
+    told, checked = build_both((RailsConfig, geometry, 'geometry'), (RailLimits, limits, 'limits'))
+    kinematics = RailPlatform(
+        told.geometry(),
+        checked.characteristic_length_mm * 1e-3,
+        checked.singularity_margin,
+        checked.travel,
+    )
+    _check_architecture(kinematics, checked.travel)
+    return kinematics, checked.constraints(kinematics)
+
+
+def _check_architecture(kinematics: ParallelPlatform, joint_range: tuple[float, float]) -> None:
+    """As `check_architecture`, with the joints anywhere in their range."""
+    joints = np.random.default_rng(1).uniform(*joint_range, (SETTINGS, LEGS))
+    points = kinematics.geometry.platform_points
+    check_architecture(kinematics.base_points(joints), points)
+
+
 KINDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], Parts]] = {
     'rotary_hexapod': rotary_hexapod,
     'linear_hexapod': linear_hexapod,
+    'rail_hexapod': rail_hexapod,
 }

@@ -36,6 +36,7 @@ def _arm(machine_file: MachineFile) -> Machine:
 KINDS: dict[str, Callable[[MachineFile], Machine]] = {
     'rotary_hexapod': _hexapod,
     'linear_hexapod': _hexapod,
+    'rail_hexapod': _hexapod,
     'serial_arm': _arm,
 }
 

@@ -13,6 +13,7 @@ import numpy as np
 from hexapod_control.geometry import LEGS, RotaryGeometry
 from hexapod_control.leg_jacobian import leg_jacobian
 from hexapod_control.linear_geometry import LinearGeometry
+from hexapod_control.rails import RailGeometry
 from manipulator.analysis.measurements import Parameter
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution
@@ -48,7 +49,7 @@ class LegModel(ABC):
         """Six a kind and leg, or eighteen for points: leg by leg, then x, y, z."""
 
     @abstractmethod
-    def identified(self, values: Array) -> RotaryGeometry | LinearGeometry:
+    def identified(self, values: Array) -> RotaryGeometry | LinearGeometry | RailGeometry:
         """The geometry with these values."""
 
     @abstractmethod

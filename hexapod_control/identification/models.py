@@ -1,7 +1,7 @@
 """Platforms whose parameters can be identified, and their values as lines of a machine file.
 
 A crank platform has 12 joint centres, 6 cranks, 6 rods and 18 angles; one on linear legs 12 joint
-centres and 6 lengths at zero. Files hold millimetres and degrees.
+centres and 6 lengths at zero (one on rails: rail_model.py). Files hold millimetres and degrees.
 """
 
 import dataclasses
@@ -19,8 +19,10 @@ from hexapod_control.identification.leg_model import (
     points_parameters,
     rigid_point_motions,
 )
+from hexapod_control.identification.rail_model import RailModel
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.linear_geometry import LinearGeometry
+from hexapod_control.rails import RailGeometry, RailPlatform
 from hexapod_control.rotary import RotaryHexapod
 from manipulator import rotation as so3
 from manipulator.analysis.measurements import Parameter
@@ -30,12 +32,22 @@ from manipulator.kinematics import Kinematics
 from manipulator.yaml_edit import flow_list
 
 
-def geometry_lines(geometry: RotaryGeometry | LinearGeometry) -> list[str]:
+def geometry_lines(geometry: RotaryGeometry | LinearGeometry | RailGeometry) -> list[str]:
     """The `geometry` section by coordinates, to 0.1 µm."""
     height = f'  home_height_mm: {1e3 * geometry.home_height:g}'
     joints = _points('platform_joints_mm', 1e3 * geometry.platform_points)
     if isinstance(geometry, LinearGeometry):
         return [*_points('base_joints_mm', 1e3 * geometry.base_points), *joints, height]
+    if isinstance(geometry, RailGeometry):
+        sides = ', '.join('behind' if side > 0 else 'ahead' for side in geometry.sides)
+        return [
+            *_points('rail_points_mm', 1e3 * geometry.rail_points),
+            *_points('rail_directions', geometry.directions, DIGITS),
+            *joints,
+            f'  rod_length_mm: {flow_list(1e3 * geometry.rod_lengths)}',
+            f'  carriages: [{sides}]',
+            height,
+        ]
     are_vertical = np.abs(geometry.normals[:, 2]).max() < 10.0**-DIGITS
     axes = [] if are_vertical else _points('crank_axes', geometry.normals, DIGITS)
     return [
@@ -210,10 +222,14 @@ class LinearModel(LegModel):
         }
 
 
-def model_of(kinematics: Kinematics, tolerances: Tolerances) -> RotaryModel | LinearModel:
+def model_of(
+    kinematics: Kinematics, tolerances: Tolerances
+) -> RotaryModel | LinearModel | RailModel:
     """InvalidInput for a machine that is no platform."""
     if isinstance(kinematics, RotaryHexapod):
         return RotaryModel(kinematics.geometry, tolerances)
     if isinstance(kinematics, LinearPlatform):
         return LinearModel(kinematics.geometry, tolerances)
+    if isinstance(kinematics, RailPlatform):
+        return RailModel(kinematics.geometry, tolerances)
     raise InvalidInput(f'no model to identify for a {type(kinematics).__name__}')

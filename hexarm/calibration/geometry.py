@@ -53,8 +53,8 @@ def add_parser(parts: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> 
     parser.add_argument(
         '--free', nargs='+', metavar='GROUP',
         help='what is sought (default: all that the machine has): anchors, joints, cranks, rods, '
-        'zeros, headings, tilts of a platform; zeros, lengths, twists of an arm; device and '
-        'marker, the frames of the measuring device',
+        'zeros, headings, tilts, rails of a platform; zeros, lengths, twists of an arm; device '
+        'and marker, the frames of the measuring device',
     )  # fmt: skip
     for option in OPTIONS:
         parser.add_argument(

@@ -75,7 +75,7 @@ class RodConfig:
 
 @dataclass(frozen=True)
 class TubeConfig:
-    """A part of a linear leg: a round rod of even density and a length of its own."""
+    """A part of a leg that is as long as it says: a round rod of even density."""
 
     source: str
     mass_g: float = quantity(0.01, 1e6)
@@ -135,6 +135,18 @@ class LinearDynamicsConfig:
 
 
 @dataclass(frozen=True)
+class RailDynamicsConfig:
+    """The masses and drives of a platform on rails; a carriage's length is along its rail."""
+
+    platform: PlateConfig
+    payload: PayloadConfig
+    carriage: TubeConfig
+    rod: RodConfig
+    drive: PushingDriveConfig
+    compensation: bool = False
+
+
+@dataclass(frozen=True)
 class LinkConfig:
     """A link and the drive that turns it: a round rod from its joint to the next, unless told.
 
@@ -163,9 +175,12 @@ class ArmDynamicsConfig:
     compensation: bool = False
 
 
-SCHEMAS: dict[str, type[RotaryDynamicsConfig | LinearDynamicsConfig | ArmDynamicsConfig]] = {
+Dynamics = RotaryDynamicsConfig | LinearDynamicsConfig | RailDynamicsConfig | ArmDynamicsConfig
+
+SCHEMAS: dict[str, type[Dynamics]] = {
     'rotary_hexapod': RotaryDynamicsConfig,
     'linear_hexapod': LinearDynamicsConfig,
+    'rail_hexapod': RailDynamicsConfig,
     'serial_arm': ArmDynamicsConfig,
 }
 """What the section must hold, by the machine's kind."""

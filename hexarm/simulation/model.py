@@ -10,18 +10,19 @@ from hexarm.simulation.drives import Drives, pushing, turning
 from hexarm.simulation.dynamics_config import (
     SCHEMAS,
     ArmDynamicsConfig,
+    Dynamics,
     LinearDynamicsConfig,
+    RailDynamicsConfig,
     RotaryDynamicsConfig,
 )
 from hexarm.simulation.linear_model import linear_model
+from hexarm.simulation.rail_model import rail_model
 from hexarm.simulation.rigid_body import Mechanism
 from hexarm.simulation.rotary_model import rotary_model
 from manipulator.config import build
 from manipulator.errors import ConfigError
 from manipulator.kinematics import Kinematics
 from manipulator.machine import MachineFile
-
-Dynamics = RotaryDynamicsConfig | LinearDynamicsConfig | ArmDynamicsConfig
 
 
 def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dynamics:
@@ -42,7 +43,7 @@ def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dy
 def drives_of(dynamics: Dynamics, machine_file: MachineFile) -> Drives:
     """The servos of a machine, in the order of its joints."""
     servos = machine_file.servos
-    if isinstance(dynamics, LinearDynamicsConfig):
+    if isinstance(dynamics, LinearDynamicsConfig | RailDynamicsConfig):
         return pushing(dynamics.drive, LEGS, servos)
     if isinstance(dynamics, RotaryDynamicsConfig):
         return turning((dynamics.drive,) * LEGS, servos)
@@ -76,6 +77,7 @@ def _crank_platform(limits: dict[str, Any]) -> Callable[..., Mechanism]:
 _MODELS: dict[type[Dynamics], Callable[[dict[str, Any]], Callable[..., Mechanism]]] = {
     RotaryDynamicsConfig: _crank_platform,
     LinearDynamicsConfig: lambda limits: linear_model,
+    RailDynamicsConfig: lambda limits: rail_model,
     ArmDynamicsConfig: lambda limits: arm_model,
 }
 """What makes the model of a kind of machine, from the limits of its machine file."""

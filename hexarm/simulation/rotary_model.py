@@ -18,9 +18,9 @@ from hexarm.simulation.platform_parts import (
     add_closure,
     add_drives,
     add_hexagon,
-    add_hinges,
     add_joint,
     add_platform,
+    add_rod,
 )
 from hexarm.simulation.rigid_body import (
     METAL,
@@ -115,19 +115,14 @@ def _add_leg(
     angles = kinematics.inverse(home)
     centre, tip = geometry.crank_centres[leg], kinematics.crank_tips(angles)[leg]
     end = home.transform(geometry.platform_points)[leg]
-    zero, crank, bar = np.zeros(3), config.crank, config.rod
+    zero, crank = np.zeros(3), config.crank
     turning = add(child(root, 'worldbody'), 'body', name=f'crank_{leg + 1}', pos=centre)
     name = kinematics.joint_names[leg]
     add_joint(turning, name, 'hinge', geometry.normals[leg], float(angles[leg]), drives, leg)
     radius = 1e-3 * crank.radius_mm
     inertial(turning, rod(1e-3 * crank.mass_g, radius, centre, tip), centre)
     tube(turning, zero, tip - centre, radius)
-    hanging = add(turning, 'body', name=f'rod_{leg + 1}', pos=tip - centre)
-    add_hinges(hanging, leg + 1, (universal.first_axis, universal.second_axis))
-    radius = 1e-3 * bar.radius_mm
-    inertial(hanging, rod(1e-3 * bar.mass_g, radius, tip, end), tip)
-    tube(hanging, zero, end - tip, radius)
-    add(hanging, 'site', name=f'end_{leg + 1}', pos=end - tip)
+    add_rod(turning, leg + 1, config.rod, (tip - centre, end - centre), universal)
 
 
 def _seat(kinematics: RotaryHexapod, universals: tuple[UniversalJoint, ...]) -> Seat:

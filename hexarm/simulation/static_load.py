@@ -11,21 +11,25 @@ import numpy as np
 from arm_control.arm import SerialArm
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.parallel_platform import ParallelPlatform
+from hexapod_control.rails import RailPlatform
 from hexapod_control.rotary import RotaryHexapod
 from hexarm.simulation.arm_model import arm_links
 from hexarm.simulation.drives import Drives
 from hexarm.simulation.dynamics_config import (
     ArmDynamicsConfig,
+    Dynamics,
     LinearDynamicsConfig,
+    RailDynamicsConfig,
     RotaryDynamicsConfig,
 )
-from hexarm.simulation.model import Dynamics
 from hexarm.simulation.platform_parts import moving_bodies
 from hexarm.simulation.rigid_body import GRAVITY, payload
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.kinematics import Kinematics
 from manipulator.pose import Pose
+
+UP = np.array([0.0, 0.0, 1.0])
 
 
 class StaticLoad(Protocol):
@@ -39,7 +43,9 @@ class StaticLoad(Protocol):
 def static_load(kinematics: Kinematics, dynamics: Dynamics) -> StaticLoad:
     """The static load of one machine; InvalidInput where kinematics and masses do not fit."""
     if isinstance(kinematics, RotaryHexapod) and isinstance(dynamics, RotaryDynamicsConfig):
-        return _rotary(kinematics, dynamics)
+        return _rods(kinematics, dynamics, 0.5e-3 * dynamics.crank.mass_g)
+    if isinstance(kinematics, RailPlatform) and isinstance(dynamics, RailDynamicsConfig):
+        return _rods(kinematics, dynamics, 1e-3 * dynamics.carriage.mass_g)
     if isinstance(kinematics, LinearPlatform) and isinstance(dynamics, LinearDynamicsConfig):
         return _linear(kinematics, dynamics)
     if isinstance(kinematics, SerialArm) and isinstance(dynamics, ArmDynamicsConfig):
@@ -77,17 +83,18 @@ def _in_joints(kinematics: ParallelPlatform, pose: Pose, joints: Array, wrench: 
     return result
 
 
-def _rotary(kinematics: RotaryHexapod, dynamics: RotaryDynamicsConfig) -> StaticLoad:
-    bodies, geometry = _bodies(kinematics, dynamics), kinematics.geometry
-    half_rod, half_crank = 0.5e-3 * dynamics.rod.mass_g, 0.5e-3 * dynamics.crank.mass_g
+def _rods(
+    kinematics: ParallelPlatform,
+    dynamics: RotaryDynamicsConfig | RailDynamicsConfig,
+    at_base_point: float,
+) -> StaticLoad:
+    """Rods of one length; at_base_point (kg) is what of a crank or carriage counts there."""
+    bodies, half_rod = _bodies(kinematics, dynamics), 0.5e-3 * dynamics.rod.mass_g
 
     def load(pose: Pose, joints: Array) -> Array:
         wrench = _platform_wrench(kinematics, bodies, half_rod, pose)
-        cosine, sine = np.cos(joints), np.sin(joints)
-        rise = geometry.crank_lengths * (
-            cosine * geometry.ups[:, 2] - sine * geometry.tangents[:, 2]
-        )
-        own: Array = GRAVITY * (half_rod + half_crank) * rise
+        rise = kinematics.legs.gains(joints, np.broadcast_to(UP, (*joints.shape, 3)))
+        own: Array = GRAVITY * (half_rod + at_base_point) * rise
         return _in_joints(kinematics, pose, joints, wrench) + own
 
     return load

@@ -11,7 +11,7 @@ from arm_control.load import arm
 from arm_control.workspace import sample as sample_arm
 from hexapod_control.load import hexapod
 from hexapod_control.workspace import sample
-from leg_kinds import FLAT_CRANKS, TILTED_CRANKS
+from leg_kinds import FLAT_CRANKS, RAILS, TILTED_CRANKS
 from manipulator.config import build, parse_yaml
 from manipulator.errors import NoSolution, Unreachable
 from manipulator.machine import Machine, MachineFile
@@ -33,6 +33,7 @@ CASES = [
     Case('stewart_6_3.yaml', hexapod, sample),
     Case(TILTED_CRANKS, hexapod, sample),
     Case(FLAT_CRANKS, hexapod, sample),
+    Case(RAILS, hexapod, sample),
     Case('stewart_6_6.yaml', hexapod, sample),
     Case('arm_6r.yaml', arm, sample_arm),
     Case('ur5.yaml', arm, sample_arm),

@@ -3,6 +3,6 @@
 from pathlib import Path
 
 FOLDER = Path(__file__).parent / 'machines'
-TILTED_CRANKS, FLAT_CRANKS = (
-    str(FOLDER / f'{name}.yaml') for name in ('tilted_cranks', 'flat_cranks')
+TILTED_CRANKS, FLAT_CRANKS, RAILS = (
+    str(FOLDER / f'{name}.yaml') for name in ('tilted_cranks', 'flat_cranks', 'rails')
 )

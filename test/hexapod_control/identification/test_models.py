@@ -9,12 +9,12 @@ from hexapod_control.identification.models import geometry_lines, model_of
 from hexapod_control.load import KINDS
 from hexapod_control.workspace import sample
 from hexarm.machines import load, read
-from leg_kinds import TILTED_CRANKS
+from leg_kinds import RAILS, TILTED_CRANKS
 from manipulator.analysis.device_frames import DeviceFrames
 from manipulator.errors import InvalidInput, NoSolution
 from manipulator.pose import Pose
 
-MACHINES = ['robocake', 'stewart_6_3', 'stewart_6_6', TILTED_CRANKS]
+MACHINES = ['robocake', 'stewart_6_3', 'stewart_6_6', TILTED_CRANKS, RAILS]
 BUILT = Tolerances(5e-4, np.radians(1.0))
 
 

@@ -1,0 +1,117 @@
+"""A platform on struts whose lower ends slide on rails, as a `Kinematics`: positions, one pose."""
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from hexapod_control.geometry import LEGS, SixNumbers, SixPoints, unit_vectors
+from hexapod_control.legs import LegKind, Legs
+from hexapod_control.parallel_platform import ParallelPlatform
+from manipulator.arrays import Array, frozen
+from manipulator.config import quantity
+from manipulator.links import Stroke
+from manipulator.pose import Pose
+
+Side = Literal['behind', 'ahead']
+
+
+@dataclass(frozen=True, eq=False)
+class RailGeometry:
+    """Six rails and struts in metres; see docs/kinematics.md, section 10.
+
+    Carriage i at position q has the lower end of its strut at rail_points[i] + q directions[i]
+    (base frame); the upper one is at platform_points[i] (platform frame). sides[i] is 1 where the
+    carriage stands behind its platform joint along the rail, −1 where it is ahead. home_height is
+    the platform's height at home, where it is level. ConfigError names directions that are none.
+    """
+
+    rail_points: Array
+    directions: Array
+    platform_points: Array
+    rod_lengths: Array
+    sides: Array
+    home_height: float
+
+    def __post_init__(self) -> None:
+        """Makes directions unit vectors, and lengths and sides six."""
+        directions = unit_vectors(self.directions, 'rail_directions')
+        object.__setattr__(self, 'directions', frozen(directions))
+        for name in ('rail_points', 'platform_points'):
+            object.__setattr__(self, name, frozen(getattr(self, name)))
+        for name in ('rod_lengths', 'sides'):
+            six = np.broadcast_to(np.asarray(getattr(self, name), dtype=np.float64), LEGS)
+            object.__setattr__(self, name, frozen(six))
+
+
+@dataclass(frozen=True)
+class RailsConfig:
+    """The `geometry` section of a platform on rails, in millimetres.
+
+    rail_points_mm are where the struts' lower joints are with the carriages at position 0;
+    rail_directions (no unit, any length) point to where positions grow. carriages, one word or
+    six: behind their platform joints, along the rails' directions, or ahead of them.
+    """
+
+    rail_points_mm: SixPoints = quantity(-10_000, 10_000)
+    rail_directions: SixPoints = quantity(-1000, 1000)
+    platform_joints_mm: SixPoints = quantity(-3000, 3000)
+    rod_length_mm: float | SixNumbers = quantity(2, 5000)
+    home_height_mm: float = quantity(-5000, 5000)
+    carriages: Side | tuple[Side, Side, Side, Side, Side, Side] = 'behind'
+
+    def geometry(self) -> RailGeometry:
+        """The same rails in metres; ConfigError as `RailGeometry`."""
+        return RailGeometry(
+            rail_points=np.array(self.rail_points_mm) * 1e-3,
+            directions=np.array(self.rail_directions),
+            platform_points=np.array(self.platform_joints_mm) * 1e-3,
+            rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
+            sides=np.where(np.array(self.carriages) == 'behind', 1.0, -1.0),
+            home_height=self.home_height_mm * 1e-3,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class RailPlatform(ParallelPlatform):
+    """Kinematics of a platform on rails; a joint is a carriage's position in metres.
+
+    Carriages stand on the side of their platform joints that the geometry says, unless joints to
+    stay near are nearer on the other. travel (m) is from where to where rails are drawn.
+    Construction as of `ParallelPlatform`.
+    """
+
+    geometry: RailGeometry
+    travel: tuple[float, float]
+    powerless: ClassVar[str] = 'a rod is square to its rail'
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """carriage_1 to carriage_6."""
+        return tuple(f'carriage_{leg}' for leg in range(1, LEGS + 1))
+
+    @property
+    def joint_unit(self) -> str:
+        """Metres."""
+        return 'm'
+
+    @property
+    def rail_ends(self) -> Array:
+        """Where the carriages' joints are at either end of travel, (6, 2, 3), base frame."""
+        return np.stack([self.base_points(np.full(LEGS, q)) for q in self.travel], axis=1)
+
+    def skeleton(self, pose: Pose, joints: Array) -> tuple[Stroke, ...]:
+        """Six rails, six rods, the platform's outline."""
+        _, *others = super().skeleton(pose, joints)
+        return *(Stroke('body', ends) for ends in self.rail_ends), *others
+
+    def _legs(self) -> Legs:
+        g, zero = self.geometry, np.zeros((LEGS, 3))
+        return Legs.of(
+            LegKind.RAIL,
+            g.rail_points,
+            g.platform_points,
+            axes=(zero, g.sides[:, None] * g.directions, zero),
+            cranks=g.sides,
+            rods=g.rod_lengths,
+        )
