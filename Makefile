@@ -8,19 +8,19 @@ PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q
 
 LIBRARIES := manipulator/_kernel.abi3.so bridge/_board.abi3.so
 
-.PHONY: demo check test lint bench soak clean
+.PHONY: demo check test lint bench soak docs clean
 
 demo: $(ENV)/demo $(LIBRARIES)
 	@echo 'Both machines on fake boards: about a minute.'
 	@$(BIN)/hexarm demo
 
-check: lint   # all that starts no other program
+check: lint   # all that starts no other program and is quick
 	@echo 'Tests that start no other program: a minute and a half on two quiet cores.'
-	@$(PYTEST) -n auto --dist loadfile -m 'not processes'
+	@$(PYTEST) -n auto --dist loadfile -m 'not processes and not long'
 
 test: check
 	@echo 'Tests that start graphs, a browser, installations: 5 minutes on two quiet cores.'
-	@$(PYTEST) -n auto --dist loadfile -m processes
+	@$(PYTEST) -n auto --dist loadfile -m 'processes or long'
 
 lint: $(ENV)/ready $(LIBRARIES)
 	@echo 'Lint and types: half a minute.'
@@ -48,6 +48,9 @@ $(ENV)/demo: setup.py pyproject.toml environment.sh
 
 $(ENV)/ready: $(ENV)/demo
 	@./environment.sh $(ENV) ready
+
+docs: $(ENV)/ready   # the documents as a web site
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build -q --strict && echo build/site/index.html
 
 clean:
 	rm -rf $(ENV) build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

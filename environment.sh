@@ -26,7 +26,7 @@ if [ "$what" = demo ]; then
   extras='ros,plot,physics,panel,terminal,record'
 else
   echo "Adding to $environment what only tests need, 0.7 GB: a minute, once."
-  extras='test'
+  extras='test,docs'
 fi
 "$environment/bin/python" -m pip install --disable-pip-version-check -e ".[$extras]" >>"$log" 2>&1 \
   || { tail -n 15 "$log" >&2; stop "the installation failed, see above and $log (is there a network?)."; }

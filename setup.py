@@ -36,7 +36,7 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
-        (f'share/{NAME}/config', sorted(str(f) for f in Path('config').glob('*.yaml'))),
+        (f'share/{NAME}/config', sorted(str(f) for f in Path('config').iterdir())),
         (f'share/{NAME}/launch', sorted(str(f) for f in Path('launch').glob('*.launch.py'))),
         (f'share/{NAME}/viewers', sorted(str(f) for f in Path('viewers').iterdir())),
     ],
@@ -59,7 +59,9 @@ setup(
         'physics': ['mujoco>=3.2', 'matplotlib>=3.8', 'pillow>=10'],
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.5', 'matplotlib>=3.8'],
         'panel': ['viser>=1.1,<1.2'],  # panel/nodes/web_server.py reaches into it
+        'foxglove': ['foxglove-sdk>=0.10'],
         'terminal': ['rich>=13', 'argcomplete>=3'],
+        'docs': ['mkdocs-material>=9.5', 'mkdocstrings-python>=1.10'],  # make docs
         # Libraries that `make bench` compares with: docs/performance.md.
         'bench': [
             'reachy-mini-rust-kinematics>=1.0',
@@ -74,12 +76,14 @@ setup(
         'test': [
             'pytest>=8.2',
             'pytest-xdist>=3.6',
-            'coverage>=7.4',  # which tests run which line: bench/mutants.py
+            'coverage>=7.4',  # which tests run which line: bench/mutants/tests.py
             'pytest-cov>=5',
             'hypothesis>=6.100',
+            'jsonschema>=4',
             'mypy>=1.11',
             'playwright>=1.45',  # drives the system's Chromium, for the panel's page
             'ruff>=0.6',
+            'foxglove-sdk>=0.10',
             'rosbags>=0.10',  # reads our recordings independently
             'types-PyYAML>=6.0',
             'colcon-core>=0.18',

@@ -6,7 +6,7 @@ import numpy as np
 
 from arm_control.chain import Chain
 from manipulator.arrays import Array, frozen
-from manipulator.config import quantity
+from manipulator.config import PLACE_MM, RATE, SIZE_MM, TURN_DEG, key, quantity
 from manipulator.errors import ConfigError
 from manipulator.formatting import length
 from manipulator.limits.constraints import Constraints
@@ -17,9 +17,13 @@ JOINTS = 6
 SixAngles = tuple[float, float, float, float, float, float]
 Three = tuple[float, float, float]
 
-LONGEST_LINK, SHORTEST_ARM = 5.0, 0.02
+LONG_LINK, SHORTEST_ARM, LONGEST_ARM = 5.0, 0.02, 200.0
 """Metres: between two joints, and from the base through all of them to the tool."""
 
+PROPORTION = 50.0
+"""Of the longest link to the others: beyond it, one of both is in another unit."""
+
+HOME_ANGLES = 'joint angles at home'
 FAR_MM = 1e8
 """Along an axis a point may lie as far off as a double keeps to 0.01 µm, for `placed` moves it."""
 
@@ -31,11 +35,11 @@ class LengthsConfig:
     Joint axes z, −x, −x, z, −x, z (docs/arm-kinematics.md, 2); tool_mm is from C to the tool.
     """
 
-    L1_mm: float = quantity(0, 5000)
-    L2_mm: float = quantity(1, 5000)
-    L3_mm: float = quantity(1, 5000)
-    tool_mm: float = quantity(0, 5000)
-    home_deg: SixAngles = quantity(-360, 360)
+    L1_mm: float = quantity(0, PLACE_MM[1], 'from the base to joint 2')
+    L2_mm: float = quantity(*SIZE_MM, 'from joint 2 to joint 3')
+    L3_mm: float = quantity(*SIZE_MM, 'from joint 3 to the centre of the wrist')
+    tool_mm: float = quantity(0, PLACE_MM[1], 'from there to the tool')
+    home_deg: SixAngles = quantity(*TURN_DEG, HOME_ANGLES)
 
     def chain(self) -> Chain:
         """Axes and points by the paper's figure 1."""
@@ -59,19 +63,19 @@ class DhRow:
     arm's size: the next ones take it back. `placed` judges the size.
     """
 
-    a_mm: float = quantity(-5000, 5000)
-    alpha_deg: float = quantity(-360, 360)
-    d_mm: float = quantity(-FAR_MM, FAR_MM)
-    offset_deg: float = quantity(-360, 360, default=0.0)
+    a_mm: float = quantity(*PLACE_MM, 'along the new x axis')
+    alpha_deg: float = quantity(*TURN_DEG, 'about the new x axis')
+    d_mm: float = quantity(-FAR_MM, FAR_MM, 'along the old z axis')
+    offset_deg: float = quantity(*TURN_DEG, 'θ at joint angle 0', default=0.0)
 
 
 @dataclass(frozen=True)
 class DhConfig:
     """Standard Denavit–Hartenberg parameters: each link is Rz(θ)·Tz(d)·Tx(a)·Rx(α)."""
 
-    dh: tuple[DhRow, DhRow, DhRow, DhRow, DhRow, DhRow]
-    home_deg: SixAngles = quantity(-360, 360)
-    tool_mm: float = quantity(0, 5000, default=0.0)
+    dh: tuple[DhRow, DhRow, DhRow, DhRow, DhRow, DhRow] = key('standard Denavit–Hartenberg table')
+    home_deg: SixAngles = quantity(*TURN_DEG, HOME_ANGLES)
+    tool_mm: float = quantity(0, PLACE_MM[1], 'to the tool along z of frame 6', default=0.0)
 
     def chain(self) -> Chain:
         """Joint i turns about the z axis of frame i − 1; the tool lies along z of frame 6."""
@@ -89,8 +93,8 @@ class DhConfig:
 class Screw:
     """A joint axis at zero angles, right-handed, of any length but zero, and a point on it."""
 
-    axis: Three = quantity(-1000, 1000)
-    point_mm: Three = quantity(-FAR_MM, FAR_MM)
+    axis: Three = quantity(-1000, 1000, 'direction, right-handed, of any length')
+    point_mm: Three = quantity(-FAR_MM, FAR_MM, 'a point on it')
 
     def __post_init__(self) -> None:
         """Raises ConfigError for an axis without direction."""
@@ -102,10 +106,12 @@ class Screw:
 class ScrewsConfig:
     """Joint axes in base axes at zero angles, and the tool's pose there."""
 
-    screws: tuple[Screw, Screw, Screw, Screw, Screw, Screw]
-    tool_position_mm: Three = quantity(-10_000, 10_000)
-    tool_rpy_deg: Three = quantity(-360, 360)
-    home_deg: SixAngles = quantity(-360, 360)
+    screws: tuple[Screw, Screw, Screw, Screw, Screw, Screw] = key(
+        'joint axes in base axes at zero angles'
+    )
+    tool_position_mm: Three = quantity(*PLACE_MM, 'the tool there')
+    tool_rpy_deg: Three = quantity(*TURN_DEG, 'its roll, pitch and yaw')
+    home_deg: SixAngles = quantity(*TURN_DEG, HOME_ANGLES)
 
     def chain(self) -> Chain:
         """As given, with axes of unit length."""
@@ -120,12 +126,6 @@ class ScrewsConfig:
 
 
 ArmGeometry = LengthsConfig | DhConfig | ScrewsConfig
-FORMS: dict[str, type[ArmGeometry]] = {
-    'L1_mm': LengthsConfig,
-    'dh': DhConfig,
-    'screws': ScrewsConfig,
-}
-"""The key by which each form is told."""
 
 
 def placed(chain: Chain) -> Chain:
@@ -136,7 +136,7 @@ def placed(chain: Chain) -> Chain:
     points, before = np.array(chain.points), np.zeros(3)
     for i, axis in enumerate(chain.axes):
         away = points[i] - before
-        if np.linalg.norm(away) > LONGEST_LINK:
+        if np.linalg.norm(away) > LONG_LINK:
             points[i] -= np.dot(away, axis) * axis
         before = points[i]
     _check_size(np.vstack([np.zeros(3), points, chain.home.position]))
@@ -148,15 +148,15 @@ def _check_size(places: Array) -> None:
     links = np.linalg.norm(np.diff(places, axis=0), axis=1)
     names = ['the base', *(f'joint {i}' for i in range(1, len(links))), 'the tool']
     longest = int(np.argmax(links))
-    if links[longest] > LONGEST_LINK:
+    usual = float(np.median(links[links > 0.0])) if links.any() else 0.0
+    if links[longest] > PROPORTION * usual:
         gap = f'{names[longest + 1]} is {length(links[longest])} from {names[longest]}'
-        most = length(LONGEST_LINK)
-        raise ConfigError([f'geometry: {gap}, at most {most} fit: is it in another unit?'])
-    if links.sum() < SHORTEST_ARM:
+        others = f'the others are about {length(usual)} long'
+        raise ConfigError([f'geometry: {gap}, {others}: is it in another unit?'])
+    if not SHORTEST_ARM <= links.sum() <= LONGEST_ARM:
         whole = f'all links together are {length(links.sum())}'
-        raise ConfigError(
-            [f'geometry: {whole}, at least {length(SHORTEST_ARM)} fit: are these metres?']
-        )
+        ends = f'{length(SHORTEST_ARM)} to {length(LONGEST_ARM)} fit'
+        raise ConfigError([f'geometry: {whole}, {ends}: is it in another unit?'])
 
 
 def _link(row: DhRow) -> Array:
@@ -181,9 +181,9 @@ OWNERS = tuple(f'joint {i}' for i in range(1, JOINTS + 1))
 class JointConfig:
     """One joint in the units of its machine file."""
 
-    range_deg: tuple[float, float] = quantity(-720, 720)
-    speed_deg_s: float = quantity(0.1, 5000)
-    acceleration_deg_s2: float = quantity(1, 1e6)
+    range_deg: tuple[float, float] = quantity(-720, 720, 'travel')
+    speed_deg_s: float = quantity(*RATE, 'largest')
+    acceleration_deg_s2: float = quantity(*RATE, 'largest')
 
     def __post_init__(self) -> None:
         """Raises ConfigError for an empty range."""
@@ -200,9 +200,15 @@ class ArmLimits:
     metres divided by characteristic_length_mm (docs/arm-kinematics.md, 8).
     """
 
-    joints: tuple[JointConfig, JointConfig, JointConfig, JointConfig, JointConfig, JointConfig]
-    characteristic_length_mm: float = quantity(1, 5000)
-    damping_onset: float = quantity(0.001, 0.5)
+    joints: tuple[JointConfig, JointConfig, JointConfig, JointConfig, JointConfig, JointConfig] = (
+        key('base first')
+    )
+    characteristic_length_mm: float = quantity(
+        *SIZE_MM, 'what one radian counts: about half the reach'
+    )
+    damping_onset: float = quantity(
+        0.001, 0.5, 'singular value from which a posture is near to singular'
+    )
 
     def joint_limits(self) -> 'JointLimits':
         """In radians."""

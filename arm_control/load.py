@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.geometry import FORMS, ArmLimits, placed
+from arm_control.geometry import ArmGeometry, ArmLimits, placed
 from arm_control.rate_scaling import AT_ONCE
 from arm_control.resolved_rate import STRAIGHT, JogState, ResolvedRate
 from manipulator.arrays import Array, frozen
-from manipulator.config import build, build_both
+from manipulator.config import build
 from manipulator.errors import ConfigError
 from manipulator.formatting import shown
 from manipulator.frames import Frames
-from manipulator.machine import Machine, MachineFile
+from manipulator.machine import Kind, Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
 from manipulator.teleop.jogger import JogMotion, ticks_for, towards
@@ -118,15 +118,16 @@ def serial_arm(machine_file: MachineFile) -> SerialArm:
     """The kinematics and joint limits of one file."""
     if machine_file.kind != KIND:
         raise ConfigError([f'kind: {shown(machine_file.kind)} is not {KIND!r}'])
-    told = [form for key, form in FORMS.items() if key in machine_file.geometry]
-    if len(told) != 1:
-        raise ConfigError([f'geometry: needs one of the keys {list(FORMS)}, has {len(told)}'])
-    geometry, limits = build_both(
-        (told[0], machine_file.geometry, 'geometry'), (ArmLimits, machine_file.limits, 'limits')
-    )
+    return KINDS[KIND].build(machine_file)
+
+
+def _serial_arm(geometry: ArmGeometry, limits: ArmLimits) -> SerialArm:
     length = limits.characteristic_length_mm * 1e-3
     rest = np.radians(geometry.home_deg)
     return SerialArm(placed(geometry.chain()), limits.joint_limits(), length, rest)
+
+
+KINDS = {KIND: Kind(ArmGeometry, ArmLimits, _serial_arm)}
 
 
 def jogging(machine_file: MachineFile) -> ResolvedRate:

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 from bridge.protocol import MAX_JOINTS
-from manipulator.config import build, quantity
+from manipulator.config import PLACE_MM, RATE, build, key, quantity
 from manipulator.errors import ConfigError
 from manipulator.formatting import counted, shown
 from manipulator.machine import MachineFile
 
+PARK = 'positions at which the servos are switched on and off, in the order of joints'
 MAX_NAME = 64
 """Characters of a joint's name, which messages repeat."""
 
@@ -21,16 +22,16 @@ MAX_NAME = 64
 class ServoConfig:
     """One servo: position = centre + sign · (pulse − centre_us) / us_per_…"""
 
-    name: str
-    channel: int = quantity(0, MAX_JOINTS - 1)
-    sign: int = quantity(-1, 1)
-    centre_us: float = quantity(100, 30_000)
-    pulse_range_us: tuple[float, float] = quantity(100, 30_000)
-    centre_deg: float | None = quantity(-720, 720, default=None)
-    us_per_deg: float | None = quantity(0.5, 500, default=None)
-    centre_mm: float | None = quantity(-5000, 5000, default=None)
-    us_per_mm: float | None = quantity(0.5, 5000, default=None)
-    is_gripper: bool = False
+    name: str = key('that of the joint: crank_1, leg_1, joint_1 …; free for a gripper')
+    channel: int = quantity(0, MAX_JOINTS - 1, "the board's output (docs/wiring.md)")
+    sign: int = quantity(-1, 1, '-1 where longer pulses turn the joint back')
+    centre_us: float = quantity(100, 30_000, 'pulse at centre_deg or centre_mm')
+    pulse_range_us: tuple[float, float] = quantity(100, 30_000, 'shortest and longest pulse')
+    centre_deg: float | None = quantity(-720, 720, 'joint angle at centre_us', default=None)
+    us_per_deg: float | None = quantity(1e-3, 1e5, 'pulse per joint angle', default=None)
+    centre_mm: float | None = quantity(*PLACE_MM, 'leg length at centre_us', default=None)
+    us_per_mm: float | None = quantity(1e-3, 1e5, 'pulse per leg length', default=None)
+    is_gripper: bool = key('whether it opens and closes a gripper', default=False)
 
     def __post_init__(self) -> None:
         problems = []
@@ -68,13 +69,15 @@ class ServoConfig:
 class ServosConfig:
     """All servos of a machine; lists follow the order of `joints`."""
 
-    joints: tuple[ServoConfig, ...]
-    speed_deg_s: float | None = quantity(1, 10_000, default=None)
-    speed_mm_s: float | None = quantity(0.1, 10_000, default=None)
-    park_deg: tuple[float, ...] | None = quantity(-720, 720, default=None)
-    park_mm: tuple[float, ...] | None = quantity(-5000, 5000, default=None)
-    arm_interval_ms: int = quantity(0, 5000, default=150)
-    minimum_battery_v: float = quantity(0, 60, default=0.0)
+    joints: tuple[ServoConfig, ...] = key('one for each channel, 1 to 8')
+    speed_deg_s: float | None = quantity(*RATE, 'of the servos without load', default=None)
+    speed_mm_s: float | None = quantity(*RATE, 'likewise, of linear ones', default=None)
+    park_deg: tuple[float, ...] | None = quantity(-720, 720, PARK, default=None)
+    park_mm: tuple[float, ...] | None = quantity(*PLACE_MM, PARK, default=None)
+    arm_interval_ms: int = quantity(
+        0, 5000, 'between servos, as they are switched on one by one', default=150
+    )
+    minimum_battery_v: float = quantity(0, 60, 'below it the board refuses to arm', default=0.0)
 
     def __post_init__(self) -> None:
         problems = []
@@ -112,9 +115,9 @@ class ServosConfig:
 class LinkConfig:
     """The serial line, and what the board does when setpoints cease."""
 
-    on_link_loss: Literal['hold', 'release']
-    baud: int = quantity(9600, 4_000_000)
-    setpoint_deadline_ms: int = quantity(20, 2000)
+    on_link_loss: Literal['hold', 'release'] = key('what the board does after the deadline')
+    baud: int = quantity(9600, 4_000_000, "of the serial line; the firmware's")
+    setpoint_deadline_ms: int = quantity(20, 2000, 'how long a setpoint is good for')
 
 
 @dataclass(frozen=True)
@@ -125,12 +128,14 @@ class SimulationConfig:
     drives: servos, each at its own full speed, or steppers, which interpolate together.
     """
 
-    hysteresis_deg: float = quantity(0, 45, default=0.0)
-    hysteresis_mm: float = quantity(0, 100, default=0.0)
-    dead_band_us: float = quantity(0, 200, default=5.0)
-    battery_v: float = quantity(0, 60, default=7.6)
-    joints: Literal['commanded', 'measured'] = 'commanded'
-    drives: Literal['servos', 'steppers'] = 'servos'
+    hysteresis_deg: float = quantity(0, 45, 'play of each servo', default=0.0)
+    hysteresis_mm: float = quantity(0, 100, 'play of each linear servo', default=0.0)
+    dead_band_us: float = quantity(0, 200, 'change of pulse that a servo ignores', default=5.0)
+    battery_v: float = quantity(0, 60, 'what the board measures', default=7.6)
+    joints: Literal['commanded', 'measured'] = key('what the board reports', default='commanded')
+    drives: Literal['servos', 'steppers'] = key(
+        'each at its own speed, or all together', default='servos'
+    )
 
 
 @dataclass(frozen=True)

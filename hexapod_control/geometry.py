@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from hexapod_control.leg_jacobian import leg_jacobian, smallest_singular_value
 from manipulator import rotation as so3
 from manipulator.arrays import Array, frozen
-from manipulator.config import quantity
+from manipulator.config import PLACE_MM, SIZE_MM, quantity
 from manipulator.errors import ConfigError
 from manipulator.pose import Pose
 
@@ -26,6 +26,12 @@ SQUARE = float(np.radians(1.0))
 
 LEAST_DIRECTION = 1e-9
 VERTICAL_PLANES = frozen(np.zeros((LEGS, 3)))
+
+CRANK_LENGTH = "from a crank's axis to its rod end; one number for all, or six"
+ROD_LENGTH = 'between the joints of a rod; one number for all, or six'
+PLATFORM_JOINTS = "the legs' joints on the platform, platform frame"
+HOME_HEIGHT = 'the platform frame above the base frame at home, where it is level; below: negative'
+"""Meanings of keys that several forms have."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,14 +117,18 @@ def _check_not_vertical(tangents: Array) -> None:
 class HexagonConfig:
     """The `geometry` section by the parameters of Prokopovich 2019, fig. 4, in millimetres."""
 
-    body_radius_mm: float = quantity(5, 2000)
-    crank_offset_mm: float = quantity(-500, 500)
-    crank_shift_mm: float = quantity(-500, 500)
-    crank_length_mm: float | SixNumbers = quantity(1, 1000)
-    rod_length_mm: float | SixNumbers = quantity(2, 3000)
-    joint_inset_mm: float = quantity(-500, 1000)
-    joint_shift_mm: float = quantity(-1000, 1000)
-    home_height_mm: float = quantity(-3000, 3000)
+    body_radius_mm: float = quantity(*SIZE_MM, 'R: from the axis to each side of the body')
+    crank_offset_mm: float = quantity(*PLACE_MM, 'p: how far the cranks are outside that')
+    crank_shift_mm: float = quantity(
+        *PLACE_MM, "q: the cranks' axes from the middle of a side, along it"
+    )
+    crank_length_mm: float | SixNumbers = quantity(*SIZE_MM, CRANK_LENGTH)
+    rod_length_mm: float | SixNumbers = quantity(*SIZE_MM, ROD_LENGTH)
+    joint_inset_mm: float = quantity(*PLACE_MM, "l: how far the platform's joints are inside R")
+    joint_shift_mm: float = quantity(
+        *PLACE_MM, "s: the platform's joints from the middle of a side, along it"
+    )
+    home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
 
     def geometry(self) -> RotaryGeometry:
         """The joints by Prokopovich 2019, eqs (5) and (6), in closed form.
@@ -148,13 +158,23 @@ class JointsConfig:
     vertical plane of its tangent, which is 0, from there upwards.
     """
 
-    crank_centres_mm: SixPoints = quantity(-3000, 3000)
-    crank_tangents: SixPoints = quantity(-1000, 1000)
-    platform_joints_mm: SixPoints = quantity(-3000, 3000)
-    crank_length_mm: float | SixNumbers = quantity(1, 1000)
-    rod_length_mm: float | SixNumbers = quantity(2, 3000)
-    home_height_mm: float = quantity(-3000, 3000)
-    crank_axes: SixPoints | None = quantity(-1000, 1000, default=None)
+    crank_centres_mm: SixPoints = quantity(
+        *PLACE_MM, "where each crank's axis meets the plane of its rod end, base frame"
+    )
+    crank_tangents: SixPoints = quantity(
+        -1000, 1000, 'where each crank points at angle 0, base frame; of any length'
+    )
+    platform_joints_mm: SixPoints = quantity(*PLACE_MM, PLATFORM_JOINTS)
+    crank_length_mm: float | SixNumbers = quantity(*SIZE_MM, CRANK_LENGTH)
+    rod_length_mm: float | SixNumbers = quantity(*SIZE_MM, ROD_LENGTH)
+    home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    crank_axes: SixPoints | None = quantity(
+        -1000,
+        1000,
+        'about which each crank turns by the right hand, base frame, of any length; without them '
+        'every crank turns in the vertical plane of its tangent',
+        default=None,
+    )
 
     def geometry(self) -> RotaryGeometry:
         """The same joints in metres; ConfigError as `RotaryGeometry`."""

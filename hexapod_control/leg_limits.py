@@ -25,12 +25,14 @@ from hexapod_control.platform_limits import (
 from hexapod_control.rails import RailPlatform
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.arrays import Array, frozen
-from manipulator.config import quantity
+from manipulator.config import PLACE_MM, SIZE_MM, quantity
 from manipulator.errors import ConfigError
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.machine_limits import BodyHeight, JointRange
 from manipulator.pose import Pose
 
+SINGULARITY_MARGIN = 'smallest singular value of the leg Jacobian (docs/kinematics.md, 5)'
+CHARACTERISTIC_LENGTH = 'what one radian counts in that Jacobian: about the radius of the platform'
 LEG_NAMES = tuple(f'leg {leg}' for leg in range(1, LEGS + 1))
 
 
@@ -95,12 +97,18 @@ def _each_leg(
 class RotaryLimits:
     """What a crank hexapod may not exceed, in the units of its machine file."""
 
-    crank_range_deg: tuple[float, float] = quantity(-360, 720)
-    minimum_height_mm: float = quantity(-3000, 3000)
-    platform_joint_swing_deg: float = quantity(1, 180)
-    crank_joint_tilt_deg: float = quantity(1, 90)
-    singularity_margin: float = quantity(0.001, 2)
-    characteristic_length_mm: float = quantity(1, 3000)
+    crank_range_deg: tuple[float, float] = quantity(
+        -360, 720, 'travel of every crank, from its tangent towards up'
+    )
+    minimum_height_mm: float = quantity(*PLACE_MM, "of the platform frame's origin, base frame")
+    platform_joint_swing_deg: float = quantity(
+        1e-3, 180, "a rod's from its direction at home, seen from the platform"
+    )
+    crank_joint_tilt_deg: float = quantity(
+        1e-3, 90, "a rod's out of its crank's plane, change since home"
+    )
+    singularity_margin: float = quantity(1e-3, 2, SINGULARITY_MARGIN)
+    characteristic_length_mm: float = quantity(*SIZE_MM, CHARACTERISTIC_LENGTH)
 
     def __post_init__(self) -> None:
         """Raises ConfigError for a crank range that is empty or more than a turn."""
@@ -150,10 +158,14 @@ class LinearLimits:
     swing, at either end, from its direction at home.
     """
 
-    stroke_range_mm: tuple[float, float] = quantity(1, 10_000)
-    passive_cone_deg: float = quantity(1, 180)
-    singularity_margin: float = quantity(0.001, 2)
-    characteristic_length_mm: float = quantity(1, 3000)
+    stroke_range_mm: tuple[float, float] = quantity(
+        *SIZE_MM, "of every leg's length, between its joints"
+    )
+    passive_cone_deg: float = quantity(
+        1e-3, 180, "a leg's swing from its direction at home, at either end"
+    )
+    singularity_margin: float = quantity(1e-3, 2, SINGULARITY_MARGIN)
+    characteristic_length_mm: float = quantity(*SIZE_MM, CHARACTERISTIC_LENGTH)
 
     def __post_init__(self) -> None:
         """Raises ConfigError for a stroke that is empty."""
@@ -185,10 +197,12 @@ class RailLimits:
     at either end, from its direction at home.
     """
 
-    rail_range_mm: tuple[float, float] = quantity(-10_000, 10_000)
-    passive_cone_deg: float = quantity(1, 180)
-    singularity_margin: float = quantity(0.001, 2)
-    characteristic_length_mm: float = quantity(1, 3000)
+    rail_range_mm: tuple[float, float] = quantity(*PLACE_MM, "of every carriage's position")
+    passive_cone_deg: float = quantity(
+        1e-3, 180, "a strut's swing from its direction at home, at either end"
+    )
+    singularity_margin: float = quantity(1e-3, 2, SINGULARITY_MARGIN)
+    characteristic_length_mm: float = quantity(*SIZE_MM, CHARACTERISTIC_LENGTH)
 
     def __post_init__(self) -> None:
         """Raises ConfigError for a range that is empty."""

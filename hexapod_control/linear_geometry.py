@@ -4,9 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hexapod_control.geometry import LEGS, SixPoints, check_architecture
+from hexapod_control.geometry import (
+    HOME_HEIGHT,
+    LEGS,
+    PLATFORM_JOINTS,
+    SixPoints,
+    check_architecture,
+)
 from manipulator.arrays import Array, frozen
-from manipulator.config import quantity
+from manipulator.config import PLACE_MM, SIZE_MM, quantity
 from manipulator.errors import InvalidInput
 
 
@@ -39,13 +45,15 @@ class PlatesConfig:
     The joint heights are from each plate's plane to its joints, towards the other plate.
     """
 
-    base_radius_mm: float = quantity(5, 3000)
-    base_angle_deg: float = quantity(0, 60)
-    platform_radius_mm: float = quantity(5, 3000)
-    platform_angle_deg: float = quantity(0, 60)
-    base_joint_height_mm: float = quantity(0, 500)
-    platform_joint_height_mm: float = quantity(0, 500)
-    home_height_mm: float = quantity(1, 5000)
+    base_radius_mm: float = quantity(*SIZE_MM, "R: circle of the base's joints")
+    base_angle_deg: float = quantity(0, 60, 'φb: from the x axis to the first joint')
+    platform_radius_mm: float = quantity(*SIZE_MM, "r: circle of the platform's joints")
+    platform_angle_deg: float = quantity(0, 60, 'φmp, likewise; 0 joins them in pairs')
+    base_joint_height_mm: float = quantity(0, PLACE_MM[1], 'h_b: joints above the base plate')
+    platform_joint_height_mm: float = quantity(
+        0, PLACE_MM[1], 'h_mp: joints below the platform plate'
+    )
+    home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
 
     def geometry(self) -> LinearGeometry:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""
@@ -60,9 +68,9 @@ class PlatesConfig:
 class PointsConfig:
     """The `geometry` section by coordinates, in millimetres: a machine as it was measured."""
 
-    base_joints_mm: SixPoints = quantity(-3000, 3000)
-    platform_joints_mm: SixPoints = quantity(-3000, 3000)
-    home_height_mm: float = quantity(1, 5000)
+    base_joints_mm: SixPoints = quantity(*PLACE_MM, "the legs' joints on the base, base frame")
+    platform_joints_mm: SixPoints = quantity(*PLACE_MM, PLATFORM_JOINTS)
+    home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
 
     def geometry(self) -> LinearGeometry:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""

@@ -1,8 +1,5 @@
 """From a machine file's sections to a parallel platform that the nodes can use."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
 from hexapod_control.geometry import LEGS, HexagonConfig, JointsConfig, check_architecture
@@ -12,12 +9,11 @@ from hexapod_control.linear_geometry import PlatesConfig, PointsConfig
 from hexapod_control.parallel_platform import ParallelPlatform
 from hexapod_control.rails import RailPlatform, RailsConfig
 from hexapod_control.rotary import RotaryHexapod
-from manipulator.config import build_both
 from manipulator.errors import ConfigError
 from manipulator.formatting import shown
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
-from manipulator.machine import Machine, MachineFile
+from manipulator.machine import Kind, Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
 from manipulator.teleop.platform_jogger import PlatformJogger
 
@@ -31,7 +27,7 @@ def hexapod(machine_file: MachineFile) -> Machine:
     kind = machine_file.kind
     if kind not in KINDS:
         raise ConfigError([f'kind: {shown(kind)} is not one of {sorted(KINDS)}'])
-    kinematics, constraints = KINDS[kind](machine_file.geometry, machine_file.limits)
+    kinematics, constraints = KINDS[kind].build(machine_file)
     home = kinematics.home
     beyond = constraints.violations(home, kinematics.inverse(home))
     if beyond:
@@ -40,45 +36,36 @@ def hexapod(machine_file: MachineFile) -> Machine:
     return Machine(kinematics, constraints, motion, make_jogger=PlatformJogger)
 
 
-def rotary_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
+def rotary_hexapod(geometry: JointsConfig | HexagonConfig, limits: RotaryLimits) -> Parts:
     """A crank platform; its geometry by the paper's parameters, or by joint coordinates."""
-    schema: type[JointsConfig | HexagonConfig]
-    schema = JointsConfig if 'crank_centres_mm' in geometry else HexagonConfig
-    told, checked = build_both((schema, geometry, 'geometry'), (RotaryLimits, limits, 'limits'))
-    joints = told.geometry()
     kinematics = RotaryHexapod(
-        joints,
-        checked.characteristic_length_mm * 1e-3,
-        checked.singularity_margin,
-        checked.crank_centre,
+        geometry.geometry(),
+        limits.characteristic_length_mm * 1e-3,
+        limits.singularity_margin,
+        limits.crank_centre,
     )
-    _check_architecture(kinematics, checked.crank_range)
-    return kinematics, checked.constraints(kinematics)
+    _check_architecture(kinematics, limits.crank_range)
+    return kinematics, limits.constraints(kinematics)
 
 
-def linear_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
+def linear_hexapod(geometry: PointsConfig | PlatesConfig, limits: LinearLimits) -> Parts:
     """A platform on linear legs; its geometry by the paper's parameters, or by coordinates."""
-    schema: type[PointsConfig | PlatesConfig]
-    schema = PointsConfig if 'base_joints_mm' in geometry else PlatesConfig
-    told, checked = build_both((schema, geometry, 'geometry'), (LinearLimits, limits, 'limits'))
-    joints = told.geometry()
     kinematics = LinearPlatform(
-        joints, checked.characteristic_length_mm * 1e-3, checked.singularity_margin
+        geometry.geometry(), limits.characteristic_length_mm * 1e-3, limits.singularity_margin
     )
-    return kinematics, checked.constraints(kinematics)
+    return kinematics, limits.constraints(kinematics)
 
 
-def rail_hexapod(geometry: dict[str, Any], limits: dict[str, Any]) -> Parts:
+def rail_hexapod(geometry: RailsConfig, limits: RailLimits) -> Parts:
     """A platform on struts whose lower ends slide on rails."""
-    told, checked = build_both((RailsConfig, geometry, 'geometry'), (RailLimits, limits, 'limits'))
     kinematics = RailPlatform(
-        told.geometry(),
-        checked.characteristic_length_mm * 1e-3,
-        checked.singularity_margin,
-        checked.travel,
+        geometry.geometry(),
+        limits.characteristic_length_mm * 1e-3,
+        limits.singularity_margin,
+        limits.travel,
     )
-    _check_architecture(kinematics, checked.travel)
-    return kinematics, checked.constraints(kinematics)
+    _check_architecture(kinematics, limits.travel)
+    return kinematics, limits.constraints(kinematics)
 
 
 def _check_architecture(kinematics: ParallelPlatform, joint_range: tuple[float, float]) -> None:
@@ -88,8 +75,8 @@ def _check_architecture(kinematics: ParallelPlatform, joint_range: tuple[float, 
     check_architecture(kinematics.base_points(joints), points)
 
 
-KINDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], Parts]] = {
-    'rotary_hexapod': rotary_hexapod,
-    'linear_hexapod': linear_hexapod,
-    'rail_hexapod': rail_hexapod,
+KINDS = {
+    'rotary_hexapod': Kind(HexagonConfig | JointsConfig, RotaryLimits, rotary_hexapod),
+    'linear_hexapod': Kind(PlatesConfig | PointsConfig, LinearLimits, linear_hexapod),
+    'rail_hexapod': Kind(RailsConfig, RailLimits, rail_hexapod),
 }

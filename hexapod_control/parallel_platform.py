@@ -19,10 +19,9 @@ from hexapod_control.legs import Legs
 from hexapod_control.platform_limits import SHORTFALL, SURPLUS, VALUES, PlatformLimits
 from manipulator import _kernel
 from manipulator.arrays import Array, Mask, frozen, stretched
-from manipulator.continuity import first_jump
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.formatting import length
-from manipulator.kinematics import ForwardSolution
+from manipulator.kinematics import ForwardSolution, first_jump
 from manipulator.links import PLATFORM, Link, Stroke, outline
 from manipulator.pose import Pose
 

@@ -5,11 +5,19 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from hexapod_control.geometry import LEGS, SixNumbers, SixPoints, unit_vectors
+from hexapod_control.geometry import (
+    HOME_HEIGHT,
+    LEGS,
+    PLATFORM_JOINTS,
+    ROD_LENGTH,
+    SixNumbers,
+    SixPoints,
+    unit_vectors,
+)
 from hexapod_control.legs import LegKind, Legs
 from hexapod_control.parallel_platform import ParallelPlatform
 from manipulator.arrays import Array, frozen
-from manipulator.config import quantity
+from manipulator.config import PLACE_MM, SIZE_MM, key, quantity
 from manipulator.links import Stroke
 from manipulator.pose import Pose
 
@@ -53,12 +61,19 @@ class RailsConfig:
     six: behind their platform joints, along the rails' directions, or ahead of them.
     """
 
-    rail_points_mm: SixPoints = quantity(-10_000, 10_000)
-    rail_directions: SixPoints = quantity(-1000, 1000)
-    platform_joints_mm: SixPoints = quantity(-3000, 3000)
-    rod_length_mm: float | SixNumbers = quantity(2, 5000)
-    home_height_mm: float = quantity(-5000, 5000)
-    carriages: Side | tuple[Side, Side, Side, Side, Side, Side] = 'behind'
+    rail_points_mm: SixPoints = quantity(
+        *PLACE_MM, "the struts' lower joints with the carriages at position 0, base frame"
+    )
+    rail_directions: SixPoints = quantity(
+        -1000, 1000, 'to where positions of the carriages grow, base frame; of any length'
+    )
+    platform_joints_mm: SixPoints = quantity(*PLACE_MM, PLATFORM_JOINTS)
+    rod_length_mm: float | SixNumbers = quantity(*SIZE_MM, ROD_LENGTH)
+    home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    carriages: Side | tuple[Side, Side, Side, Side, Side, Side] = key(
+        "behind or ahead of the platform's joints, in the rails' directions; one word, or six",
+        default='behind',
+    )
 
     def geometry(self) -> RailGeometry:
         """The same rails in metres; ConfigError as `RailGeometry`."""

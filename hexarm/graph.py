@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from bridge.fake.plant import SERVO
+from bridge.fake.servo import SERVO
 from hexarm.board.build import chip_command
 from manipulator.errors import Refused
 

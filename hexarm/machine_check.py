@@ -9,20 +9,18 @@ from typing import Any, TypeVar
 import numpy as np
 
 from bridge.calibration import Calibration
-from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
+from bridge.servo_config import ServosConfig
+from hexarm.machine_keys import BRIDGE, KINDS, sections_of
 from hexarm.machine_warnings import warnings_of
-from hexarm.machines import loader
-from hexarm.simulation.dynamics_config import SCHEMAS
+from hexarm.machines import frames_of, loader
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
-from manipulator.frames import Frames
 from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionConfig
 
 T = TypeVar('T')
 ROOM = ('geometry', 'limits')
-BRIDGE = {'servos': ServosConfig, 'link': LinkConfig, 'simulation': SimulationConfig}
 
 STAND_IN = MotionConfig(1.0, 1.0, 10.0, 1.0, 1.0, 10.0)
 """For a motion section with faults of its own, so that the others are looked at all the same."""
@@ -73,36 +71,34 @@ def report_of(content: Mapping[str, Any]) -> Report:
     """
     found = Findings()
     whole = found.of(lambda: build(MachineFile, content))
-    if whole is not None:
-        found.of(partial(Frames.from_config, whole.frames))
-    there = {name: part for name, part in content.items() if isinstance(part, Mapping)}
-    machine = found.of(lambda: _machine(content.get('kind'), there, whole))
+    kind = str(content.get('kind'))
+    schemas = sections_of(kind) if kind in KINDS else BRIDGE
     sections = {
-        name: found.of(partial(build, schema, there[name], name))
-        for name, schema in BRIDGE.items()
-        if name in there
+        name: found.of(partial(build, schema, content[name], name))
+        for name, schema in schemas.items()
+        if isinstance(content.get(name), Mapping)
     }
-    kind = content.get('kind')
-    if 'dynamics' in there and isinstance(kind, str) and kind in SCHEMAS:
-        found.of(partial(build, SCHEMAS[kind], there['dynamics'], 'dynamics'))
+    machine = None
+    if isinstance(content.get('kind'), str) and all(
+        sections.get(name) for name in ROOM if name in schemas
+    ):
+        machine = found.of(lambda: _machine(kind, content, whole))
+        if machine is not None and whole is not None:
+            found.of(partial(frames_of, whole, machine.kinematics))
     servos, calibration = sections.get('servos'), None
     if isinstance(servos, ServosConfig):
         calibration = found.of(lambda: Calibration.from_config(servos))
         if machine is not None and calibration is not None:
             found.problems.extend(_between(machine, calibration))
-    absent = tuple(f'{name}.' for name in ROOM if name not in there)
-    problems = tuple(problem for problem in found.problems if not problem.startswith(absent))
-    doubts: list[str] = []
+    problems, doubts = tuple(found.problems), list[str]()
     if machine is not None and not problems:
-        doubts = warnings_of(machine, calibration, there.get('geometry', {}))
+        doubts = warnings_of(machine, calibration, content['geometry'])
     return Report(problems, tuple(doubts), machine)
 
 
-def _machine(kind: object, there: Mapping[str, Any], whole: MachineFile | None) -> Machine | None:
-    """What the sections geometry and limits make; None where the kind is no text."""
-    if not isinstance(kind, str):
-        return None
-    geometry, limits = (there.get(name, {}) for name in ROOM)
+def _machine(kind: str, content: Mapping[str, Any], whole: MachineFile | None) -> Machine:
+    """What the sections geometry and limits make."""
+    geometry, limits = (content.get(name, {}) for name in ROOM)
     motion = STAND_IN if whole is None else whole.motion
     return loader(kind)(MachineFile(kind, geometry, limits, motion, servos={}, link={}))
 

@@ -9,6 +9,7 @@ from bridge.calibration import COUNTS_PER_US, Calibration
 from hexapod_control.geometry import RotaryGeometry
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.arrays import Array, Mask
+from manipulator.formatting import length
 from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Machine
 
@@ -17,6 +18,9 @@ LEVEL, NEARLY_LEVEL, TILTED = np.radians(2.0), np.radians(10.0), np.radians(20.0
 
 ASIDE, FAR, NEAR = 0.2, 0.5, 0.2
 """Distances from the middle of a joint's range, as shares of half the range."""
+
+UNEVEN = 300.0
+"""Between what is allowed of the platform in moves and in turns, in the same unit."""
 
 WIDEST = np.radians(270.0)
 """Of a crank range whose middle is significant: a wider one is just left open."""
@@ -36,6 +40,7 @@ def warnings_of(
 ) -> list[str]:
     """One sentence for each doubt about a machine without problems; geometry is its section."""
     found = [*_assumed_planes(machine, geometry), *_other_bend(machine)]
+    found += _uneven_motion(machine)
     if calibration is not None:
         found += _pulses(machine, calibration)
     return found
@@ -93,6 +98,19 @@ def _is_doubtful(geometry: RotaryGeometry, home: Array, other: Array, limit: Joi
     is_central = (other_aside < NEAR) & (aside > FAR) & (2 * half <= WIDEST)
     doubtful: Mask = (tilt > TILTED) & (is_level | is_central)
     return doubtful
+
+
+def _uneven_motion(machine: Machine) -> Iterator[str]:
+    """Moves that are far slower or faster than turns: one of both may be in another unit."""
+    size, motion = machine.kinematics.characteristic_length, machine.motion
+    for name, unit in {'speed': 'mm/s', 'acceleration': 'mm/s²', 'jerk': 'mm/s³'}.items():
+        moves, turns = (1e3 * getattr(d, name) for d in (motion.linear, motion.angular))
+        if not 1.0 / UNEVEN < moves / (turns * size) < UNEVEN:
+            yield (
+                f'motion: linear {name} {moves:.4g} {unit}, while the angular {name} makes '
+                f'{turns * size:.4g} {unit} at the characteristic length of {length(size)}: '
+                'is one of them in another unit?'
+            )
 
 
 def _pulses(machine: Machine, calibration: Calibration) -> Iterator[str]:

@@ -13,12 +13,13 @@ from bridge.calibration import Calibration
 from bridge.servo_config import BoardConfig, ServosConfig
 from manipulator.arrays import frozen
 from manipulator.config import MAX_CHARACTERS, build, parse_yaml
-from manipulator.errors import ConfigError
+from manipulator.errors import ConfigError, InvalidInput
 from manipulator.formatting import reason, shortened, shown
 from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
 from manipulator.static_deflection import StaticDeflection
+from manipulator.unit_hints import check_pivot
 
 
 def _hexapod(machine_file: MachineFile) -> Machine:
@@ -75,6 +76,15 @@ def find(name_or_path: str) -> Path:
     )
 
 
+def saved_poses_file(name_or_path: str) -> Path:
+    """Where a machine's saved poses are: beside its file; of a shipped one in the user's data."""
+    path = find(name_or_path)
+    folder = path.parent
+    if path in shipped().values():
+        folder = Path(os.environ.get('XDG_DATA_HOME') or '~/.local/share').expanduser() / 'hexarm'
+    return folder / f'{path.stem}.poses.yaml'
+
+
 def read(name_or_path: str) -> MachineFile:
     """The sections of a machine file; ConfigError lists everything wrong at the top level."""
     path = find(name_or_path)
@@ -126,10 +136,20 @@ def load(name_or_path: str) -> Machine:
     try:
         machine = loader(machine_file.kind)(machine_file)
         machine = replace(machine, deflection=_deflection(machine_file, machine.kinematics))
+        machine = replace(machine, frames=frames_of(machine_file, machine.kinematics))
     except ConfigError as error:
         raise ConfigError(error.problems, str(find(name_or_path))) from error
-    machine = replace(machine, frames=Frames.from_config(machine_file.frames))
     return _with_servos(machine, machine_file)
+
+
+def frames_of(machine_file: MachineFile, kinematics: Kinematics) -> Frames:
+    """The frames of a file; ConfigError for a pivot that is far from the machine."""
+    frames = Frames.from_config(machine_file.frames)
+    try:
+        check_pivot(kinematics, frames.T_platform_pivot)
+    except InvalidInput as error:
+        raise ConfigError([f'frames.pivot_xyz_mm: {error}']) from error
+    return frames
 
 
 def _with_servos(machine: Machine, machine_file: MachineFile) -> Machine:

@@ -11,37 +11,38 @@ from functools import cache, partial
 
 from rclpy.node import Node
 
-from hexarm.machines import described, load
+from hexarm.machines import described, load, saved_poses_file
 from manipulator.errors import InvalidInput
+from manipulator.nodes.intra_process import IntraProcess
 from manipulator.nodes.run import Makers, run_nodes
 
 HEXAPOD, ARM = 'robocake', 'arm_6r'
 """The machines of the executables where none is named."""
 
 
-def _trajectory(machine: str) -> Node:
+def _trajectory(machine: str, process: IntraProcess) -> Node:
     from manipulator.nodes.trajectory_node import TrajectoryNode
 
-    return TrajectoryNode(_loaded, machine)
+    return TrajectoryNode(_loaded, machine, process)
 
 
-def _ik(machine: str) -> Node:
+def _ik(machine: str, process: IntraProcess) -> Node:
     from manipulator.nodes.ik_node import IkNode
 
-    return IkNode(_loaded, machine)
+    return IkNode(_loaded, machine, process)
 
 
-def _pose(machine: str) -> Node:
+def _pose(machine: str, process: IntraProcess) -> Node:
     from manipulator.nodes.pose_node import PoseNode
 
-    return PoseNode(_loaded, machine)
+    return PoseNode(_loaded, saved_poses_file, machine, process)
 
 
-def _serial_bridge() -> Node:
+def _serial_bridge(process: IntraProcess) -> Node:
     from bridge.nodes.serial_bridge_node import SerialBridge
     from hexarm.machines import board_config
 
-    return SerialBridge(board_config)
+    return SerialBridge(board_config, process)
 
 
 _loaded = cache(load)
@@ -50,7 +51,9 @@ _loaded = cache(load)
 
 def machine_nodes() -> Makers:
     """What makes the four nodes of a machine: trajectory, ik, pose, serial_bridge."""
-    return [*(partial(part, HEXAPOD) for part in (_trajectory, _ik, _pose)), _serial_bridge]
+    process = IntraProcess()
+    parts = (partial(part, HEXAPOD, process) for part in (_trajectory, _ik, _pose))
+    return [*parts, partial(_serial_bridge, process)]
 
 
 def machine() -> int:
@@ -60,17 +63,17 @@ def machine() -> int:
 
 def trajectory(default_machine: str = HEXAPOD) -> int:
     """Runs the trajectory node."""
-    return run_nodes([partial(_trajectory, default_machine)], described)
+    return run_nodes([partial(_trajectory, default_machine, IntraProcess())], described)
 
 
 def ik(default_machine: str = HEXAPOD) -> int:
     """Runs the inverse kinematics node."""
-    return run_nodes([partial(_ik, default_machine)], described)
+    return run_nodes([partial(_ik, default_machine, IntraProcess())], described)
 
 
 def pose(default_machine: str = HEXAPOD) -> int:
     """Runs the forward kinematics node."""
-    return run_nodes([partial(_pose, default_machine)], described)
+    return run_nodes([partial(_pose, default_machine, IntraProcess())], described)
 
 
 arm_trajectory, arm_ik, arm_pose = (partial(run, ARM) for run in (trajectory, ik, pose))
@@ -78,7 +81,7 @@ arm_trajectory, arm_ik, arm_pose = (partial(run, ARM) for run in (trajectory, ik
 
 def serial_bridge() -> int:
     """Runs the node between the graph and the board."""
-    return run_nodes([_serial_bridge], described)
+    return run_nodes([partial(_serial_bridge, IntraProcess())], described)
 
 
 def fake_hardware() -> int:

@@ -16,6 +16,7 @@ from manipulator.formatting import shown
 from manipulator.machine import Machine
 from manipulator.nodes.messages import BASE_FRAME, pose_of
 from manipulator.pose import Pose
+from manipulator.saved_poses import SavedPoses, checked_name
 from manipulator.states import MotionResult
 
 PLANNED_WITHIN = 60.0
@@ -116,15 +117,15 @@ class Robot:
 
     def move_to(
         self,
-        pose: PoseLike,
+        pose: PoseLike | str,
         *,
         speed: float | None = None,
         wait: bool = True,
         timeout: float = PATIENCE,
         progress: Progress | None = None,
     ) -> None:
-        """Moves to a pose; with a `speed` (m/s, at most) along a line from rest."""
-        goal = pose_from(pose)
+        """Moves to a pose, or to a saved one by name; with a `speed` (m/s) on a line from rest."""
+        goal = self.saved_poses.of(pose).pose if isinstance(pose, str) else pose_from(pose)
         if speed is None:
             self._client.begin(lambda: self._client.send_goal(goal), goal, progress)
         else:
@@ -183,6 +184,49 @@ class Robot:
     def stop(self) -> None:
         """Brakes along the path and returns when the machine holds; then it may move again."""
         self._client.rest()
+
+    # Saved poses
+
+    def save_pose(self, name: str = '') -> str:
+        """Saves the measured pose beside the machine file; returns its name, new for ''.
+
+        A pose that has this name already is replaced; InvalidInput, Refused with the reason.
+        """
+        return self._client.change_saved_pose('save_pose', name and checked_name(name))
+
+    def delete_pose(self, name: str) -> None:
+        """Deletes a saved pose; Refused where there is none, or a sequence needs it."""
+        self._client.change_saved_pose('delete_pose', checked_name(name))
+
+    @property
+    def saved_poses(self) -> SavedPoses:
+        """The saved poses and sequences by name."""
+        return SavedPoses.none_of(self._model()).read(self._client.saved_poses())
+
+    def replay(
+        self,
+        *names: str,
+        speed: float | None = None,
+        pause: float | None = None,
+        repeat: int = 1,
+        progress: Progress | None = None,
+    ) -> None:
+        """Moves to saved poses, and through saved sequences, one after the other.
+
+        `speed` (m/s) and `pause` (s) replace those of the sequences; `repeat`: how many times.
+        Raises as `move_to`; Ctrl-C brakes the machine.
+        """
+        saved = self.saved_poses
+        steps = saved.steps(names)
+        most = None if speed is None else checked('speed', speed, above=0.0)
+        rest = None if pause is None else checked('pause', pause)
+        total = max(len(steps) * repeat, 1)
+        for done in range(len(steps) * repeat):
+            step = steps[done % len(steps)]
+            self.move_to(saved.of(step.pose).pose, speed=most or step.speed)
+            self._client.spin(step.pause_s if rest is None else rest)
+            if progress is not None:
+                progress((done + 1) / total)
 
     # Waiting
 

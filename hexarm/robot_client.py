@@ -1,6 +1,7 @@
 """What `Robot` does in the graph: motions that are braked unless they end, jogs, measurements."""
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -10,14 +11,14 @@ from geometry_msgs.msg import PoseStamped, TwistStamped
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Bool
+from std_msgs.msg import Bool, String
 from std_srvs.srv import Trigger
 
 from hexarm.client import Client
 from hexarm.robot_values import share_done
 from manipulator.errors import ManipulatorError, Refused, Stopped, TimedOut
 from manipulator.nodes.messages import pose_of
-from manipulator.nodes.qos import COMMAND, EVERY_WORD
+from manipulator.nodes.qos import COMMAND, EVERY_WORD, LATCHED
 from manipulator.pose import Pose
 from manipulator.states import MachineState, MotionMode
 
@@ -45,13 +46,15 @@ class RobotClient(Client):
         self._goal: Pose | None = None
         self._share = -1.0
         self._newest: dict[str, Any] = {}
-        self._received = dict.fromkeys(('pose', 'joint_states', 'setpoint'), 0)
+        self._received = Counter[str]()
         for name, kind in (('pose', PoseStamped), ('joint_states', JointState)):
             self.node.create_subscription(kind, name, partial(self._note, name), COMMAND)
         self.watch_setpoints()
         self._twists = self.node.create_publisher(TwistStamped, 'cmd_vel', COMMAND)
         self._stops = self.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         self._brakes = self.node.create_client(Trigger, 'trajectory/stop')
+        for name in ('saved_poses', 'saved_pose_status'):
+            self.node.create_subscription(String, name, partial(self._note, name), LATCHED)
 
     def receive(self) -> None:
         """Takes up what has been received by now."""
@@ -232,6 +235,38 @@ class RobotClient(Client):
         self.is_under_way = False
         self._stops.publish(Bool(data=True))
         self.trigger('serial_bridge/stop')
+
+    # Saved poses
+
+    def saved_poses(self) -> str:
+        """The text of the file of saved poses."""
+        self.wait('saved_poses', lambda: 'saved_poses' in self._newest, PATIENCE)
+        self.receive()
+        return str(self._newest['saved_poses'].data)
+
+    def change_saved_pose(self, topic: str, name: str) -> str:
+        """Sends a name on `save_pose` or `delete_pose`; Refused with the reason."""
+        self.saved_poses()
+        changes = self.node.create_publisher(String, topic, EVERY_WORD)
+        try:
+            self.wait(f'a subscriber on {topic}', changes.get_subscription_count, PATIENCE)
+            before = self._received['saved_pose_status']
+            changes.publish(String(data=name))
+            self.wait(
+                f'an answer to {topic}',
+                lambda: (
+                    self._received['saved_pose_status'] > before
+                    and self._newest['saved_pose_status'].data.startswith(name)
+                ),
+                PATIENCE,
+            )
+        finally:
+            self.node.destroy_publisher(changes)
+        outcome = str(self._newest['saved_pose_status'].data)
+        if ': refused: ' in outcome:
+            raise Refused(outcome)
+        self.receive()
+        return outcome.partition(': ')[0]
 
     def _note(self, name: str, message: Any) -> None:
         self._newest[name] = message

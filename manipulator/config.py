@@ -1,7 +1,9 @@
 """Machine files: YAML text to frozen dataclasses, with every fault found at once.
 
-A section's dataclass is its schema. Field names carry the unit (`_mm`, `_deg`, `_us`), and
-`quantity(low, high)` states what is credible, so that metres in a millimetre field are caught.
+A section's dataclass is its schema, and the table of its keys: a field's name carries the unit
+(`_mm`, `_deg`, `_us`), `quantity` and `key` its range, default and meaning. The loader, the page
+docs/machine-files.md and the JSON schema read them there. A union of dataclasses are the forms
+that a section may have; the one with most of the keys is meant.
 """
 
 import dataclasses
@@ -27,9 +29,27 @@ MOST_OF_A_REASON = 200
 IMPORTS = 'serial arms are described by dh or screws, see docs/arm-kinematics.md'
 
 
-def quantity(low: float, high: float, **options: Any) -> Any:
+SIZE_MM = (1e-3, 1e6)
+"""Of a length that a machine cannot do without; `unit_hints` judges it beside the others."""
+PLACE_MM = (-1e6, 1e6)
+TURN_DEG = (-360.0, 360.0)
+RATE = (1e-6, 1e9)
+"""Of a speed, acceleration or jerk, whatever the unit."""
+
+
+def quantity(low: float, high: float, meaning: str = '', **options: Any) -> Any:
     """A dataclass field whose value, or every value of whose list, must lie in [low, high]."""
-    return dataclasses.field(metadata={'range': (low, high)}, **options)
+    return dataclasses.field(metadata={'range': (low, high), 'meaning': meaning}, **options)
+
+
+def key(meaning: str, **options: Any) -> Any:
+    """A dataclass field that is no quantity: a text, a choice, a section, a list of these."""
+    return dataclasses.field(metadata={'meaning': meaning}, **options)
+
+
+def forms_of(schema: Any) -> tuple[Any, ...]:
+    """The dataclasses that a section may be: one, or those of a union."""
+    return tuple(a for a in typing.get_args(schema) if a is not type(None)) or (schema,)
 
 
 def parse_yaml(text: str, source: str = '') -> dict[str, Any]:
@@ -130,12 +150,14 @@ def _convert(expected: Any, value: object, where: str, problems: list[str]) -> A
         if value is None and type(None) in arguments:
             return None
         kinds = [a for a in arguments if a is not type(None)]
+        if isinstance(value, Mapping) and all(map(dataclasses.is_dataclass, kinds)):
+            return _convert_form(kinds, value, where, problems)
         fitting = (a for a in kinds if (typing.get_origin(a) is tuple) == isinstance(value, list))
         inner = next(fitting, kinds[0])
         return _convert(inner, value, where, problems)
     if origin is typing.Literal:
         if value not in arguments:
-            hint = _nearest(str(value), [str(a) for a in arguments])
+            hint = _did_you_mean(nearest(str(value), [str(a) for a in arguments]))
             problems.append(f'{where}: {shown(value)} is not one of {list(arguments)}{hint}')
         return value
     if origin is tuple:
@@ -149,16 +171,31 @@ def _convert(expected: Any, value: object, where: str, problems: list[str]) -> A
     return _convert_scalar(expected, value, where, problems)
 
 
+def _convert_form(
+    forms: list[Any], value: Mapping[Any, Any], where: str, problems: list[str]
+) -> Any:
+    """By the form that has most of the keys in `value`."""
+    names = [[f.name for f in dataclasses.fields(form)] for form in forms]
+    shared = [len({*of_form} & {*value}) for of_form in names]
+    best = max(shared)
+    if shared.count(best) > 1:
+        firsts = [of_form[0] for of_form in names]
+        problems.append(f'{where}: has the keys of no form or of two, needs one of {firsts}')
+        return None
+    return _convert_section(forms[shared.index(best)], value, where, problems)
+
+
 def _convert_section(schema: Any, value: object, where: str, problems: list[str]) -> Any:
     if not isinstance(value, Mapping):
         problems.append(f'{where or "file"}: holds {_kind(value)}, needs a mapping of keys')
         return None
     fields = {f.name: f for f in dataclasses.fields(schema) if f.init}
-    before = len(problems)
-    for key in value:
-        if key not in fields:
-            hint = _nearest(str(key), list(fields))
-            problems.append(f'{_join(where, key)}: unknown key{hint}')
+    before, meant = len(problems), set()
+    for name in value:
+        if name not in fields:
+            near = nearest(str(name), list(fields))
+            meant.add(near)
+            problems.append(f'{_join(where, name)}: unknown key{_did_you_mean(near)}')
     hints = typing.get_type_hints(schema)
     arguments = {}
     for name, field in fields.items():
@@ -166,7 +203,7 @@ def _convert_section(schema: Any, value: object, where: str, problems: list[str]
         if name in value:
             arguments[name] = _convert(hints[name], value[name], place, problems)
             _check_range(field, arguments[name], place, problems)
-        elif _is_required(field):
+        elif is_required(field) and name not in meant:
             problems.append(f'{place}: missing')
     if len(problems) > before:
         return None
@@ -215,10 +252,8 @@ def _check_range(field: Any, value: object, where: str, problems: list[str]) -> 
         for i, entry in enumerate(value):
             _check_range(field, entry, f'{where}[{i}]', problems)
     elif isinstance(value, int | float) and not bounds[0] <= value <= bounds[1]:
-        unit_hint, number = '', _as_float(value)
-        if any(number and bounds[0] <= number * k <= bounds[1] for k in (1e3, 1e-3)):
-            unit_hint = ' (a factor of 1000: is it in another unit?)'
-        problems.append(f'{where}: {number:g} outside [{bounds[0]:g}, {bounds[1]:g}]{unit_hint}')
+        number = _as_float(value)
+        problems.append(f'{where}: {number:g} outside [{bounds[0]:g}, {bounds[1]:g}]')
 
 
 def _as_float(value: float) -> float:
@@ -238,9 +273,13 @@ def _kind(value: object) -> str:
     return name or f'{type(value).__name__} {shown(value)}'
 
 
-def _nearest(word: str, choices: list[str]) -> str:
-    found = difflib.get_close_matches(word, choices, n=1)
-    return f', did you mean {found[0]!r}?' if found else ''
+def nearest(word: str, choices: list[str]) -> str:
+    """The choice that a misspelt word means; empty where none is near."""
+    return next(iter(difflib.get_close_matches(word, choices, n=1)), '')
+
+
+def _did_you_mean(word: str) -> str:
+    return f', did you mean {word!r}?' if word else ''
 
 
 def _join(where: str, key: object) -> str:
@@ -259,6 +298,7 @@ def _markup(text: str) -> str:
     return 'is XML or HTML, needs YAML'
 
 
-def _is_required(field: Any) -> bool:
+def is_required(field: Any) -> bool:
+    """Whether a file must have the key of a dataclass field."""
     missing = dataclasses.MISSING
     return field.default is missing and field.default_factory is missing

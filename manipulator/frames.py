@@ -5,20 +5,26 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from manipulator.config import quantity
+from manipulator.config import PLACE_MM, TURN_DEG, quantity
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
 
-FARTHEST_PIVOT = 2.0
+ORIGIN = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class FramesConfig:
     """The `frames` section of a machine file: where the work frame and the pivot are."""
 
-    work_xyz_mm: tuple[float, float, float] = quantity(-5000, 5000, default=(0.0, 0.0, 0.0))
-    work_rpy_deg: tuple[float, float, float] = quantity(-360, 360, default=(0.0, 0.0, 0.0))
-    pivot_xyz_mm: tuple[float, float, float] = quantity(-2000, 2000, default=(0.0, 0.0, 0.0))
+    work_xyz_mm: tuple[float, float, float] = quantity(
+        *PLACE_MM, 'origin of the work frame, base frame', default=ORIGIN
+    )
+    work_rpy_deg: tuple[float, float, float] = quantity(
+        *TURN_DEG, 'its roll, pitch and yaw', default=ORIGIN
+    )
+    pivot_xyz_mm: tuple[float, float, float] = quantity(
+        *PLACE_MM, 'the tool point, platform frame', default=ORIGIN
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,12 +53,10 @@ class Frames:
         return cls(work).with_pivot([1e-3 * c for c in config.pivot_xyz_mm])
 
     def with_pivot(self, point: Sequence[float]) -> 'Frames':
-        """Another pivot, platform frame, metres; InvalidInput beyond 2 m or for NaN."""
+        """Another pivot, platform frame, metres; InvalidInput where it is not finite."""
         position = np.array(point, dtype=np.float64)
-        if not np.linalg.norm(position) <= FARTHEST_PIVOT:
-            raise InvalidInput(
-                f'pivot {position.tolist()} is not within {FARTHEST_PIVOT:g} m of the platform'
-            )
+        if not np.isfinite(position).all():
+            raise InvalidInput(f'pivot {position.tolist()} is not finite')
         return replace(self, T_platform_pivot=Pose(position, np.eye(3)))
 
     def platform(self, T_work_pivot: Pose) -> Pose:

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.errors import InvalidInput
+from manipulator.config import build_both, key
+from manipulator.errors import ConfigError, InvalidInput
 from manipulator.frames import Frames, FramesConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
@@ -16,8 +17,10 @@ from manipulator.limits.machine_limits import JointRange
 from manipulator.motion_limits import MotionConfig, MotionLimits
 from manipulator.static_deflection import StaticDeflection
 from manipulator.teleop.jogger import Jogger
+from manipulator.unit_hints import out_of_proportion
 
 JOG_SINGULARITIES = ('stop', 'slide')
+T = TypeVar('T')
 
 
 @dataclass(frozen=True)
@@ -28,16 +31,41 @@ class MachineFile:
     dynamics to hexarm/simulation/.
     """
 
-    kind: str
-    geometry: dict[str, Any]
-    limits: dict[str, Any]
-    motion: MotionConfig
-    servos: dict[str, Any]
-    link: dict[str, Any]
-    description: str = ''
-    simulation: dict[str, Any] | None = None
-    dynamics: dict[str, Any] | None = None
-    frames: FramesConfig = field(default_factory=FramesConfig)
+    kind: str = key('of machine')
+    geometry: dict[str, Any] = key('where the joints are')
+    limits: dict[str, Any] = key('what the machine may not exceed')
+    motion: MotionConfig = key('how fast it may move (docs/motion.md)')
+    servos: dict[str, Any] = key('its servos, and the pulses for their positions')
+    link: dict[str, Any] = key('the serial line to the board')
+    description: str = key('one line, for lists', default='')
+    simulation: dict[str, Any] | None = key(
+        "what the fake board's servos and battery do", default=None
+    )
+    dynamics: dict[str, Any] | None = key('masses and drives (docs/physics.md)', default=None)
+    frames: FramesConfig = key("the user's frames", default_factory=FramesConfig)
+
+
+@dataclass(frozen=True)
+class Kind(Generic[T]):
+    """A kind of machine: the schemas of its sections geometry and limits, and what makes it.
+
+    geometry may be a union of forms; make takes both sections as built by the schemas.
+    """
+
+    geometry: Any
+    limits: type
+    make: Callable[[Any, Any], T]
+
+    def build(self, machine_file: MachineFile) -> T:
+        """What a file of this kind makes; ConfigError with all problems of both sections."""
+        sections: tuple[Any, Any] = build_both(
+            (self.geometry, machine_file.geometry, 'geometry'),
+            (self.limits, machine_file.limits, 'limits'),
+        )
+        doubts = out_of_proportion(*sections)
+        if doubts:
+            raise ConfigError(doubts)
+        return self.make(*sections)
 
 
 @dataclass(frozen=True)

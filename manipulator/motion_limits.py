@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from manipulator.arrays import Array, frozen
-from manipulator.config import quantity
+from manipulator.config import RATE, quantity
 
 BRAKING_SHARE = 0.3
 """The part of each acceleration limit that plans leave for braking along their path."""
@@ -17,16 +17,18 @@ BRAKING_SHARE = 0.3
 class MotionConfig:
     """The `motion` section of a machine file."""
 
-    linear_speed_mm_s: float = quantity(0.1, 5000)
-    linear_acceleration_mm_s2: float = quantity(1, 100_000)
-    linear_jerk_mm_s3: float = quantity(10, 1e8)
-    angular_speed_deg_s: float = quantity(0.1, 2000)
-    angular_acceleration_deg_s2: float = quantity(1, 100_000)
-    angular_jerk_deg_s3: float = quantity(10, 1e8)
-    joint_speed_deg_s: float | None = quantity(0.1, 5000, default=None)
-    joint_acceleration_deg_s2: float | None = quantity(1, 1e6, default=None)
-    joint_speed_mm_s: float | None = quantity(0.1, 5000, default=None)
-    joint_acceleration_mm_s2: float | None = quantity(1, 1e6, default=None)
+    linear_speed_mm_s: float = quantity(*RATE, 'of the platform or the tool')
+    linear_acceleration_mm_s2: float = quantity(*RATE, 'likewise')
+    linear_jerk_mm_s3: float = quantity(*RATE, 'likewise')
+    angular_speed_deg_s: float = quantity(*RATE, 'of the platform or the tool, about any axis')
+    angular_acceleration_deg_s2: float = quantity(*RATE, 'likewise')
+    angular_jerk_deg_s3: float = quantity(*RATE, 'likewise')
+    joint_speed_deg_s: float | None = quantity(*RATE, 'of every joint that turns', default=None)
+    joint_acceleration_deg_s2: float | None = quantity(*RATE, 'likewise', default=None)
+    joint_speed_mm_s: float | None = quantity(
+        *RATE, 'of every leg that changes its length', default=None
+    )
+    joint_acceleration_mm_s2: float | None = quantity(*RATE, 'likewise', default=None)
 
 
 @dataclass(frozen=True)

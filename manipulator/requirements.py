@@ -6,6 +6,7 @@ INSTALL = {
     'evdev': 'python3 -m pip install evdev, or apt install python3-evdev (Linux)',
     'matplotlib': 'python3 -m pip install matplotlib',
     'mujoco': 'python3 -m pip install mujoco',
+    'foxglove': 'python3 -m pip install foxglove-sdk',
     'rich': 'python3 -m pip install rich',
     'mcap': 'python3 -m pip install mcap',
     'mcap_ros2': 'python3 -m pip install mcap-ros2-support',

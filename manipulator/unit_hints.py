@@ -1,12 +1,15 @@
 """Numbers that were probably meant in another unit: the hint at the end of a refusal."""
 
-from collections.abc import Iterator, Sequence
+import dataclasses
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from math import pi, radians
+from typing import Any
 
 import numpy as np
 
 from manipulator.errors import InvalidInput, Unreachable
+from manipulator.formatting import length
 from manipulator.kinematics import Kinematics
 from manipulator.pose import Pose
 
@@ -15,6 +18,11 @@ FAR = 20.0
 
 A_TURN = 2 * pi + 1e-3
 TURNS = ('roll', 'pitch', 'yaw')
+
+FACTOR = 100.0
+"""Between a length and the machine's size: beyond it, one of both is more likely in metres."""
+SIZES_MM = (2.0, 1e5)
+"""Of machines: below they are more likely in metres, above in micrometres."""
 
 
 @contextmanager
@@ -37,3 +45,46 @@ def check_turns(angles: Sequence[float], names: Sequence[str] = TURNS) -> None:
                 f'{name}: {value:g} rad is more than a turn; are these degrees? hexarm takes '
                 f'radians: {value:g}° are {radians(value):.4g}'
             )
+
+
+def out_of_proportion(geometry: Any, limits: Any) -> list[str]:
+    """Lengths in these sections, as built, that contradict the machine's own size.
+
+    The size is the median of the geometry's lengths, but for offsets, which may be 0: these may be
+    as small as they like.
+    """
+    lengths = dict(_lengths('geometry', geometry))
+    told = [value for value, is_size in lengths.values() if is_size]
+    if not told:
+        return []
+    size = float(np.median(told))
+    if not SIZES_MM[0] <= size <= SIZES_MM[1]:
+        return [f'geometry: its lengths are about {size:.3g} mm: is it in another unit?']
+    lengths |= _lengths('limits', limits)
+    return [
+        f'{place}: {value:.5g} in a machine of about {size:.3g} mm: is it in another unit?'
+        for place, (value, is_size) in lengths.items()
+        if value > FACTOR * size or (is_size and value * FACTOR < size)
+    ]
+
+
+def _lengths(place: str, section: Any) -> Iterable[tuple[str, tuple[float, bool]]]:
+    """The largest length of each key in mm, and whether it is no mere offset."""
+    for field in dataclasses.fields(section):
+        value = getattr(section, field.name)
+        if field.name.endswith('_mm') and value is not None:
+            are_points = np.ndim(value) == 2
+            points = np.asarray(value) if are_points else np.reshape(value, (-1, 1))
+            is_size = are_points or field.metadata['range'][0] > 0.0
+            yield f'{place}.{field.name}', (float(np.linalg.norm(points, axis=1).max()), is_size)
+
+
+def check_pivot(kinematics: Kinematics, pivot: Pose) -> None:
+    """Raises InvalidInput for a pivot (platform frame) that is far from the machine."""
+    away = float(np.linalg.norm(pivot.position))
+    most = FAR * kinematics.characteristic_length
+    if away > most:
+        raise InvalidInput(
+            f'pivot {pivot.position.tolist()} is {length(away)} from the platform, at most '
+            f'{length(most)} fit this machine: is it in another unit?'
+        )

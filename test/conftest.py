@@ -42,12 +42,24 @@ os.environ['ROS_DOMAIN_ID'] = str(random.Random(RUN).sample(DOMAINS, len(DOMAINS
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 
 
+@pytest.fixture(scope='session', autouse=True)
+def users_data(tmp_path_factory):
+    """Saved poses of shipped machines are in a folder of this test run, not in the user's."""
+    os.environ['XDG_DATA_HOME'] = str(tmp_path_factory.mktemp('data'))
+
+
 def pytest_collection_modifyitems(items):
-    """Marks what starts other programs: graphs, installations, a browser."""
+    """Marks what starts other programs (graphs, installations, a browser), and what is long.
+
+    The chip is simulated instruction by instruction: the same tests and the same C run on the
+    computer's board in no time.
+    """
     for item in items:
         folder = item.path.relative_to(FOLDER).parts[0]
         if folder in ('graph', 'install') or STARTS_OTHERS & set(item.fixturenames):
             item.add_marker('processes')
+        elif 'chip_tools' in item.fixturenames:
+            item.add_marker('long')
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -16,10 +16,8 @@ from bridge.fake.board_faults import BoardFaults
 from bridge.fake.board_settings import BoardSettings
 from bridge.fake.fake_line import FakeLine
 from bridge.fake.faults import Faults
-from bridge.fake.plant import Plant
 from bridge.fake.program import CrankHexapod
-from bridge.fake.servo import Servos
-from bridge.fake.steppers import Steppers
+from bridge.fake.servo import Plant, Servos, Steppers
 from bridge.protocol import ResetCause
 from bridge.servo_config import BoardConfig
 from manipulator.arrays import Array

@@ -1,6 +1,10 @@
-"""What a hobby servo makes of its pulse: dead band, limited speed, play in the gears."""
+"""What a fake board's pulses move: hobby servos, steppers, or a simulation of the whole machine.
+
+A hobby servo has a dead band, a limited speed and play in its gears.
+"""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,3 +49,34 @@ class Servos:
         """How far the motors come, of `error` (n,); each at its own full speed."""
         turned: Array = np.clip(error, -reach, reach)
         return turned
+
+
+@dataclass
+class Steppers(Servos):
+    """As `Servos`, but slowed by one factor for all joints, as an interpolating controller does.
+
+    Hobby servos hurry to each new pulse on their own: one has arrived while another still runs,
+    and in between a tool that should keep its orientation at 250 mm/s is off by nearly a degree.
+    Drives that interpolate together do not leave the path.
+    """
+
+    def _turned(self, error: Array, reach: float) -> Array:
+        largest = float(np.abs(error).max(initial=0.0))
+        return error if largest <= reach else error * (reach / largest)
+
+
+PLANTS = SERVO, MUJOCO = 'servo', 'mujoco'
+"""By name: each servo by itself, or the machine as rigid bodies."""
+
+
+class Plant(Protocol):
+    """Positions in rad (or m), one a servo, in the calibration's order."""
+
+    @property
+    def positions(self) -> Array:
+        """Where the outputs are."""
+        ...
+
+    def step(self, targets: Array, dt: float) -> None:
+        """Goes on for dt seconds towards targets; NaN means no pulse."""
+        ...

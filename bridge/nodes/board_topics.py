@@ -11,6 +11,7 @@ from bridge.driver import MachineReport
 from bridge.link import Ticket
 from bridge.link_monitor import JointTable, Latencies, MachineStatus
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, status
+from manipulator.nodes.intra_process import IntraProcess
 from manipulator.nodes.qos import LATCHED, MEASUREMENT
 
 LEVELS = (OK, WARN, ERROR)
@@ -20,10 +21,12 @@ WARN_AGAIN_AFTER = 2.0
 class BoardTopics:
     """The driver's listener; in the link's thread only."""
 
-    def __init__(self, node: Node, names: Sequence[str], port: str) -> None:
+    def __init__(self, node: Node, names: Sequence[str], port: str, process: IntraProcess) -> None:
         """`names` are those of the calibration, `port` what `machine_state` names."""
         self._node, self._names, self._port = node, names, port
-        self._joint_states = node.create_publisher(JointState, 'joint_states', MEASUREMENT)
+        self._joint_states = process.publisher(
+            node, JointState, 'joint_states', MEASUREMENT, is_from_thread=True
+        )
         self._states = node.create_publisher(DiagnosticStatus, 'machine_state', LATCHED)
         self._state: tuple[MachineStatus, Mapping[str, object]] | None = None
         self._message: DiagnosticStatus | None = None

@@ -25,24 +25,21 @@ from bridge.nodes.stop_node import StopNode
 from bridge.servo_config import BoardConfig
 from bridge.stop_socket import StopSocket, stop_address
 from manipulator.deadlines import STATE_PERIOD
-from manipulator.errors import ManipulatorError
+from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.graph_check import received_by
+from manipulator.nodes.intra_process import IntraProcess
 from manipulator.nodes.late_answers import Call, create_late_service
 from manipulator.nodes.messages import seconds
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer
-from manipulator.nodes.subscriptions import decoded
-
-MOST_BYTES = 10_000
-"""Of a joint_command: that of seven joints has less than 500."""
 
 
 class SerialBridge(Node):
     """`serial_bridge`; its topics, services and parameters are in docs/interfaces.md."""
 
-    def __init__(self, board_config: Callable[[str], BoardConfig]) -> None:
+    def __init__(self, board_config: Callable[[str], BoardConfig], process: IntraProcess) -> None:
         super().__init__('serial_bridge')
         machine = declare(self, 'machine', 'robocake', 'name or path of the machine file')
         port = declare(
@@ -56,7 +53,7 @@ class SerialBridge(Node):
         config = dataclasses.replace(config, link=line)
         calibration = Calibration.from_config(config.servos)
         self._port = port
-        self._topics = BoardTopics(self, calibration.names, port)
+        self._topics = BoardTopics(self, calibration.names, port, process)
         # Receipt times are monotonic, but read like the system's clock at the start.
         self._driver = BoardDriver(config, self._topics, time.time() - time.monotonic())
         address = stop_address(self.get_fully_qualified_name(), self.context.get_domain_id())
@@ -68,10 +65,10 @@ class SerialBridge(Node):
         )
         self._stop_node = StopNode(self, lambda: self._link.post(self._stop), self._on_stop)
         self._programs = ProgramTopics(self, calibration, self._driver.link, self._link.post)
-        self._commands: deque[tuple[bytes, float]] = deque(maxlen=1)  # the newest counts
+        self._commands: deque[tuple[JointState, float]] = deque(maxlen=1)  # the newest counts
         self._command_at: float | None = None
         self._reported = self._report_of_link()
-        self._make_interfaces()
+        self._make_interfaces(process)
         self._link.start()
         self._stop_node.start()
 
@@ -81,8 +78,10 @@ class SerialBridge(Node):
         self._link.close()
         self._stop_socket.close()
 
-    def _make_interfaces(self) -> None:
-        self.create_subscription(JointState, 'joint_command', self._on_command, COMMAND, raw=True)
+    def _make_interfaces(self, process: IntraProcess) -> None:
+        process.subscribe_unfiltered(
+            self, JointState, 'joint_command', self._on_command, self._on_bad_command, COMMAND
+        )
         self.create_subscription(Float64, 'gripper', self._on_gripper, COMMAND)
         create_late_service(self, Trigger, '~/clear_fault', self._on_clear_fault)
         create_late_service(self, SetBool, '~/enable', self._on_enable)
@@ -94,9 +93,12 @@ class SerialBridge(Node):
 
     # In the executor's thread, or the stop node's
 
-    def _on_command(self, serialized: bytes) -> None:
-        self._commands.append((serialized, time.monotonic()))
+    def _on_command(self, message: JointState) -> None:
+        self._commands.append((message, time.monotonic()))
         self._link.post(self._take_commands)
+
+    def _on_bad_command(self, error: InvalidInput) -> None:
+        self._link.post(partial(self._refuse_command, error))
 
     def _on_gripper(self, message: Float64) -> None:
         self._link.post(partial(self._aim_gripper, message.data))
@@ -141,15 +143,17 @@ class SerialBridge(Node):
 
     def _take_commands(self) -> None:
         while self._commands:
-            serialized, self._command_at = self._commands.popleft()
+            message, self._command_at = self._commands.popleft()
             try:
-                self._take_command(serialized, self._command_at)
+                self._take_command(message, self._command_at)
             except ManipulatorError as error:
-                self._driver.monitor.refuse(str(error))
-                self._topics.warn(f'joint_command refused: {error}')
+                self._refuse_command(error)
 
-    def _take_command(self, serialized: bytes, now: float) -> None:
-        message = decoded(serialized, JointState, MOST_BYTES)
+    def _refuse_command(self, error: ManipulatorError) -> None:
+        self._driver.monitor.refuse(str(error))
+        self._topics.warn(f'joint_command refused: {error}')
+
+    def _take_command(self, message: JointState, now: float) -> None:
         stamp = seconds(message.header.stamp) or None
         if stamp is None:
             self.get_logger().info('joint_command without a stamp: taken as now', once=True)

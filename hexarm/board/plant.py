@@ -7,7 +7,7 @@ from dataclasses import replace
 from bridge.calibration import Calibration
 from bridge.fake.board import Board, MakeBoard
 from bridge.fake.board_thread import FakeMachine
-from bridge.fake.plant import PLANTS, SERVO, Plant
+from bridge.fake.servo import PLANTS, SERVO, Plant
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board.kinematics import crank_hexapod

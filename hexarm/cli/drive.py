@@ -27,8 +27,9 @@ Act = Callable[['Robot', argparse.Namespace], Answer]
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommands."""
-    parser = _added(commands, 'go', go, epilog=STATUSES)
+    parser = add_driving(commands, 'go', go, epilog=STATUSES)
     with_negatives(parser)
+    parser.add_argument('name', nargs='?', metavar='NAME', help='of a saved pose')
     parser.add_argument(
         '--xyz', nargs=3, type=float, metavar=('X', 'Y', 'Z'),
         help='m (or mm); without it the position stays',
@@ -41,15 +42,16 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
         '--speed', type=float, metavar='V', help='m/s (or mm/s), at most; along a line'
     )
     for name, act in (('home', home), ('park', park), ('pose', pose), ('joints', joints)):
-        _added(commands, name, act)
+        add_driving(commands, name, act)
 
 
-def _added(
+def add_driving(
     commands: 'argparse._SubParsersAction[argparse.ArgumentParser]',
     name: str,
     act: Act,
     epilog: str | None = None,
 ) -> argparse.ArgumentParser:
+    """Declares a subcommand of one running machine, whose answer is that of `act`."""
     parser = commands.add_parser(name, epilog=epilog)
     parser.add_argument(
         'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
@@ -74,8 +76,24 @@ def running(act: Act) -> Callable[[argparse.Namespace], int]:
 
 def go(robot: 'Robot', arguments: argparse.Namespace) -> Answer:
     """Moves to a pose and measures it; Unreachable where the machine cannot take it."""
-    if arguments.xyz is None and arguments.rpy is None:
-        raise InvalidInput('go where? --xyz X Y Z, --rpy R P Y, or both')
+    goal = goal_asked(robot, arguments)
+    per_metre = units_of(arguments).per_metre
+    try:
+        robot.move_to(goal, speed=arguments.speed and arguments.speed / per_metre)
+    except Refused as error:
+        if is_out_of_reach(robot, goal):
+            raise Unreachable(str(error)) from error
+        raise
+    return pose(robot, arguments)
+
+
+def goal_asked(robot: 'Robot', arguments: argparse.Namespace) -> Pose:
+    """A saved pose by its name, or the target with another position, orientation or both."""
+    has_numbers = arguments.xyz is not None or arguments.rpy is not None
+    if has_numbers == (arguments.name is not None):
+        raise InvalidInput('go where? NAME of a saved pose; or --xyz X Y Z, --rpy R P Y, or both')
+    if arguments.name is not None:
+        return robot.saved_poses.of(arguments.name).pose
     units = units_of(arguments)
     named: dict[str, float] = {}
     if arguments.xyz is not None:
@@ -83,14 +101,7 @@ def go(robot: 'Robot', arguments: argparse.Namespace) -> Answer:
     if arguments.rpy is not None:
         turns = (v / units.per_radian for v in arguments.rpy)
         named |= dict(zip(('roll', 'pitch', 'yaw'), turns, strict=True))
-    goal = moved_to(robot.target, named)
-    try:
-        robot.move_to(goal, speed=arguments.speed and arguments.speed / units.per_metre)
-    except Refused as error:
-        if is_out_of_reach(robot, goal):
-            raise Unreachable(str(error)) from error
-        raise
-    return pose(robot, arguments)
+    return moved_to(robot.target, named)
 
 
 def is_out_of_reach(robot: 'Robot', goal: Pose) -> bool:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bridge.fake.plant import PLANTS, SERVO
+from bridge.fake.servo import PLANTS, SERVO
 from hexarm.graph import (
     Executable,
     Graph,

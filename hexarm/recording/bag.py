@@ -3,13 +3,13 @@
 import contextlib
 import os
 from collections import Counter
-from dataclasses import dataclass
 from pathlib import Path
 
 from mcap.well_known import MessageEncoding, Profile, SchemaEncoding
 from mcap.writer import CompressionType, Writer
 
 from hexarm.recording.log_parser import schema_text
+from hexarm.recording.sink import Topic
 from manipulator.errors import ManipulatorError
 
 CHUNK_BYTES = 1 << 20
@@ -19,18 +19,8 @@ class NotWritten(ManipulatorError, OSError):
     """A recording that cannot be begun or cannot go on: the file's name, and why."""
 
 
-@dataclass(frozen=True)
-class Topic:
-    """A topic as its publishers offer it; `qos` and `type_hash` as rosbag2 keeps them."""
-
-    name: str
-    type_name: str
-    qos: str = ''
-    type_hash: str = ''
-
-
 class Bag:
-    """A new file; a context manager that finishes it. Messages are stored as they came, in CDR.
+    """A new file, a Sink; a context manager that finishes it. Messages stay as they came, in CDR.
 
     All that was written before the last `flush` survives the end of the process.
     """

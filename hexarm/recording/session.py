@@ -1,4 +1,4 @@
-"""The recorder: finds topics, and writes each message as it came until it is stopped.
+"""The recorder: finds topics, and passes each message on as it came until it is stopped.
 
 It subscribes with a quality of service that every publisher serves, and records the offered one.
 """
@@ -21,8 +21,8 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from hexarm.cli.up import Interrupted
-from hexarm.recording.bag import Bag, Topic
 from hexarm.recording.log_parser import UnknownType
+from hexarm.recording.sink import Sink, Topic
 from hexarm.recording.topics import TopicSelection, missing_topics
 
 DEPTH = 500
@@ -73,8 +73,8 @@ def _span(duration: Duration) -> dict[str, int]:
 class Recorder:
     """Subscribes to the selected topics that exist, at each update."""
 
-    def __init__(self, node: Node, selection: TopicSelection, bag: Bag) -> None:
-        self._node, self._selection, self._bag = node, selection, bag
+    def __init__(self, node: Node, selection: TopicSelection, sink: Sink) -> None:
+        self._node, self._selection, self._sink = node, selection, sink
         self._subscriptions: dict[str, Any] = {}
         self._qos: dict[str, QoSProfile] = {}
         self._unknown: set[str] = set()
@@ -130,7 +130,7 @@ class Recorder:
         if qos == self._qos.get(name):
             return
         kind = message_class(type_name)
-        self._bag.add_type(type_name)
+        self._sink.add_type(type_name)
         self._leave(name)
         self._qos[name] = qos
         self._subscriptions[name] = self._node.create_subscription(
@@ -138,13 +138,13 @@ class Recorder:
         )
 
     def _keep(self, name: str, type_name: str, message: bytes) -> None:
-        if name not in self._bag.counts:
+        if name not in self._sink.counts:
             # Only now, with a publisher, is it known what is offered.
             publishers = self._node.get_publishers_info_by_topic(name)
             type_hash = str(publishers[0].topic_type_hash) if publishers else ''
             offers = offered([p.qos_profile for p in publishers])
-            self._bag.add_topic(Topic(name, type_name, offers, type_hash))
-        self._bag.write(name, message, time.time_ns())
+            self._sink.add_topic(Topic(name, type_name, offers, type_hash))
+        self._sink.write(name, message, time.time_ns())
 
     def _others(self, name: str) -> list[QoSProfile]:
         """What the other subscribers of the topic request."""
@@ -195,7 +195,7 @@ class Control:
 
 
 def record(
-    bag: Bag, namespace: str, selection: TopicSelection, control: Control
+    sink: Sink, namespace: str, selection: TopicSelection, control: Control
 ) -> tuple[set[str], int]:
     """Records to its end; where nothing is published and it has none, for PATIENCE.
 
@@ -206,10 +206,10 @@ def record(
     node = Node('recorder', namespace=namespace, enable_rosout=False)
     executor = EventsExecutor()
     executor.add_node(node)
-    recorder, domain = Recorder(node, selection, bag), node.context.get_domain_id()
+    recorder, domain = Recorder(node, selection, sink), node.context.get_domain_id()
     try:
         with contextlib.suppress(Interrupted):
-            _spin(executor, recorder, bag, control, domain)
+            _spin(executor, recorder, sink, control, domain)
     finally:
         executor.shutdown()
         node.destroy_node()
@@ -218,7 +218,7 @@ def record(
 
 
 def _spin(
-    executor: EventsExecutor, recorder: Recorder, bag: Bag, control: Control, domain: int
+    executor: EventsExecutor, recorder: Recorder, sink: Sink, control: Control, domain: int
 ) -> None:
     begin = update_at = flush_at = time.monotonic()
     until = begin + PATIENCE if control.until == math.inf else control.until
@@ -235,6 +235,6 @@ def _spin(
             recorder.warn() if is_met else control.on_nobody(recorder.there, domain)
             is_told = True
         if now >= flush_at:
-            bag.flush()
+            sink.flush()
             flush_at = now + FLUSH
         executor.spin_once(timeout_sec=min(0.05, max(until - now, 0.0)))

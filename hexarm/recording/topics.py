@@ -13,7 +13,7 @@ COMMANDS = frozenset(
     (
         *('goal_pose', 'goal_path', 'jog_mode', 'look_at', 'speed_override', 'pivot'),
         *('cmd_vel', 'cmd_vel/joy', 'cmd_vel/panel', 'cmd_vel/keyboard'),
-        *('gripper', 'emergency_stop', 'joint_table', 'joy'),
+        *('gripper', 'emergency_stop', 'joint_table', 'joy', 'save_pose', 'delete_pose'),
     )
 )
 """What users publish, and the machine's nodes only receive."""

@@ -6,12 +6,19 @@
 import math
 from dataclasses import dataclass
 
-from manipulator.config import quantity
+from manipulator.config import PLACE_MM, SIZE_MM, key, quantity
 from manipulator.errors import ConfigError
 
 Three = tuple[float, float, float]
-LARGEST_GYRATION_MM = 2000.0
-SMALLEST_GYRATION_MM = 0.1
+SOURCE = "where the numbers come from, or 'estimate'"
+INERTIA = 'principal moments about the centre of mass, along the axes'
+COMPENSATION = 'whether targets are corrected by the static deflection of the drives'
+MASS_G = (1e-3, 1e9)
+EFFORT = (1e-6, 1e8)
+"""N or N·m."""
+
+LARGEST_GYRATION_MM = 2e4
+SMALLEST_GYRATION_MM = 0.01
 
 
 def check_inertia(mass_g: float, inertia_g_mm2: Three) -> None:
@@ -42,11 +49,11 @@ class PlateConfig:
     centre_mm in the platform frame; inertia_g_mm2 about the centre, principal along its axes.
     """
 
-    source: str
-    mass_g: float = quantity(0.1, 1e6)
-    thickness_mm: float = quantity(0.1, 500)
-    centre_mm: Three = quantity(-1000, 1000, default=(0.0, 0.0, 0.0))
-    inertia_g_mm2: Three | None = quantity(0, 1e13, default=None)
+    source: str = key(SOURCE)
+    mass_g: float = quantity(*MASS_G, 'of one')
+    thickness_mm: float = quantity(*SIZE_MM, 'of the plate')
+    centre_mm: Three = quantity(*PLACE_MM, 'of mass, platform frame', default=(0.0, 0.0, 0.0))
+    inertia_g_mm2: Three | None = quantity(0, 1e18, INERTIA, default=None)
 
     def __post_init__(self) -> None:
         """Raises ConfigError for impossible moments."""
@@ -58,29 +65,29 @@ class PlateConfig:
 class PayloadConfig:
     """What is carried: a cylinder on the moving frame's xy plane; 0 g is nothing."""
 
-    source: str
-    mass_g: float = quantity(0, 1e6)
-    radius_mm: float = quantity(0.5, 1000)
-    height_mm: float = quantity(0.5, 1000)
+    source: str = key(SOURCE)
+    mass_g: float = quantity(0, MASS_G[1], '0 is nothing')
+    radius_mm: float = quantity(*SIZE_MM, 'of a cylinder')
+    height_mm: float = quantity(*SIZE_MM, 'of it')
 
 
 @dataclass(frozen=True)
 class RodConfig:
     """A round rod of even density; its length is the mechanism's."""
 
-    source: str
-    mass_g: float = quantity(0.01, 1e6)
-    radius_mm: float = quantity(0.1, 500)
+    source: str = key(SOURCE)
+    mass_g: float = quantity(*MASS_G, 'of one')
+    radius_mm: float = quantity(*SIZE_MM, 'of one')
 
 
 @dataclass(frozen=True)
 class TubeConfig:
     """A part of a leg that is as long as it says: a round rod of even density."""
 
-    source: str
-    mass_g: float = quantity(0.01, 1e6)
-    radius_mm: float = quantity(0.1, 500)
-    length_mm: float = quantity(1, 5000)
+    source: str = key(SOURCE)
+    mass_g: float = quantity(*MASS_G, 'of one')
+    radius_mm: float = quantity(*SIZE_MM, 'of one')
+    length_mm: float = quantity(*SIZE_MM, 'of one')
 
 
 @dataclass(frozen=True)
@@ -91,59 +98,63 @@ class TurningDriveConfig:
     Its free speed is in the section `servos`.
     """
 
-    source: str
-    torque_n_m: float = quantity(0.001, 10_000)
-    proportional_band_deg: float = quantity(0.01, 90)
-    backdrive_n_m: float = quantity(0, 10_000)
-    rotor_inertia_g_mm2: float = quantity(1, 1e11)
+    source: str = key(SOURCE)
+    torque_n_m: float = quantity(*EFFORT, 'at standstill')
+    proportional_band_deg: float = quantity(
+        1e-6, 90, 'error at which the motor gets its whole voltage'
+    )
+    backdrive_n_m: float = quantity(0, EFFORT[1], 'what the gears hold without power')
+    rotor_inertia_g_mm2: float = quantity(1e-3, 1e18, 'as felt at the output')
 
 
 @dataclass(frozen=True)
 class PushingDriveConfig:
     """A servo that pushes, as `TurningDriveConfig`; rotor_mass_g as felt at the output."""
 
-    source: str
-    force_n: float = quantity(0.01, 1e6)
-    proportional_band_mm: float = quantity(0.001, 100)
-    backdrive_n: float = quantity(0, 1e6)
-    rotor_mass_g: float = quantity(0.1, 1e8)
+    source: str = key(SOURCE)
+    force_n: float = quantity(*EFFORT, 'at standstill')
+    proportional_band_mm: float = quantity(
+        1e-6, 1000, 'error at which the motor gets its whole voltage'
+    )
+    backdrive_n: float = quantity(0, EFFORT[1], 'what the gears hold without power')
+    rotor_mass_g: float = quantity(MASS_G[0], 1e12, 'as felt at the output')
 
 
 @dataclass(frozen=True)
 class RotaryDynamicsConfig:
     """A crank platform's masses and drives."""
 
-    platform: PlateConfig
-    payload: PayloadConfig
-    crank: RodConfig
-    rod: RodConfig
-    servo: TubeConfig
-    drive: TurningDriveConfig
-    compensation: bool = False
+    platform: PlateConfig = key('a hexagonal plate about its joints')
+    payload: PayloadConfig = key('what is carried, on the xy plane of the moving frame')
+    crank: RodConfig = key('every crank, a round rod')
+    rod: RodConfig = key('every rod, round')
+    servo: TubeConfig = key('every servo, drawn as a cylinder')
+    drive: TurningDriveConfig = key('a servo that turns')
+    compensation: bool = key(COMPENSATION, default=False)
 
 
 @dataclass(frozen=True)
 class LinearDynamicsConfig:
     """A linear platform's masses and drives: a leg is a cylinder below and a piston above."""
 
-    platform: PlateConfig
-    payload: PayloadConfig
-    cylinder: TubeConfig
-    piston: TubeConfig
-    drive: PushingDriveConfig
-    compensation: bool = False
+    platform: PlateConfig = key('a hexagonal plate about its joints')
+    payload: PayloadConfig = key('what is carried, on the xy plane of the moving frame')
+    cylinder: TubeConfig = key('lower part of every leg')
+    piston: TubeConfig = key('upper part of every leg')
+    drive: PushingDriveConfig = key('a servo that pushes')
+    compensation: bool = key(COMPENSATION, default=False)
 
 
 @dataclass(frozen=True)
 class RailDynamicsConfig:
     """The masses and drives of a platform on rails; a carriage's length is along its rail."""
 
-    platform: PlateConfig
-    payload: PayloadConfig
-    carriage: TubeConfig
-    rod: RodConfig
-    drive: PushingDriveConfig
-    compensation: bool = False
+    platform: PlateConfig = key('a hexagonal plate about its joints')
+    payload: PayloadConfig = key('what is carried, on the xy plane of the moving frame')
+    carriage: TubeConfig = key('every carriage, drawn as a cylinder along its rail')
+    rod: RodConfig = key('every rod, round')
+    drive: PushingDriveConfig = key('a servo that pushes')
+    compensation: bool = key(COMPENSATION, default=False)
 
 
 @dataclass(frozen=True)
@@ -153,12 +164,14 @@ class LinkConfig:
     centre_mm and inertia_g_mm2 (principal, about the centre) in base axes at zero angles.
     """
 
-    source: str
-    drive: TurningDriveConfig
-    mass_g: float = quantity(0.1, 1e6)
-    radius_mm: float = quantity(1, 1000)
-    centre_mm: Three | None = quantity(-10_000, 10_000, default=None)
-    inertia_g_mm2: Three | None = quantity(0, 1e13, default=None)
+    source: str = key(SOURCE)
+    drive: TurningDriveConfig = key('a servo that turns')
+    mass_g: float = quantity(*MASS_G, 'of one')
+    radius_mm: float = quantity(*SIZE_MM, 'of a round rod to the next joint')
+    centre_mm: Three | None = quantity(
+        *PLACE_MM, 'of mass, base axes at zero angles', default=None
+    )
+    inertia_g_mm2: Three | None = quantity(0, 1e18, INERTIA, default=None)
 
     def __post_init__(self) -> None:
         """Raises ConfigError for impossible moments."""
@@ -170,9 +183,11 @@ class LinkConfig:
 class ArmDynamicsConfig:
     """A serial arm's links, base first, and what its tool carries."""
 
-    links: tuple[LinkConfig, LinkConfig, LinkConfig, LinkConfig, LinkConfig, LinkConfig]
-    payload: PayloadConfig
-    compensation: bool = False
+    links: tuple[LinkConfig, LinkConfig, LinkConfig, LinkConfig, LinkConfig, LinkConfig] = key(
+        'base first'
+    )
+    payload: PayloadConfig = key('what is carried, on the xy plane of the moving frame')
+    compensation: bool = key(COMPENSATION, default=False)
 
 
 Dynamics = RotaryDynamicsConfig | LinearDynamicsConfig | RailDynamicsConfig | ArmDynamicsConfig

@@ -10,6 +10,7 @@ from sensor_msgs.msg import JointState
 
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
+from manipulator.nodes.intra_process import IntraProcess
 from manipulator.nodes.messages import joint_message, known_joints, pose_of
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
@@ -20,7 +21,9 @@ from manipulator.setpoint_validator import SetpointValidator
 class IkNode(Node):
     """setpoint and joint_states in, joint_command out; see docs/interfaces.md."""
 
-    def __init__(self, load: Callable[[str], Machine], default_machine: str) -> None:
+    def __init__(
+        self, load: Callable[[str], Machine], default_machine: str, process: IntraProcess
+    ) -> None:
         super().__init__('ik')
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         machine = load(name)
@@ -28,9 +31,9 @@ class IkNode(Node):
         self._check = SetpointValidator(machine)
         self._setpoint = FilteredCallback(self, 'setpoint', self._on_setpoint)
         self._states = FilteredCallback(self, 'joint_states', self._on_joint_states)
-        self._publisher = self.create_publisher(JointState, 'joint_command', COMMAND)
-        self.create_subscription(PoseStamped, 'setpoint', self._setpoint, COMMAND)
-        self.create_subscription(JointState, 'joint_states', self._states, MEASUREMENT)
+        self._publisher = process.publisher(self, JointState, 'joint_command', COMMAND)
+        process.subscribe(self, PoseStamped, 'setpoint', self._setpoint, COMMAND)
+        process.subscribe(self, JointState, 'joint_states', self._states, MEASUREMENT)
         self._diagnostics = Diagnostics(
             self, self._report, ('setpoint', 'joint_command', 'joint_states')
         )

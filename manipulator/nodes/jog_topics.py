@@ -1,4 +1,4 @@
-"""What every node of a person's input device publishes: twists, mode, gripper, home, stop.
+"""What every node of a person's input device sends: twists, mode, gripper, home, stop, save.
 
 A twist means that the deadman is held. Releasing it publishes one zero and then nothing, so that
 a release and a node that has died are the same for the trajectory node.
@@ -100,7 +100,8 @@ class JogTopics:
         node.create_subscription(Float64, 'gripper', self._on_gripper, LATCHED)
         self._stop_button = StopButton(node)
         self._services = {
-            name: node.create_client(Trigger, f'trajectory/{name}') for name in ('home', 'stop')
+            name: node.create_client(Trigger, name)
+            for name in ('trajectory/home', 'trajectory/stop', 'pose/save')
         }
 
     def drive(self, twist: Array, frame: str, is_held: bool) -> None:
@@ -137,17 +138,21 @@ class JogTopics:
     def home(self, is_held: bool) -> None:
         """Goes home while held: calls once the machine is free, and stops it at release."""
         if self._is_homing and not is_held and self._is_home_asked:
-            self._ask('stop')
+            self._ask('trajectory/stop')
         self._is_home_asked &= is_held
         self._is_homing = is_held
         is_free = time.monotonic() - self._last_twist > HAND_OVER
         if is_held and is_free and not self._is_home_asked:
             self._is_home_asked = True
-            self._ask('home')
+            self._ask('trajectory/home')
 
     def go_home(self) -> None:
         """Calls `trajectory/home`, however long that takes."""
-        self._ask('home')
+        self._ask('trajectory/home')
+
+    def save_pose(self) -> None:
+        """Calls `pose/save`: the pose is saved under the next free name."""
+        self._ask('pose/save')
 
     def stop(self) -> None:
         """Stops all motion: by braking if possible, else at once."""
@@ -156,7 +161,7 @@ class JogTopics:
     @property
     def has_subscribers(self) -> bool:
         """Whether a trajectory node is there, and takes the twists."""
-        is_there = bool(self._services['stop'].service_is_ready())
+        is_there = bool(self._services['trajectory/stop'].service_is_ready())
         return is_there and bool(self._twists.get_subscription_count() > 0)
 
     @property
@@ -174,7 +179,8 @@ class JogTopics:
     def _ask(self, name: str) -> None:
         client = self._services[name]
         if not client.service_is_ready():
-            self._node.get_logger().warning(f'{name}: no trajectory node answers')
+            node = name.partition('/')[0]
+            self._node.get_logger().warning(f'{name}: no {node} node answers')
             return
         client.call_async(Trigger.Request()).add_done_callback(
             lambda future: self._say(name, future)

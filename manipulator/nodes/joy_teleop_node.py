@@ -1,4 +1,4 @@
-"""From a gamepad's Joy messages to twists, jog modes, gripper, home and stop."""
+"""From a gamepad's Joy messages to twists, jog modes, gripper, home, stop and saved poses."""
 
 import time
 from collections.abc import Callable
@@ -32,7 +32,7 @@ class JoyTeleop(Node):
         self._scale = declare(self, 'scale', 1.0, SCALE, (0.01, 10.0))
         self._gripper_step = declare(self, 'gripper_speed', 0.5, GRIPPER, (0.05, 5.0)) / rate
         self._reader = JoyReader(gamepad)
-        self._stops = 0
+        self._stops = self._saves = 0
         self._joy = FilteredCallback(self, 'joy', self._on_joy)
         self._topics = JogTopics(self, 'joy')
         self._pad = SoleSubscription(
@@ -59,6 +59,9 @@ class JoyTeleop(Node):
         if command.stops != self._stops:
             self._stops = command.stops
             self._topics.stop()
+        if command.saves != self._saves:
+            self._saves = command.saves
+            self._topics.save_pose()
         if command.grip:
             self._topics.grip(command.grip * self._gripper_step)
 

@@ -1,4 +1,4 @@
-"""From the keys of a terminal to twists, jog modes, gripper, home and stop."""
+"""From the keys of a terminal to twists, jog modes, gripper, home, stop and saved poses."""
 
 import signal
 import time
@@ -56,6 +56,8 @@ class KeyboardTeleop(Node):
             self._topics.stop()
         if after.homes != before.homes:
             self._topics.go_home()
+        if after.saves != before.saves:
+            self._topics.save_pose()
         if after.mode != before.mode:
             self._topics.choose(after.mode)
         if after.line != before.line:

@@ -8,10 +8,10 @@ import re
 import time
 from collections.abc import Callable, Sequence
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from builtin_interfaces.msg import Duration, Time
-from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import Point, PointStamped, PoseStamped, TransformStamped
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
@@ -26,7 +26,8 @@ from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
 from manipulator.links import Link, Stroke
 from manipulator.machine import Machine
-from manipulator.nodes.diagnostics import Diagnostics, Report
+from manipulator.nodes.diagnostics import OK, WARN, Diagnostics, Report
+from manipulator.nodes.intra_process import IntraProcess
 from manipulator.nodes.messages import (
     BASE_FRAME,
     PIVOT_FRAME,
@@ -38,6 +39,7 @@ from manipulator.nodes.messages import (
 )
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
+from manipulator.nodes.saved_pose_topics import SavedPoseTopics
 from manipulator.nodes.subscriptions import FilteredCallback
 from manipulator.pose import Pose
 from manipulator.pose_estimate import PoseEstimate
@@ -147,22 +149,32 @@ def _transform(parent: str, child: str, pose: Pose, stamp: Time) -> TransformSta
 
 
 class PoseNode(Node):
-    """joint_states in, pose out while all joints are known; see docs/interfaces.md."""
+    """joint_states in, pose out while all joints are known; see docs/interfaces.md.
 
-    def __init__(self, load: Callable[[str], Machine], default_machine: str) -> None:
+    saved_poses: the file of a machine's saved poses, by the machine's name or path.
+    """
+
+    def __init__(
+        self,
+        load: Callable[[str], Machine],
+        saved_poses: Callable[[str], Path],
+        default_machine: str,
+        process: IntraProcess,
+    ) -> None:
         super().__init__('pose')
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         machine = load(name)
         self._kinematics, self._frames = machine.kinematics, machine.frames
         self._estimate = PoseEstimate(machine, self.get_logger().info)
         self._states = FilteredCallback(self, 'joint_states', self._on_joint_states)
-        self._publisher = self.create_publisher(PoseStamped, 'pose', MEASUREMENT)
+        self._publisher = process.publisher(self, PoseStamped, 'pose', MEASUREMENT)
         prefix = declare_prefix(self)
         self._markers = Markers(self, prefix)
         self._transforms = Transforms(self, prefix)
         self._pivot_publisher = self.create_publisher(PoseStamped, 'pivot_pose', MEASUREMENT)
         self.create_subscription(PointStamped, 'pivot', self._on_pivot, COMMAND)
-        self.create_subscription(JointState, 'joint_states', self._states, MEASUREMENT)
+        process.subscribe(self, JointState, 'joint_states', self._states, MEASUREMENT)
+        self._saved = SavedPoseTopics(self, machine, saved_poses(name))
         self._diagnostics = Diagnostics(self, self._report, ('joint_states', 'pose'))
 
     def _on_joint_states(self, message: JointState) -> None:
@@ -172,6 +184,7 @@ class PoseNode(Node):
             return
         pose, stamp = solution.pose, message.header.stamp
         self._publisher.publish(pose_message(pose, stamp))
+        self._saved.note(pose, joints)
         self._markers.show(self._kinematics, pose, joints, stamp)
         self._transforms.show(self._kinematics, self._frames, pose, joints, stamp)
         if self._pivot_publisher.get_subscription_count() > 0:
@@ -190,10 +203,15 @@ class PoseNode(Node):
             'joint_states_refused': self._states.refused,
             'last_refusal': self._states.last_refusal,
         }
+        trouble = self._saved.watch()
         solution = self._estimate.solution
         if solution is None:
-            return DiagnosticStatus.OK, 'no joint states', values
+            return _level(trouble), trouble or 'no joint states', values
         values['singularity_margin'] = solution.sigma_min
         values['residual_mm'] = solution.residual * 1e3
         values['iterations'] = solution.iterations
-        return DiagnosticStatus.OK, 'running', values
+        return _level(trouble), trouble or 'running', values
+
+
+def _level(trouble: str) -> Any:
+    return WARN if trouble else OK

@@ -74,6 +74,10 @@ class FilteredCallback:
         self._filter.refuse(error)
         self._report(message, error)
 
+    def refuse_bytes(self, error: InvalidInput) -> None:
+        """Refuses bytes that are no message."""
+        self.refuse(None, error)
+
     @property
     def refused(self) -> int:
         """How many messages were not accepted."""

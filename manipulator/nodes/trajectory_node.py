@@ -13,6 +13,7 @@ from std_msgs.msg import Float64
 from manipulator.errors import ManipulatorError
 from manipulator.machine import JOG_SINGULARITIES, Machine
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
+from manipulator.nodes.intra_process import IntraProcess
 from manipulator.nodes.messages import (
     BASE_FRAME,
     PLATFORM_FRAME,
@@ -58,7 +59,9 @@ POSE_TOLERANCE = (
 class TrajectoryNode(Node):
     """goal_pose, pose, machine_state in; setpoint, motion_status out; see docs/interfaces.md."""
 
-    def __init__(self, load: Callable[[str], Machine], default_machine: str) -> None:
+    def __init__(
+        self, load: Callable[[str], Machine], default_machine: str, process: IntraProcess
+    ) -> None:
         super().__init__('trajectory')
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         rate = declare(self, 'rate', 100.0, 'setpoints per second (Hz)', (10.0, 500.0))
@@ -72,7 +75,7 @@ class TrajectoryNode(Node):
         machine = replace(load(name), jog_singularity=singularity)
         tolerances = Tolerances.of(machine, tolerance, goal_tolerance, distance)
         self._controller = MotionController(machine, dt, tolerances, self._worker, delay)
-        self._connect()
+        self._connect(process)
         PathGoals(self, self._controller, self._goal_parameters)
         self._teleop_topics = TeleopTopics(self, self._controller.teleop)
         self._answers = TrajectoryServices(
@@ -86,16 +89,16 @@ class TrajectoryNode(Node):
         self._controller.close()
         self._worker.close()
 
-    def _connect(self) -> None:
+    def _connect(self, process: IntraProcess) -> None:
         self._goals = FilteredCallback(self, 'goal_pose', self._on_goal, self._on_bad_goal)
         self._poses = FilteredCallback(self, 'pose', self._on_pose)
         self._joints = FilteredCallback(self, 'joint_states', self._on_joint_states)
-        self._setpoints = self.create_publisher(PoseStamped, 'setpoint', COMMAND)
+        self._setpoints = process.publisher(self, PoseStamped, 'setpoint', COMMAND)
         self._statuses = self.create_publisher(DiagnosticStatus, 'motion_status', LATCHED)
         subscribe = self.create_subscription
         subscribe(PoseStamped, 'goal_pose', self._goals, COMMAND)
-        subscribe(PoseStamped, 'pose', self._poses, MEASUREMENT)
-        subscribe(JointState, 'joint_states', self._joints, MEASUREMENT)
+        process.subscribe(self, PoseStamped, 'pose', self._poses, MEASUREMENT)
+        process.subscribe(self, JointState, 'joint_states', self._joints, MEASUREMENT)
         subscribe(DiagnosticStatus, 'machine_state', self._on_machine_state, LATCHED)
         subscribe(Float64, 'speed_override', self._on_speed_override, COMMAND)
         subscribe(PointStamped, 'pivot', self._on_pivot, COMMAND)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.continuity import first_jump
 from manipulator.errors import Refused, Unreachable
+from manipulator.kinematics import first_jump
 from manipulator.limits.constraints import Constraints
 from manipulator.machine import Machine
 from manipulator.planning.plan import MotionState, Plan

@@ -67,18 +67,8 @@ class Cycle(PosePlan):
         x, v, a = self._offsets(t)
         turn = so3.from_rpy(x[..., 3:])
         pose = Pose(self.centre.position + x[..., :3], turn @ self.centre.rotation)
-        omega = _angular_velocity(x[..., 3:], v[..., 3:])
-        h = 1e-5
-        ahead, behind = self._offsets(t + h), self._offsets(t - h)
-        alpha = (
-            _angular_velocity(ahead[0][..., 3:], ahead[1][..., 3:])
-            - _angular_velocity(behind[0][..., 3:], behind[1][..., 3:])
-        ) / (2 * h)
-        return MotionState(
-            pose,
-            np.concatenate([v[..., :3], omega], axis=-1),
-            np.concatenate([a[..., :3], alpha], axis=-1),
-        )
+        v[..., 3:], a[..., 3:] = _turning(x[..., 3:], v[..., 3:], a[..., 3:])
+        return MotionState(pose, v, a)
 
     def where(self, time: float) -> str:
         """See `Plan`."""
@@ -92,10 +82,12 @@ class Cycle(PosePlan):
         return sine.sum(-2), (rate * cosine).sum(-2), (-(rate**2) * sine).sum(-2)
 
 
-def _angular_velocity(rpy: Array, rates: Array) -> Array:
-    """ω in fixed axes of Rz(y)·Ry(p)·Rx(r) turning at the rates of r, p, y."""
+def _turning(rpy: Array, rates: Array, pulls: Array) -> tuple[Array, Array]:
+    """ω and its derivative in fixed axes of Rz(y)·Ry(p)·Rx(r), by the derivatives of r, p, y."""
     (_, sp, sy), (_, cp, cy) = (np.moveaxis(f(rpy), -1, 0) for f in (np.sin, np.cos))
-    roll, pitch, yaw = np.moveaxis(rates, -1, 0)
-    return np.stack(
-        [cy * cp * roll - sy * pitch, sy * cp * roll + cy * pitch, yaw - sp * roll], axis=-1
-    )
+    (r1, p1, y1), (r2, p2, y2) = np.moveaxis(rates, -1, 0), np.moveaxis(pulls, -1, 0)
+    along, across = cp * r1, cp * r2 - sp * p1 * r1 - p1 * y1
+    omega = [cy * along - sy * p1, sy * along + cy * p1, y1 - sp * r1]
+    turned = p2 + along * y1
+    alpha = [cy * across - sy * turned, sy * across + cy * turned, y2 - sp * r2 - cp * p1 * r1]
+    return np.stack(omega, axis=-1), np.stack(alpha, axis=-1)

@@ -136,6 +136,7 @@ class Gamepad:
     gripper_close: Press | None = None
     home: Press | None = None
     stop: Press | None = None
+    save_pose: Press | None = None
     turbo_factor: float = quantity(1.0, 10.0, default=2.0)
     slow_factor: float = quantity(0.01, 1.0, default=0.2)
     modes: tuple[str, ...] = ('free',)

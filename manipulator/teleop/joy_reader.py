@@ -70,7 +70,7 @@ class PadCommand:
     """The user's command at one time.
 
     twist (6,) in m/s and rad/s, in `frame`, zero unless `is_held`; `grip` is +1 to open, −1 to
-    close, 0 to rest. `stops` counts presses of the stop button. `reason`: why the deadman
+    close, 0 to rest. `stops` and `saves` count presses of those buttons. `reason`: why the deadman
     does not count although it may be pressed.
     """
 
@@ -81,6 +81,7 @@ class PadCommand:
     is_homing: bool
     grip: int
     stops: int
+    saves: int
     reason: str
 
 
@@ -98,6 +99,7 @@ class JoyReader:
     mode: int = 0
     frame: int = 0
     stops: int = 0
+    saves: int = 0
     fault: str = ''
 
     def receive(
@@ -155,6 +157,7 @@ class JoyReader:
             'home' in pressed,
             grip if is_held else 0,
             self.stops,
+            self.saves,
             reason,
         )
 
@@ -214,15 +217,17 @@ class JoyReader:
         return frozen(twist)
 
     def _after_presses(self, news: frozenset[str]) -> 'JoyReader':
-        """Modes and frames change only while nothing is driven."""
+        """Modes and frames change, and poses are saved, only while nothing is driven."""
         stops = self.stops + ('stop' in news)
         if self.twist.any():
             return replace(self, stops=stops)
+        saves = self.saves + ('save_pose' in news)
         mode = self.mode + ('mode_next' in news) - ('mode_previous' in news)
         frame = self.frame + ('frame_next' in news)
         return replace(
             self,
             stops=stops,
+            saves=saves,
             mode=mode % len(self.gamepad.modes),
             frame=frame % len(self.gamepad.frames),
         )

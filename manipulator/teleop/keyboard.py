@@ -51,7 +51,8 @@ HELP = f"""\
  turn  o/u  roll     i/k  pitch     j/l  yaw
  grip  v    open     c    close
  set   +/-  speed    m/n  mode      b    frame
-       h    home     q    quit      SPACE  stop everything
+       h    home     p    save pose
+       q    quit     SPACE  stop everything
        one press moves for {HOLD} s      any other key ends the motion"""
 
 
@@ -66,7 +67,7 @@ def keys_of(characters: bytes) -> tuple[str, ...]:
 class Keyboard:
     """The command of the keys so far; times are of a monotonic clock, in seconds.
 
-    full speeds in m/s and rad/s; `stops` and `homes` count the presses of those keys.
+    full speeds in m/s and rad/s; `stops`, `homes` and `saves` count the presses of those keys.
     """
 
     linear_speed: float = quantity(1e-4, 1.0, default=0.02)
@@ -77,6 +78,7 @@ class Keyboard:
     frame: str = FRAMES[0]
     stops: int = 0
     homes: int = 0
+    saves: int = 0
     is_over: bool = False
 
     def press(self, key: str, now: float) -> 'Keyboard':
@@ -91,6 +93,7 @@ class Keyboard:
         changes = {
             ' ': {'stops': self.stops + 1},
             'h': {'homes': self.homes + 1},
+            'p': {'saves': self.saves + 1},
             'm': {'mode': _next(tuple(MODES), self.mode, 1)},
             'n': {'mode': _next(tuple(MODES), self.mode, -1)},
             'b': {'frame': _next(FRAMES, self.frame, 1)},

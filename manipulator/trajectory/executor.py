@@ -201,16 +201,17 @@ class Executor:
         if self._active.is_hold:
             self._scaling.jump()
         self._plan()
-        before = self.state.pose
+        before = replace(self._active)
         self._advance()
         pose = self.state.pose
         try:
             self.joints = self._machine.kinematics.inverse(pose, self._near)
         except Unreachable as error:
             self._drop()
-            self._begin(Hold(before), self._active.stamp)
+            held = before.state.pose
+            self._begin(Hold(held), self._active.stamp)
             self._report(MotionResult.STOPPED, self._active.stamp, str(error))
-            return before
+            return held
         return pose
 
     @property

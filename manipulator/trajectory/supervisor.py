@@ -27,6 +27,7 @@ from manipulator.trajectory.following_error import (
     missed,
 )
 from manipulator.trajectory.motion_status import MotionStatus
+from manipulator.unit_hints import check_pivot
 
 DRIVABLE = (MachineState.ENABLED, MachineState.HOLDING)
 """Machine states in which the board follows setpoints; it holds after its deadline."""
@@ -207,8 +208,13 @@ class MotionSupervisor:
         self._is_paused = is_paused
 
     def set_pivot(self, point: Sequence[float]) -> None:
-        """Another pivot (platform frame, m), used once the machine is at rest."""
-        self._next_frames = self.machine.frames.with_pivot(point)
+        """Another pivot (platform frame, m), used once the machine is at rest.
+
+        InvalidInput where it is far from the machine.
+        """
+        frames = self.machine.frames.with_pivot(point)
+        check_pivot(self.machine.kinematics, frames.T_platform_pivot)
+        self._next_frames = frames
 
     def step(self) -> Pose | None:
         """Advances by one tick: the pose to command, None while not driving."""

@@ -57,8 +57,12 @@ def test_another_kind_of_machine_is_refused(machine_file):
 def test_a_geometry_of_no_form_or_two_is_refused(machine_file):
     file = machine_file('arm_6r')
     dh = machine_file('ur5').geometry['dh']
-    for geometry in ({'home_deg': [0.0] * 6}, {**file.geometry, 'dh': dh}):
-        with pytest.raises(ConfigError, match='needs one of the keys'):
+    neither, both = {'home_deg': [0.0] * 6}, {**file.geometry, 'dh': dh}
+    for geometry, said in (
+        (neither, r"one of \['L1_mm', 'dh', 'screws'\]"),
+        (both, 'dh: unknown'),
+    ):
+        with pytest.raises(ConfigError, match=said):
             arm(replace(file, geometry=geometry))
 
 
@@ -75,9 +79,9 @@ def test_every_fault_of_the_limits_is_named(machine_file):
 
 ENDS = {
     'range_deg': (-720.0, 720.0),
-    'speed_deg_s': (0.1, 5000.0),
-    'acceleration_deg_s2': (1.0, 1e6),
-    'characteristic_length_mm': (1.0, 5000.0),
+    'speed_deg_s': (1e-6, 1e9),
+    'acceleration_deg_s2': (1e-6, 1e9),
+    'characteristic_length_mm': (1e-3, 1e6),
     'damping_onset': (0.001, 0.5),
 }
 
@@ -93,8 +97,7 @@ def test_limits_may_be_as_low_and_as_high_as_this_and_no_further(machine_file, k
         value = [min(value, 0.0), max(value, 0.0)] if key == 'range_deg' else value
         return build(ArmLimits, {**file.limits, 'joints': [{**first, key: value}, *others]})
 
-    beyond = 1e-6 * (high - low)
-    for end, outside in ((low, low - beyond), (high, high + beyond)):
+    for end, outside in ((low, low - 1e-6 * abs(low)), (high, high + 1e-6 * high)):
         limits(end)
         with pytest.raises(ConfigError, match=rf'{key}.*: \S+ outside \['):
             limits(outside)
@@ -163,10 +166,16 @@ def test_calibrated_arm_whose_distances_along_axes_cancel_is_taken_whole(machine
 @pytest.mark.parametrize(
     ('change', 'said'),
     [
-        (lambda i, a, d: (1e-3 * a, 1e-3 * d), 'all links together are 1.* are these metres'),
+        (
+            lambda i, a, d: (1e-3 * a, 1e-3 * d),
+            'all links together are 1.*, 20 mm to 200 m fit',
+        ),
         (lambda i, a, d: (a, 1e3 * d if i == 0 else d), 'joint 2 is 89.16 m from joint 1'),
         (lambda i, a, d: (a, 133e3 if i == 1 else d), 'joint 5 is 133.1 m from joint 4'),
-        (lambda i, a, d: (1e3 * a, d), r'dh\[1\].a_mm: .* is it in another unit'),
+        (
+            lambda i, a, d: (1e3 * a, d),
+            'joint 3 is 425 m from joint 2, the others are about .* mm',
+        ),
     ],
 )
 def test_arm_out_of_proportion_is_asked_about_its_units(machine_file, change, said):

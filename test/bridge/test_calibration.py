@@ -138,7 +138,7 @@ def test_a_park_pose_out_of_reach_is_a_config_error():
         ([servo()], {'park_deg': [0.0, 0.0]}, 'park_deg: 2 values for 1 joint$'),
         ([servo()], {'park_deg': None}, 'park_deg: missing'),
         ([servo()], {'speed_deg_s': None}, 'speed_deg_s: missing'),
-        ([servo(centre_us=1.5)], {}, 'a factor of 1000'),
+        ([servo(centre_us=1.5)], {}, r'centre_us: 1.5 outside \[100, 30000\]'),
         ([{**servo(), 'us_per_degree': 3.0}], {}, "unknown key, did you mean 'us_per_deg'"),
         ([], {}, '0 joints, 1 to 8 fit'),
     ],

@@ -120,7 +120,7 @@ def make_both(chip_tools):
     return lambda **changes: [BoardHost(board, **changes) for board in BOARDS.values()]
 
 
-@pytest.fixture(params=BOARDS)
+@pytest.fixture(params=['computer', pytest.param('chip', marks=pytest.mark.long)])
 def make_driver(request):
     """A BoardHost for settings that differ from the usual ones."""
     if request.param == 'chip':

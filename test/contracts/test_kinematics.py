@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from arm_control.load import arm
-from arm_control.workspace import sample as sample_arm
 from hexapod_control.load import hexapod
 from hexapod_control.workspace import sample
 from leg_kinds import FLAT_CRANKS, RAILS, TILTED_CRANKS
@@ -26,6 +25,12 @@ class Case:
     file: str
     load: Callable[[MachineFile], Machine]
     sample: Callable[[Machine, int, np.random.Generator], Pose]
+
+
+def sample_arm(machine: Machine, count: int, rng: np.random.Generator) -> Pose:
+    """Poses of joint angles that are uniform within the joint ranges."""
+    chain, limits = machine.kinematics.chain, machine.kinematics.limits
+    return chain.forward(rng.uniform(limits.low, limits.high, (count, 6)))
 
 
 CASES = [

@@ -109,12 +109,6 @@ def test_a_tangent_that_spans_no_plane_names_its_leg(measured, tangent):
         build(JointsConfig, measured).geometry()
 
 
-def test_metres_in_a_millimetre_field_are_noticed(robocake_content):
-    robocake_content['geometry']['rod_length_mm'] = 0.058
-    with pytest.raises(ConfigError, match='another unit'):
-        build(HexagonConfig, robocake_content['geometry'])
-
-
 def test_lengths_are_one_number_or_six(robocake_content):
     robocake_content['geometry']['rod_length_mm'] = [58.0, 58.1, 58.2, 58.3, 58.4, 58.5]
     g = build(HexagonConfig, robocake_content['geometry']).geometry()

@@ -67,17 +67,6 @@ def test_explicit_joints_that_cannot_fix_a_pose_are_refused():
         build(PointsConfig, content).geometry()
 
 
-def test_metres_in_a_millimetre_field_are_caught():
-    content = {
-        'stroke_range_mm': [0.142, 0.238],
-        'passive_cone_deg': 45,
-        'singularity_margin': 0.2,
-        'characteristic_length_mm': 50,
-    }
-    with pytest.raises(ConfigError, match=r'stroke_range_mm.*factor of 1000'):
-        build(LinearLimits, content)
-
-
 def test_an_empty_stroke_is_refused():
     with pytest.raises(ConfigError, match='is no range'):
         LinearLimits((200.0, 150.0), 45.0, 0.2, 50.0)

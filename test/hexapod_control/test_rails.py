@@ -142,7 +142,7 @@ def test_limits_name_the_carriage_and_the_cone(rails):
         ),
         ({'carriages': 'behnd'}, r"carriages: 'behnd' is not one of .*, did you mean 'behind'"),
         ({'carriages': ['ahead'] * 5}, r'carriages: has 5 entries, needs 6'),
-        ({'rod_length_mm': 0.4}, r'rod_length_mm: 0.4 outside \[2, 5000\]'),
+        ({'rod_length_mm': -4.0}, r'rod_length_mm: -4 outside \[0.001, 1e\+06\]'),
         ({'home_height_mm': 500.0}, r'the model does not close at home: leg \d: rod too short by'),
         ({'rail_points': 1}, r"rail_points: unknown key, did you mean 'rail_points_mm'"),
     ],

@@ -14,7 +14,7 @@ TOOLS = {'hexarm', 'hexapod_ik', 'hexapod_pose', 'hexapod_trajectory', 'serial_b
 
 
 def install(run, environment, source, folder):
-    """A wheel of a source tree, made in a folder, into an environment."""
+    """A wheel of a source tree or an sdist, made in a folder, into an environment."""
     offline = ('--disable-pip-version-check', '--no-deps', '--no-index')
     pip = (sys.executable, '-m', 'pip')
     run(*pip, 'wheel', *offline, '--no-build-isolation', '-w', folder, source)
@@ -24,11 +24,14 @@ def install(run, environment, source, folder):
 
 @pytest.fixture(scope='module')
 def scratch(source, run, tmp_path_factory):
-    """A virtual environment with hexarm from a wheel; dependencies come from ours."""
+    """A virtual environment with hexarm, sdist to wheel; dependencies come from ours."""
     folder = tmp_path_factory.mktemp('pip')
+    sdist = 'import build_backend, sys; build_backend.build_sdist(sys.argv[1])'
+    run(sys.executable, '-c', sdist, folder, cwd=source)
+    (archive,) = folder.glob('*.tar.gz')
     environment = folder / 'environment'
     venv.create(environment, symlinks=True)
-    install(run, environment, source, folder)
+    install(run, environment, archive, folder)
     (packages,) = environment.glob('lib/python3*/site-packages')
     (packages / 'dependencies.pth').write_text(sysconfig.get_path('purelib') + '\n')
     return environment

@@ -81,7 +81,6 @@ def test_plain_frames_change_nothing():
     assert in_frames(MACHINE, Frames()) is MACHINE
 
 
-@pytest.mark.parametrize('point', [(0.0, 0.0, 3.0), (float('nan'), 0.0, 0.0)])
-def test_pivot_far_away_or_nowhere_is_refused(point):
+def test_pivot_nowhere_is_refused():
     with pytest.raises(InvalidInput, match='pivot'):
-        Frames().with_pivot(point)
+        Frames().with_pivot((float('nan'), 0.0, 0.0))

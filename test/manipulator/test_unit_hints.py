@@ -1,5 +1,7 @@
 """Refusals of numbers in another unit, wherever a goal or a question comes from."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from manipulator.planning.path import Tolerance
 from manipulator.planning.path_timing import PathRequest, plan_path
 from manipulator.planning.planner import check_goal
 from manipulator.pose import Pose
-from manipulator.unit_hints import check_turns, hint_at_metres
+from manipulator.unit_hints import check_pivot, check_turns, hint_at_metres
 
 HINT = 'millimetres'
 
@@ -43,6 +45,13 @@ def test_path_in_millimetres_is_refused_with_it():
     request = PathRequest(poses, machine.motion.linear.speed, Tolerance())
     with pytest.raises(Refused, match=HINT):
         plan_path(machine, request, machine.kinematics.inverse(home), 0.01)
+
+
+def test_a_pivot_is_far_by_the_machines_own_size():
+    kinematics, pivot = load('robocake').kinematics, Pose.from_xyz_rpy((0.0, 0.0, 2.758))
+    with pytest.raises(InvalidInput, match=r'2\.758 m from the platform, at most 1\.4 m'):
+        check_pivot(kinematics, pivot)
+    check_pivot(replace(kinematics, characteristic_length=1.5), pivot)
 
 
 def test_the_error_keeps_its_facts():

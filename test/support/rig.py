@@ -20,7 +20,7 @@ from rcl_interfaces.srv import SetParameters
 
 from bridge.fake.board_thread import BoardThread, FakeMachine
 from bridge.fake.faults import Faults
-from bridge.fake.plant import Plant
+from bridge.fake.servo import Plant
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.client import ENABLING, Client

@@ -1,6 +1,6 @@
 import numpy as np
 
-from bridge.fake.steppers import Steppers
+from bridge.fake.servo import Steppers
 
 
 def steppers(**changes):

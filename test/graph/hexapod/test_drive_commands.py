@@ -58,3 +58,19 @@ def test_out_of_reach_is_status_3_and_what_is_not_understood_2(says):
     refused = json.loads(says('go', '--rpy', '0', '0', '45', '--json', status=2))
     assert 'are these degrees?' in refused['error']
     assert 'go where?' in says('go', status=2)
+
+
+def test_poses_are_saved_by_name_gone_to_replayed_and_deleted(says):
+    says('go', '--xyz', '0.002', '0', '0.045', '--rpy', '0', '0', '0.05')
+    assert 'saved right' in says('save', 'hexapod', 'right')
+    says('go', '--xyz', '-0.002', '0', '0.045')
+    assert json.loads(says('save', '--json'))['name'] == 'pose_1'
+    position, _ = says('go', 'hexapod', 'right').splitlines()
+    assert numbers(position, 'm') == pytest.approx([0.002, 0, 0.045], abs=5e-4)
+    words = ('replay', 'hexapod', 'right', 'pose_1', '--repeat', '2', '--speed', '0.05', '--json')
+    end = json.loads(says(*words).splitlines()[-1])
+    assert end['pose']['xyz'] == pytest.approx([-0.002, 0, 0.045], abs=5e-4)
+    assert 'no saved pose is called' in says('go', 'hexapod', 'rihgt', status=2)
+    says('delete', 'hexapod', 'pose_1')
+    assert list(json.loads(says('poses', '--json'))['poses']) == ['right']
+    assert "no saved pose is called 'pose_1'" in says('delete', 'hexapod', 'pose_1', status=2)

@@ -16,7 +16,8 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 
 from hexarm.cli.main import main
-from hexarm.recording.bag import Bag, Topic
+from hexarm.recording.bag import Bag
+from hexarm.recording.sink import Topic
 from manipulator.pose import Pose
 
 START = 1_700_000_000_000_000_000

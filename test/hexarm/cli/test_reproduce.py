@@ -45,6 +45,7 @@ def without(report, left_out):
     return replace(report, findings=tuple(f for f in report.findings if not left_out(f.key)))
 
 
+@pytest.mark.long
 def test_a_fresh_run_finds_the_committed_values(committed, fresh):
     """Each within its own tolerance, each verdict; without a compiler, all but the chip's rows."""
     is_without_chip = bool(firmware_build.missing_tools())
@@ -100,6 +101,7 @@ def test_a_report_survives_json(committed):
         from_json('{"findings": [{"key": 1}]}')
 
 
+@pytest.mark.long
 def test_a_part_that_this_installation_lacks_is_said_to_be_missing(tmp_path):
     """Without mujoco and without the sources: the other rows, and why these are not there.
 

@@ -4,7 +4,7 @@ import pytest
 
 from hexarm.gamepads import load
 
-LB, RB, STOP, HOME, FRAME, CLOSE, OPEN = 4, 5, 1, 7, 2, 0, 3
+LB, RB, STOP, HOME, FRAME, CLOSE, OPEN, SAVE = 4, 5, 1, 7, 2, 0, 3, 6
 XBOX = load('xbox')
 
 
@@ -71,6 +71,15 @@ def test_stop_takes_the_deadman_away_until_it_is_pressed_anew(driver):
 
 def test_stop_counts_without_the_deadman(user):
     assert user.press(STOP).stops == 1
+
+
+def test_a_pose_is_saved_once_a_press_and_not_while_driving(user):
+    assert user.press(SAVE).saves == 1
+    assert user.send().saves == 1
+    user.release(SAVE)
+    user.press(LB)
+    user.push(X=1.0)
+    assert user.press(SAVE).saves == 1
 
 
 def test_home_runs_while_held_and_not_beside_the_deadman(driver):

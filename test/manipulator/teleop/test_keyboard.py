@@ -38,14 +38,15 @@ def test_keys_of_different_components_add_up(keyboard):
     assert twist.tolist() == [0.02, 0, 0.02, 0, 0, 0]
 
 
-@pytest.mark.parametrize('key', [' ', UNKNOWN, 'W', 'x', '\n', 'm', 'b', 'h'])
+@pytest.mark.parametrize('key', [' ', UNKNOWN, 'W', 'x', '\n', 'm', 'b', 'h', 'p'])
 def test_any_other_key_ends_the_motion(keyboard, key):
     assert not keyboard.press('w', 0.0).press(key, 0.1).is_held(0.1)
 
 
-def test_space_and_home_are_counted(keyboard):
+def test_space_home_and_saving_are_counted(keyboard):
     pressed = keyboard.press(' ', 0.0).press(' ', 0.1).press('h', 0.2)
-    assert (pressed.stops, pressed.homes) == (2, 1)
+    assert (pressed.stops, pressed.homes, pressed.saves) == (2, 1, 0)
+    assert pressed.press('p', 0.3).saves == 1
 
 
 def test_speed_keys_change_the_speed_within_bounds(keyboard):

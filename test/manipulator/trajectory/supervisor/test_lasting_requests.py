@@ -58,6 +58,7 @@ def test_pivot_waits_until_the_machine_stands_still(driving):
     assert np.abs(driving.run(3).twist_to(ELSEWHERE)).max() < 1e-8
 
 
-def test_pivot_that_is_no_place_is_refused(driving):
+@pytest.mark.parametrize('height', [float('nan'), 30.0])
+def test_pivot_nowhere_or_far_away_is_refused(driving, height):
     with pytest.raises(InvalidInput, match='pivot'):
-        driving.set_pivot([float('nan'), 0.0, 0.0])
+        driving.set_pivot([0.0, 0.0, height])

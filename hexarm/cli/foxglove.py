@@ -1,0 +1,44 @@
+"""`hexarm foxglove [NAMESPACE]`: a machine's messages to Foxglove, live, until Ctrl-C."""
+
+import argparse
+import math
+
+from hexarm.cli.up import StopSignal
+from hexarm.namespaces import namespace_of
+from hexarm.recording.topics import TopicSelection, nothing_recorded
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommand."""
+    parser = commands.add_parser('foxglove')
+    parser.add_argument(
+        'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
+    )
+    parser.add_argument('--host', default='127.0.0.1', help='0.0.0.0 for every network')
+    parser.add_argument('--port', type=int, default=8765, help='default: 8765')
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serves; status 0 after Ctrl-C."""
+    from hexarm.recording.foxglove_server import FoxgloveServer  # noqa: PLC0415 (needs the SDK)
+    from hexarm.recording.session import Control, record  # noqa: PLC0415 (needs ROS)
+
+    namespace = arguments.namespace
+    selection, stop = TopicSelection(namespace), StopSignal()
+    with FoxgloveServer(f'hexarm /{namespace}', arguments.host, arguments.port) as server:
+        control = Control(
+            math.inf,
+            stop.check,
+            lambda: print(
+                f'/{namespace} is on {server.address}: in Foxglove, "Open connection"; '
+                'Ctrl-C ends it',
+                flush=True,
+            ),
+            lambda there, domain: print(
+                f'{nothing_recorded(namespace, [], there, domain)}; still waiting, Ctrl-C ends it',
+                flush=True,
+            ),
+        )
+        record(server, namespace, selection, control)
+    return 0

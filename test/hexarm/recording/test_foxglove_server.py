@@ -1,0 +1,66 @@
+"""What a viewer receives of a machine's messages: topics, definitions, bytes as they came."""
+
+import json
+import struct
+
+import pytest
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import JointState
+from websockets.sync.client import connect
+
+from hexarm.recording.foxglove_server import FoxgloveServer
+from hexarm.recording.sink import Topic
+from manipulator.errors import Refused
+
+TYPE = 'sensor_msgs/msg/JointState'
+MESSAGE_DATA = 1
+PATIENCE = 20.0
+
+
+@pytest.fixture
+def server():
+    with FoxgloveServer('hexarm /test', '127.0.0.1', 0) as server:
+        yield server
+
+
+@pytest.fixture
+def viewer(server):
+    with connect(server.address, subprotocols=['foxglove.sdk.v1']) as viewer:
+        yield viewer
+
+
+def next_of(viewer, operation):
+    """The next message with this operation."""
+    while True:
+        text = viewer.recv(timeout=PATIENCE)
+        if isinstance(text, str) and (words := json.loads(text))['op'] == operation:
+            return words
+
+
+def test_a_viewer_receives_the_messages_of_a_topic_as_they_were_published(server, viewer):
+    server.add_type(TYPE)
+    server.add_topic(Topic('/arm/joint_states', TYPE))
+    (channel,) = next_of(viewer, 'advertise')['channels']
+    assert (channel['topic'], channel['encoding']) == ('/arm/joint_states', 'cdr')
+    assert (channel['schemaName'], channel['schemaEncoding']) == (TYPE, 'ros2msg')
+    assert 'float64[] position' in channel['schema']
+    wanted = {'op': 'subscribe', 'subscriptions': [{'id': 7, 'channelId': channel['id']}]}
+    viewer.send(json.dumps(wanted))
+    message = serialize_message(JointState(name=['a'], position=[0.25]))
+    received = None
+    while received is None:  # the subscription may be later than a message
+        server.write('/arm/joint_states', message, 123_000_000_000)
+        try:
+            received = viewer.recv(timeout=0.2)
+        except TimeoutError:
+            continue
+    operation, subscription, stamp = struct.unpack('<BIQ', received[:13])
+    assert (operation, subscription, stamp) == (MESSAGE_DATA, 7, 123_000_000_000)
+    assert received[13:] == message
+    assert server.counts['/arm/joint_states'] >= 1
+
+
+def test_a_port_that_is_taken_is_named(server):
+    port = int(server.address.rpartition(':')[2])
+    with pytest.raises(Refused, match=f'port {port}'):
+        FoxgloveServer('second', '127.0.0.1', port)
