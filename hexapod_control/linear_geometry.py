@@ -49,9 +49,11 @@ class PlatesConfig:
     base_angle_deg: float = quantity(0, 60, 'φb: from the x axis to the first joint')
     platform_radius_mm: float = quantity(*SIZE_MM, "r: circle of the platform's joints")
     platform_angle_deg: float = quantity(0, 60, 'φmp, likewise; 0 joins them in pairs')
-    base_joint_height_mm: float = quantity(0, PLACE_MM[1], 'h_b: joints above the base plate')
+    base_joint_height_mm: float = quantity(
+        0, PLACE_MM[1], "h_b: joints from the base's plate, towards the platform"
+    )
     platform_joint_height_mm: float = quantity(
-        0, PLACE_MM[1], 'h_mp: joints below the platform plate'
+        0, PLACE_MM[1], "h_mp: joints from the platform's plate, towards the base"
     )
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
 
@@ -59,8 +61,9 @@ class PlatesConfig:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""
         base = joint_circle(self.base_radius_mm, np.radians(self.base_angle_deg))
         platform = joint_circle(self.platform_radius_mm, np.radians(self.platform_angle_deg))
-        base[:, 2] = self.base_joint_height_mm
-        platform[:, 2] = -self.platform_joint_height_mm
+        towards = np.copysign(1.0, self.home_height_mm)
+        base[:, 2] = towards * self.base_joint_height_mm
+        platform[:, 2] = -towards * self.platform_joint_height_mm
         return _checked(base, platform, self.home_height_mm)
 
 

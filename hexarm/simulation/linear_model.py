@@ -40,16 +40,22 @@ from hexarm.simulation.rigid_body import (
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 
+PLATE = 0.012
+"""Thickness of the base plate, behind its joints, metres."""
+
 
 def linear_model(
     name: str, kinematics: LinearPlatform, config: LinearDynamicsConfig, drives: Drives
 ) -> Mechanism:
     """The model at home, with the drives of the legs."""
     geometry, joints = kinematics.geometry, kinematics.joint_names
-    root = document(name)
+    root = document(name, config.gravity)
     base = add(child(root, 'worldbody'), 'body', name='body')
-    low = float(geometry.base_points[:, 2].min())
-    add_hexagon(root, base, 'body', inradius(geometry.base_points), (low - 0.012, low), METAL)
+    heights = geometry.base_points[:, 2]
+    low = float(heights.min()) - PLATE
+    if geometry.home_height < low:
+        low = float(heights.max())
+    add_hexagon(root, base, 'body', inradius(geometry.base_points), (low, low + PLATE), METAL)
     add_platform(
         root, config.platform, config.payload, geometry.platform_points, geometry.home_height
     )

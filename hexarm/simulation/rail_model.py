@@ -47,7 +47,7 @@ def rail_model(
 ) -> Mechanism:
     """The model at home, with the drives of the carriages."""
     geometry, joints, home = kinematics.geometry, kinematics.joint_names, kinematics.home
-    root = document(name)
+    root = document(name, config.gravity)
     base = add(child(root, 'worldbody'), 'body', name='body')
     for begin, end in kinematics.rail_ends:
         tube(base, begin, end, RAIL * 1e-3 * config.carriage.radius_mm, METAL)

@@ -54,7 +54,7 @@ def rotary_model(
     The body's lid is where a level platform at minimum_height (m), its limit, rests on it.
     """
     geometry, joints = kinematics.geometry, kinematics.joint_names
-    root = document(name)
+    root = document(name, config.gravity)
     lid = minimum_height - 0.5e-3 * config.platform.thickness_mm
     _add_body(root, kinematics, config, lid)
     add_platform(
@@ -82,7 +82,9 @@ def _universals(kinematics: RotaryHexapod) -> tuple[UniversalJoint, ...]:
 def _add_body(
     root: ET.Element, kinematics: RotaryHexapod, config: RotaryDynamicsConfig, lid: float
 ) -> None:
-    """The fixed body, a hexagonal prism up to the lid (m), and a servo behind each crank.
+    """The fixed body, a hexagonal prism, and a servo behind each crank.
+
+    The prism reaches up to the lid (m); above a platform that hangs, up from the lowest crank.
 
     Behind is where the crank's axis leads towards the body, away from the platform's side.
     """
@@ -92,8 +94,11 @@ def _add_body(
     body = add(world, 'body', name='body')
     servo = config.servo
     length, radius = 1e-3 * servo.length_mm, 1e-3 * servo.radius_mm
-    bottom = min(-BODY_DEPTH, lid - LEAST_DEPTH)
-    add_hexagon(root, body, 'body', reach - length, (bottom, lid), METAL)
+    heights = min(-BODY_DEPTH, lid - LEAST_DEPTH), lid
+    if middle[2] > geometry.crank_centres[:, 2].max():
+        lowest = float(geometry.crank_centres[:, 2].min())
+        heights = lowest, lowest + BODY_DEPTH
+    add_hexagon(root, body, 'body', reach - length, heights, METAL)
     for leg in range(LEGS):
         centre, normal = geometry.crank_centres[leg], geometry.normals[leg]
         inward = normal if normal @ (centre - middle) < 0 else -normal
