@@ -41,12 +41,17 @@ class Legs:
         cranks: ArrayLike = 1.0,
         rods: ArrayLike = 0.0,
         middle: float = 0.0,
+        screws: tuple[float, Array, Array] = (0.0, NOWHERE, NOWHERE),
     ) -> 'Legs':
-        """From points and axes (6, 3), the latter normals, tangents and ups; lengths in metres."""
+        """From points and axes (6, 3), the latter normals, tangents and ups; lengths in metres.
+
+        screws are the lead (m) and the axes fixed to the cardan joints on base and platform.
+        """
+        lead, *cardans = screws
         points = (centres, *axes, platform_points)
         lengths = (np.broadcast_to(length, LEGS) for length in (cranks, rods))
-        numbers = [*(p.T.ravel() for p in points), *lengths, [middle, kind]]
-        return cls(frozen(np.concatenate(numbers)))
+        numbers = [*(p.T.ravel() for p in points), *lengths, [middle, kind, lead]]
+        return cls(frozen(np.concatenate([*numbers, *(cardan.T.ravel() for cardan in cardans)])))
 
     @property
     def rods(self) -> Array:
@@ -78,6 +83,15 @@ class Legs:
         points = np.empty((*given.shape, 3))
         _kernel.leg_points(self.numbers, given, points)
         return points
+
+    def screw_turns(self, pose: Pose) -> tuple[Array, Array]:
+        """What screws add to the joints of linear legs (..., 6) m, and its rows (..., 6, 6).
+
+        The latter for a unit twist, as those of the leg Jacobian.
+        """
+        extra, rows = (np.empty((*pose.position.shape[:-1], *n)) for n in ((LEGS,), (LEGS, 6)))
+        _kernel.screw_turns(self.numbers, pose.position, pose.rotation, extra, rows)
+        return extra, rows
 
     def gains(self, joints: Array, directions: Array) -> Array:
         """How fast base points go along unit vectors (..., 6, 3), per joint: (..., 6).

@@ -1,6 +1,6 @@
 """Where the joints of a linear platform are: the paper's parameters or explicit coordinates."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -13,23 +13,30 @@ from hexapod_control.geometry import (
 )
 from manipulator.arrays import Array, frozen
 from manipulator.config import PLACE_MM, SIZE_MM, quantity
-from manipulator.errors import InvalidInput
+from manipulator.errors import ConfigError, InvalidInput
+
+NO_AXES = frozen(np.zeros((LEGS, 3)))
 
 
 @dataclass(frozen=True, eq=False)
 class LinearGeometry:
     """Joint centres (6, 3) in metres: base_points in the base frame, platform_points in its own.
 
-    home_height is the platform's height at home, where it is level.
+    home_height is the platform's height at home, where it is level. screw_lead (metres a turn, 0
+    for legs whose screws do not turn with their joints) comes with base_axes and platform_axes,
+    the fixed axes of the cardan joints, each in the frame of its points.
     """
 
     base_points: Array
     platform_points: Array
     home_height: float
+    screw_lead: float = 0.0
+    base_axes: Array = field(default_factory=lambda: NO_AXES)
+    platform_axes: Array = field(default_factory=lambda: NO_AXES)
 
     def __post_init__(self) -> None:
         """Freezes the points; raises InvalidInput on any other shape."""
-        for name in ('base_points', 'platform_points'):
+        for name in ('base_points', 'platform_points', 'base_axes', 'platform_axes'):
             points = frozen(getattr(self, name))
             if points.shape != (LEGS, 3):
                 raise InvalidInput(f'{name} have shape {points.shape}, need ({LEGS}, 3)')
@@ -74,11 +81,37 @@ class PointsConfig:
     base_joints_mm: SixPoints = quantity(*PLACE_MM, "the legs' joints on the base, base frame")
     platform_joints_mm: SixPoints = quantity(*PLACE_MM, PLATFORM_JOINTS)
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    screw_lead_mm: float = quantity(
+        *PLACE_MM,
+        'of screws that turn with their cardan joints; right-hand: positive',
+        default=0.0,
+    )
+    base_joint_axes: SixPoints | None = quantity(
+        -1000, 1000, 'fixed axes of the cardan joints on the base, base frame', default=None
+    )
+    platform_joint_axes: SixPoints | None = quantity(
+        -1000, 1000, 'fixed axes of those on the platform, platform frame', default=None
+    )
+
+    def __post_init__(self) -> None:
+        """Raises ConfigError for screws without the axes of their joints."""
+        missing = [
+            f'{name}: missing, screw_lead_mm is {self.screw_lead_mm:g}'
+            for name in ('base_joint_axes', 'platform_joint_axes')
+            if self.screw_lead_mm != 0.0 and getattr(self, name) is None
+        ]
+        if missing:
+            raise ConfigError(missing)
 
     def geometry(self) -> LinearGeometry:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""
         base, platform = np.array(self.base_joints_mm), np.array(self.platform_joints_mm)
-        return _checked(base, platform, self.home_height_mm)
+        plain = _checked(base, platform, self.home_height_mm)
+        if self.screw_lead_mm == 0.0:
+            return plain
+        axes = np.array(self.base_joint_axes), np.array(self.platform_joint_axes)
+        lead = self.screw_lead_mm * 1e-3
+        return replace(plain, screw_lead=lead, base_axes=axes[0], platform_axes=axes[1])
 
 
 def joint_circle(radius: float, first_angle: float) -> Array:

@@ -1,5 +1,7 @@
 #include "legs.h"
 
+#include <string.h>
+
 #include "trigonometry.h"
 
 /* So much nearer, in rad or by rod, the other way must be for a leg to be taken for bent that way:
@@ -39,13 +41,18 @@ static int rail_branches(const struct crank_legs *rails, real gap[3][LEGS], real
     return open;
 }
 
-static int linear_branches(real gap[3][LEGS], real lengths[LEGS], real *same)
+static int linear_branches(const struct legs *legs, const real position[3],
+                           const real rotation[9], real lengths[LEGS], real *same)
 {
+    real base[3][LEGS], extra[LEGS] = {0};
     int open = 0;
+    memcpy(base, legs->shape.centre, sizeof base);
+    struct rods rods = rods_of(base, legs->shape.end, position, rotation);
+    if (legs->screws.lead != 0)
+        screw_lengths(&legs->screws, &rods, rotation, extra);
     for (int i = 0; i < LEGS; i++) {
-        lengths[i] =
-            real_sqrt(gap[0][i] * gap[0][i] + gap[1][i] * gap[1][i] + gap[2][i] * gap[2][i]);
-        open += !(lengths[i] >= 0);
+        lengths[i] = rods.length[i] + extra[i];
+        open += !(lengths[i] < INFINITY);
         if (same)
             same[i] = lengths[i];
     }
@@ -58,9 +65,10 @@ int leg_branches(const struct legs *legs, const real position[3], const real rot
     real gap[3][LEGS];
     if (legs->kind == CRANK)
         return crank_elbows(&legs->shape, position, rotation, out, in);
+    if (legs->kind == LINEAR)
+        return linear_branches(legs, position, rotation, out, in);
     leg_gaps(&legs->shape, position, rotation, gap);
-    return legs->kind == RAIL ? rail_branches(&legs->shape, gap, out, in)
-                              : linear_branches(gap, out, in);
+    return rail_branches(&legs->shape, gap, out, in);
 }
 
 int leg_inverse(const struct legs *legs, const real position[3], const real rotation[9],
@@ -125,6 +133,14 @@ void leg_lengths(const struct legs *legs, const real joints[LEGS], real lengths[
 {
     for (int i = 0; i < LEGS; i++)
         lengths[i] = legs->kind == LINEAR ? joints[i] : legs->shape.rod[i];
+}
+
+void leg_rows(const struct legs *legs, const struct rods *rods, const real rotation[9], real length,
+              real columns[6][LEGS])
+{
+    leg_columns(rods, length, columns);
+    if (legs->kind == LINEAR && legs->screws.lead != 0)
+        add_screw_columns(&legs->screws, rods, rotation, length, columns);
 }
 
 void leg_gains(const struct legs *legs, const real joints[LEGS], real unit[3][LEGS],

@@ -3,11 +3,12 @@
 #define KERNEL_LEGS_H
 
 #include "crank.h"
+#include "screws.h"
 
 /* Leg i closes where |P - p(q)| = d, P its end on the platform. The kinds differ in what a joint q
    moves, with c, t, e, r and d the centre, tangent, up, crank and rod of its shape:
 
-       LINEAR   p = c,                            d = q
+       LINEAR   p = c,                            d = q, less what its screw adds
        CRANK    p = c + r (cos q t + sin q e)
        RAIL     p = c + r q t,                    r = 1 or -1, t towards the platform's joint */
 enum leg_kind { LINEAR, CRANK, RAIL };
@@ -15,6 +16,7 @@ enum leg_kind { LINEAR, CRANK, RAIL };
 struct legs {
     struct crank_legs shape;
     real kind;
+    struct screws screws; /* of linear legs; lead 0: none */
 };
 
 /* The joints of one pose: `out` as cranks with the elbow out, and carriages behind the platform's
@@ -31,8 +33,13 @@ int leg_inverse(const struct legs *legs, const real position[3], const real rota
 /* p: where rods begin. */
 void leg_points(const struct legs *legs, const real joints[LEGS], real points[3][LEGS]);
 
-/* d: how long rods are. */
+/* q of linear legs, and d of others. */
 void leg_lengths(const struct legs *legs, const real joints[LEGS], real lengths[LEGS]);
+
+/* J, row i of which says how fast rod i grows with a twist while its base point stands; with what
+   screws add for linear legs. Rotations are divided by `length`. */
+void leg_rows(const struct legs *legs, const struct rods *rods, const real rotation[9], real length,
+              real columns[6][LEGS]);
 
 /* How fast each rod's length follows its joint, (4.1); `unit` as in struct rods. */
 void leg_gains(const struct legs *legs, const real joints[LEGS], real unit[3][LEGS],

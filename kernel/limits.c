@@ -67,7 +67,7 @@ void limited_values(const struct platform *platform, const real position[3],
         values[SWING + i] = real_acos(clipped(p.swing_cosine[i]));
         values[LEANING + i] = real_acos(clipped(p.leaning_cosine[i]));
     }
-    leg_columns(&rods, platform->length, columns);
+    leg_rows(&platform->legs, &rods, rotation, platform->length, columns);
     values[HEIGHT] = position[2];
     values[SIGMA] = smallest_singular_value(columns);
 }
@@ -99,10 +99,11 @@ static int keeps_ranges(const struct limit_ranges *r, real height, const real jo
     return kept;
 }
 
-static int keeps_margin(const struct platform *platform, const struct rods *rods, real least)
+static int keeps_margin(const struct platform *platform, const struct rods *rods,
+                        const real rotation[9], real least)
 {
     real columns[6][6];
-    leg_columns(rods, platform->length, columns);
+    leg_rows(&platform->legs, rods, rotation, platform->length, columns);
     return least < LEAST_PIVOT_MARGIN ? smallest_singular_value(columns) >= least
                                       : keeps_singular_value(columns, least);
 }
@@ -120,5 +121,6 @@ int keeps_limits(const struct platform *platform, const struct limit_ranges *ran
                 (p.tilt_sine[i] <= ranges->tilt_sine[1][i]) &
                 (p.swing_cosine[i] >= ranges->swing_cosine[i]) &
                 (p.leaning_cosine[i] >= ranges->leaning_cosine[i]);
-    return kept && (ranges->sigma == -INFINITY || keeps_margin(platform, &rods, ranges->sigma));
+    return kept && (ranges->sigma == -INFINITY ||
+                    keeps_margin(platform, &rods, rotation, ranges->sigma));
 }

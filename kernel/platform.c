@@ -24,6 +24,7 @@ struct newton_report platform_forward(const struct platform *platform,
     struct newton_problem problem;
     leg_points(&platform->legs, joints, problem.base);
     leg_lengths(&platform->legs, joints, problem.length);
+    problem.screws = platform->legs.screws.lead != 0 ? &platform->legs.screws : NULL;
     memcpy(problem.end, platform->legs.shape.end, sizeof problem.end);
     struct newton_report report = newton(&problem, rules, position, rotation);
     if (report.end == FOUND && rules->side == rules->side &&

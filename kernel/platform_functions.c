@@ -71,6 +71,27 @@ static Py_ssize_t call_leg_gains(real *const *a, Py_ssize_t items)
 FUNCTION(leg_gains, {WHOLE, NUMBERS(struct legs)}, {ITEMS, LEGS}, {ITEMS, 3 * LEGS},
          {WRITTEN, LEGS})
 
+/* What screws add to the joints of linear legs, and its rows for a unit twist. */
+static Py_ssize_t call_screw_turns(real *const *a, Py_ssize_t items)
+{
+    const struct legs *legs = (const struct legs *)a[0];
+    real base[3][LEGS];
+    memcpy(base, legs->shape.centre, sizeof base);
+    for (Py_ssize_t i = 0; i < items; i++) {
+        const real *rotation = a[2] + 9 * i;
+        real columns[6][LEGS] = {{0}};
+        struct rods rods = rods_of(base, legs->shape.end, a[1] + 3 * i, rotation);
+        screw_lengths(&legs->screws, &rods, rotation, a[3] + LEGS * i);
+        add_screw_columns(&legs->screws, &rods, rotation, 1, columns);
+        for (int leg = 0; leg < LEGS; leg++)
+            for (int k = 0; k < 6; k++)
+                a[4][36 * i + 6 * leg + k] = columns[k][leg];
+    }
+    return 0;
+}
+FUNCTION(screw_turns, {WHOLE, NUMBERS(struct legs)}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, LEGS},
+         {WRITTEN, 36})
+
 /* Platform joints, base points, poses: the rods' unit vectors, and the leg Jacobian. */
 static Py_ssize_t call_leg_jacobian(real *const *a, Py_ssize_t items)
 {
@@ -109,6 +130,7 @@ static Py_ssize_t call_forward_by_lengths(real *const *a, Py_ssize_t items)
 {
     struct newton_problem problem;
     by_axis(a[0], problem.end);
+    problem.screws = NULL;
     for (Py_ssize_t i = 0; i < items; i++) {
         real *position = a[6] + 3 * i, *rotation = a[7] + 9 * i;
         by_axis(a[2] + 3 * LEGS * i, problem.base);
@@ -271,6 +293,7 @@ PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(leg_branches),
     METHOD(leg_points),
     METHOD(leg_gains),
+    METHOD(screw_turns),
     METHOD(leg_jacobian),
     METHOD(smallest_singular_value),
     METHOD(forward_by_lengths),

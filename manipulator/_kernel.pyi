@@ -19,6 +19,9 @@ def leg_points(legs: Array, joints: Array, points: Array) -> int:
 def leg_gains(legs: Array, joints: Array, units: Array, gains: Array) -> int:
     """0; `gains` is written: kernel/legs.h."""
 
+def screw_turns(legs: Array, position: Array, rotation: Array, extra: Array, rows: Array) -> int:
+    """0; `extra` (6) and `rows` (6, 6) are written: kernel/screws.h."""
+
 def leg_jacobian(
     platform_points: Array,
     base_points: Array,

@@ -20,7 +20,7 @@ from hexapod_control.identification.leg_model import (
     rigid_point_motions,
 )
 from hexapod_control.identification.rail_model import RailModel
-from hexapod_control.linear import LinearPlatform
+from hexapod_control.linear import LinearPlatform, linear_legs
 from hexapod_control.linear_geometry import LinearGeometry
 from hexapod_control.rails import RailGeometry, RailPlatform
 from hexapod_control.rotary import RotaryHexapod
@@ -29,6 +29,7 @@ from manipulator.analysis.measurements import Parameter
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.kinematics import Kinematics
+from manipulator.pose import Pose
 from manipulator.yaml_edit import flow_list
 
 
@@ -37,7 +38,8 @@ def geometry_lines(geometry: RotaryGeometry | LinearGeometry | RailGeometry) -> 
     height = f'  home_height_mm: {1e3 * geometry.home_height:g}'
     joints = _points('platform_joints_mm', 1e3 * geometry.platform_points)
     if isinstance(geometry, LinearGeometry):
-        return [*_points('base_joints_mm', 1e3 * geometry.base_points), *joints, height]
+        plain = [*_points('base_joints_mm', 1e3 * geometry.base_points), *joints, height]
+        return plain if geometry.screw_lead == 0.0 else [*plain, *_screw_lines(geometry)]
     if isinstance(geometry, RailGeometry):
         sides = ', '.join('behind' if side > 0 else 'ahead' for side in geometry.sides)
         return [
@@ -58,6 +60,14 @@ def geometry_lines(geometry: RotaryGeometry | LinearGeometry | RailGeometry) -> 
         f'  crank_length_mm: {flow_list(1e3 * geometry.crank_lengths)}',
         f'  rod_length_mm: {flow_list(1e3 * geometry.rod_lengths)}',
         height,
+    ]
+
+
+def _screw_lines(geometry: LinearGeometry) -> list[str]:
+    return [
+        f'  screw_lead_mm: {1e3 * geometry.screw_lead:g}',
+        *_points('base_joint_axes', geometry.base_axes, DIGITS),
+        *_points('platform_joint_axes', geometry.platform_axes, DIGITS),
     ]
 
 
@@ -201,11 +211,19 @@ class LinearModel(LegModel):
     def identified(self, values: Array) -> LinearGeometry:
         """The geometry with these values."""
         g = self.geometry
-        return LinearGeometry(
-            g.base_points + values[:POINTS].reshape(6, 3),
-            g.platform_points + values[POINTS : 2 * POINTS].reshape(6, 3),
-            g.home_height,
+        return dataclasses.replace(
+            g,
+            base_points=g.base_points + values[:POINTS].reshape(6, 3),
+            platform_points=g.platform_points + values[POINTS : 2 * POINTS].reshape(6, 3),
         )
+
+    def screw_turns(self, values: Array, poses: Pose) -> tuple[Array | float, Array | float]:
+        """See `LegModel`; the axes of the joints are as in the file."""
+        found = self.identified(values)
+        if found.screw_lead == 0.0:
+            return 0.0, 0.0
+        home = Pose(np.array([0.0, 0.0, found.home_height]), np.eye(3))
+        return linear_legs(found, home).screw_turns(poses)
 
     def joint_offsets(self, values: Array) -> Array:
         """(6,): true length less the commanded one, m."""

@@ -38,6 +38,7 @@ from hexarm.simulation.rigid_body import (
     written,
 )
 from manipulator.arrays import Array
+from manipulator.errors import ConfigError
 from manipulator.pose import Pose
 
 PLATE = 0.012
@@ -47,8 +48,13 @@ PLATE = 0.012
 def linear_model(
     name: str, kinematics: LinearPlatform, config: LinearDynamicsConfig, drives: Drives
 ) -> Mechanism:
-    """The model at home, with the drives of the legs."""
+    """The model at home, with the drives of the legs; ConfigError for legs on screws that turn."""
     geometry, joints = kinematics.geometry, kinematics.joint_names
+    if geometry.screw_lead != 0.0:
+        lead = 1e3 * geometry.screw_lead
+        raise ConfigError(
+            [f'geometry.screw_lead_mm: {lead:g}, the model turns no screws: needs 0']
+        )
     root = document(name, config.gravity)
     base = add(child(root, 'worldbody'), 'body', name='body')
     heights = geometry.base_points[:, 2]

@@ -109,23 +109,27 @@ def _rods(
 
 
 def _linear(kinematics: LinearPlatform, dynamics: LinearDynamicsConfig) -> StaticLoad:
-    carried = _Carried.by(kinematics, dynamics, 0.0)
+    carried, geometry = _Carried.by(kinematics, dynamics, 0.0), kinematics.geometry
     cylinder, piston = dynamics.cylinder, dynamics.piston
     masses = np.array([1e-3 * cylinder.mass_g, 1e-3 * piston.mass_g])
     middle = np.array([0.5e-3 * cylinder.length_mm, -0.5e-3 * piston.length_mm])
 
     def load(pose: Pose, joints: Array) -> Array:
         rods = kinematics.unit_rods(pose, joints)
-        # A point s along a leg of length L whose end moves by w goes by (s/L)(w − u u·w) + ṡ u.
-        share = (masses[0] * middle[0] + masses[1] * (joints + middle[1])) / joints
-        arms = kinematics.geometry.platform_points @ np.swapaxes(pose.rotation, -1, -2)
+        gaps = (
+            pose.transform(kinematics.geometry.platform_points) - kinematics.geometry.base_points
+        )
+        lengths = np.linalg.norm(gaps, axis=-1)
+        # A point s along a leg of length L whose end moves by w goes by (s/L)(w − u u·w), and a
+        # piston's by u u·w more.
+        share = (masses[0] * middle[0] + masses[1] * (lengths + middle[1])) / lengths
+        arms = geometry.platform_points @ np.swapaxes(pose.rotation, -1, -2)
         along = rods @ carried.up
-        ends = share[..., None] * (carried.up - along[..., None] * rods)
+        ends = share[..., None] * carried.up + ((masses[1] - share) * along)[..., None] * rods
         wrench = carried.wrench(pose)
         wrench[..., :3] += ends.sum(axis=-2)
         wrench[..., 3:] += np.cross(arms, ends).sum(axis=-2)
-        own: Array = masses[1] * along
-        return _in_joints(kinematics, pose, joints, wrench) + own
+        return _in_joints(kinematics, pose, joints, wrench)
 
     return load
 

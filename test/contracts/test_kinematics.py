@@ -10,7 +10,7 @@ import pytest
 from arm_control.load import arm
 from hexapod_control.load import hexapod
 from hexapod_control.workspace import sample
-from leg_kinds import FLAT_CRANKS, HANGING_LEGS, RAILS, TILTED_CRANKS
+from leg_kinds import FLAT_CRANKS, HANGING_LEGS, RAILS, SCREW_LEGS, TILTED_CRANKS
 from manipulator.config import build, parse_yaml
 from manipulator.errors import NoSolution, Unreachable
 from manipulator.machine import Machine, MachineFile
@@ -40,6 +40,7 @@ CASES = [
     Case(FLAT_CRANKS, hexapod, sample),
     Case(RAILS, hexapod, sample),
     Case(HANGING_LEGS, hexapod, sample),
+    Case(SCREW_LEGS, hexapod, sample),
     Case('stewart_6_6.yaml', hexapod, sample),
     Case('arm_6r.yaml', arm, sample_arm),
     Case('ur5.yaml', arm, sample_arm),
