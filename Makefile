@@ -3,34 +3,37 @@ SHELL := /bin/bash
 ENV := .venv
 BIN := $(ENV)/bin
 # One worker a core; the tests of a file stay together, for its fixtures' sake, and those of a folder that share a graph
-# (test/conftest.py). In a worker numpy has one thread.
-PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q
+# (test/conftest.py). In a worker numpy has one thread. Tests are compiled once, and not by every worker of every run.
+PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q -n auto --dist loadfile
 
+ALL_SLOW := test/graph test/install test/firmware
 LIBRARIES := manipulator/_kernel.abi3.so bridge/_board.abi3.so
 
-.PHONY: demo check test lint bench soak docs clean
+.PHONY: demo check quick test lint bench soak docs clean
 
 demo: $(ENV)/demo $(LIBRARIES)
 	@echo 'Both machines on fake boards: about a minute.'
 	@$(BIN)/hexarm demo
 
-check: lint   # all that starts no other program and is quick
-	@echo 'Tests that start no other program: a minute and a half on two quiet cores.'
-	@$(PYTEST) -n auto --dist loadfile -m 'not processes and not long'
+check: $(ENV)/ready $(LIBRARIES)
+	@echo 'Lint, types, and the quick tests, which start no other program: a minute on two quiet cores.'
+	@$(MAKE) --no-print-directory -j 2 --output-sync=line lint quick
+
+quick: $(ENV)/ready $(LIBRARIES)
+	@$(PYTEST) -m 'not processes and not long' $(ALL_SLOW:%=--ignore=%)
 
 test: check
-	@echo 'Tests that start graphs, a browser, installations: 5 minutes on two quiet cores.'
-	@$(PYTEST) -n auto --dist loadfile -m 'processes or long'
+	@echo 'Tests that start graphs, a browser, installations, or are long: 6 minutes on two quiet cores.'
+	@$(PYTEST) -m 'processes or long'
 
 lint: $(ENV)/ready $(LIBRARIES)
-	@echo 'Lint and types: half a minute.'
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy
 
 bench: $(ENV)/peers $(LIBRARIES)   # a quiet computer, please: some ten minutes
 	@$(BIN)/python -m bench $(if $(WRITE),--write $(WRITE))
 
 soak: $(ENV)/ready $(LIBRARIES)
-	@SOAK_SECONDS=600 $(PYTEST) -n auto -s test/world/test_soak.py && $(BIN)/python -m bench.soak
+	@SOAK_SECONDS=600 $(PYTEST) --dist load -s test/world/test_soak.py && $(BIN)/python -m bench.soak
 
 # The libraries that the bench compares with; without them their rows say so.
 $(ENV)/peers: $(ENV)/ready

@@ -4,7 +4,7 @@ Machines whose joints alone show that leg lengths never fix the pose are rejecte
 """
 
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,14 +12,16 @@ from numpy.typing import ArrayLike
 from hexapod_control.leg_jacobian import leg_jacobian, smallest_singular_value
 from manipulator import rotation as so3
 from manipulator.arrays import Array, frozen
-from manipulator.config import PLACE_MM, SIZE_MM, quantity
+from manipulator.config import PLACE_MM, SIZE_MM, TURN_DEG, quantity
 from manipulator.errors import ConfigError
+from manipulator.motion_limits import SixNumbers
 from manipulator.pose import Pose
 
 LEGS = 6
 Triple: TypeAlias = tuple[float, float, float]
 SixPoints: TypeAlias = tuple[Triple, Triple, Triple, Triple, Triple, Triple]
-SixNumbers: TypeAlias = tuple[float, float, float, float, float, float]
+Range: TypeAlias = tuple[float, float]
+SixRanges: TypeAlias = tuple[Range, Range, Range, Range, Range, Range]
 VERTICAL_TANGENT = 0.999
 SQUARE = float(np.radians(1.0))
 """How far from a right angle a crank's axis and tangent may be: numbers in files are rounded."""
@@ -30,19 +32,44 @@ VERTICAL_PLANES = frozen(np.zeros((LEGS, 3)))
 CRANK_LENGTH = "from a crank's axis to its rod end; one number for all, or six"
 ROD_LENGTH = 'between the joints of a rod; one number for all, or six'
 PLATFORM_JOINTS = "the legs' joints on the platform, platform frame"
-HOME_HEIGHT = 'the platform frame above the base frame at home, where it is level; below: negative'
+HOME_HEIGHT = 'the platform frame above the base frame at home; below: negative'
+HOME_XY, ORIGIN = "the platform's x and y at home", (0.0, 0.0)
+HOME_RPY, LEVEL = "the platform's roll, pitch and yaw at home", (0.0, 0.0, 0.0)
 """Meanings of keys that several forms have."""
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class AtHome:
+    """Where a platform is at home, beside its height: level above the origin, unless given.
+
+    home_xy (2,) in metres, home_rpy (3,) in radians, base frame.
+    """
+
+    home_xy: Array = field(default_factory=lambda: frozen(np.zeros(2)))
+    home_rpy: Array = field(default_factory=lambda: frozen(np.zeros(3)))
+
+    def home_at(self, height: float) -> Pose:
+        """Home, for the platform's height there."""
+        return Pose.from_xyz_rpy([*self.home_xy, height], self.home_rpy)
+
+
+def at_home(xy_mm: tuple[float, float], rpy_deg: Triple) -> dict[str, Any]:
+    """The fields of `AtHome`, by the keys."""
+    return {
+        'home_xy': frozen(1e-3 * np.array(xy_mm)),
+        'home_rpy': frozen(np.radians(rpy_deg)),
+    }
+
+
 @dataclass(frozen=True, eq=False)
-class RotaryGeometry:
+class RotaryGeometry(AtHome):
     """Six cranks and rods in metres; see docs/kinematics.md, section 1.
 
     Crank i turns by the right hand about normals[i] through crank_centres[i] (base frame); its
     angle counts from tangents[i] towards ups[i] = normals[i] × tangents[i]. Its rod ends at
     platform_points[i] (platform frame). By default the plane of each crank is the vertical one
     through its tangent, with ups as far up as it allows. home_height is the platform's height at
-    home, where it is level. ConfigError names directions that are none, or not square.
+    home, see `AtHome`. ConfigError names directions that are none, or not square.
     """
 
     crank_centres: Array
@@ -53,6 +80,11 @@ class RotaryGeometry:
     home_height: float
     normals: Array = field(default_factory=lambda: VERTICAL_PLANES)
     ups: Array = field(init=False)
+
+    @property
+    def home(self) -> Pose:
+        """T_base_platform at home."""
+        return self.home_at(self.home_height)
 
     def __post_init__(self) -> None:
         """Makes directions unit vectors, and tangents exactly square to the axes."""
@@ -129,6 +161,8 @@ class HexagonConfig:
         *PLACE_MM, "s: the platform's joints from the middle of a side, along it"
     )
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
 
     def geometry(self) -> RotaryGeometry:
         """The joints by Prokopovich 2019, eqs (5) and (6), in closed form.
@@ -146,6 +180,7 @@ class HexagonConfig:
             crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
             home_height=self.home_height_mm * 1e-3,
+            **at_home(self.home_xy_mm, self.home_rpy_deg),
         )
 
 
@@ -168,6 +203,8 @@ class JointsConfig:
     crank_length_mm: float | SixNumbers = quantity(*SIZE_MM, CRANK_LENGTH)
     rod_length_mm: float | SixNumbers = quantity(*SIZE_MM, ROD_LENGTH)
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
     crank_axes: SixPoints | None = quantity(
         -1000,
         1000,
@@ -186,6 +223,7 @@ class JointsConfig:
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
             home_height=self.home_height_mm * 1e-3,
             normals=self._normals(),
+            **at_home(self.home_xy_mm, self.home_rpy_deg),
         )
 
     def _normals(self) -> Array:

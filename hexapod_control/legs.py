@@ -40,7 +40,7 @@ class Legs:
         axes: tuple[Array, Array, Array] = (NOWHERE, NOWHERE, NOWHERE),
         cranks: ArrayLike = 1.0,
         rods: ArrayLike = 0.0,
-        middle: float = 0.0,
+        middles: ArrayLike = 0.0,
         screws: tuple[float, Array, Array] = (0.0, NOWHERE, NOWHERE),
     ) -> 'Legs':
         """From points and axes (6, 3), the latter normals, tangents and ups; lengths in metres.
@@ -49,8 +49,8 @@ class Legs:
         """
         lead, *cardans = screws
         points = (centres, *axes, platform_points)
-        lengths = (np.broadcast_to(length, LEGS) for length in (cranks, rods))
-        numbers = [*(p.T.ravel() for p in points), *lengths, [middle, kind, lead]]
+        six = (np.broadcast_to(values, LEGS) for values in (cranks, rods, middles))
+        numbers = [*(p.T.ravel() for p in points), *six, [kind, lead]]
         return cls(frozen(np.concatenate([*numbers, *(cardan.T.ravel() for cardan in cardans)])))
 
     @property

@@ -58,15 +58,15 @@ class LinearPlatform(ParallelPlatform):
         return rows
 
     def _legs(self) -> Legs:
-        return linear_legs(self.geometry, self.home)
+        return linear_legs(self.geometry)
 
 
-def linear_legs(geometry: LinearGeometry, home: Pose) -> Legs:
+def linear_legs(geometry: LinearGeometry) -> Legs:
     """The legs as the kernel takes them; ConfigError for cardan axes that cannot be, at home.
 
     An axis has two directions: the platform's are taken in that which turns the screw less.
     """
-    g = geometry
+    g, home = geometry, geometry.home
     if g.screw_lead == 0.0:
         return Legs.of(LegKind.LINEAR, g.base_points, g.platform_points)
     rods = home.transform(g.platform_points) - g.base_points

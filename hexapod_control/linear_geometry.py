@@ -1,28 +1,38 @@
 """Where the joints of a linear platform are: the paper's parameters or explicit coordinates."""
 
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from hexapod_control.geometry import (
     HOME_HEIGHT,
+    HOME_RPY,
+    HOME_XY,
     LEGS,
+    LEVEL,
+    ORIGIN,
     PLATFORM_JOINTS,
+    AtHome,
+    Range,
     SixPoints,
+    Triple,
+    at_home,
     check_architecture,
 )
 from manipulator.arrays import Array, frozen
-from manipulator.config import PLACE_MM, SIZE_MM, quantity
+from manipulator.config import PLACE_MM, SIZE_MM, TURN_DEG, quantity
 from manipulator.errors import ConfigError, InvalidInput
+from manipulator.pose import Pose
 
 NO_AXES = frozen(np.zeros((LEGS, 3)))
 
 
 @dataclass(frozen=True, eq=False)
-class LinearGeometry:
+class LinearGeometry(AtHome):
     """Joint centres (6, 3) in metres: base_points in the base frame, platform_points in its own.
 
-    home_height is the platform's height at home, where it is level. screw_lead (metres a turn, 0
+    home_height is the platform's height at home, see `AtHome`. screw_lead (metres a turn, 0
     for legs whose screws do not turn with their joints) comes with base_axes and platform_axes,
     the fixed axes of the cardan joints, each in the frame of its points.
     """
@@ -33,6 +43,11 @@ class LinearGeometry:
     screw_lead: float = 0.0
     base_axes: Array = field(default_factory=lambda: NO_AXES)
     platform_axes: Array = field(default_factory=lambda: NO_AXES)
+
+    @property
+    def home(self) -> Pose:
+        """T_base_platform at home."""
+        return self.home_at(self.home_height)
 
     def __post_init__(self) -> None:
         """Freezes the points; raises InvalidInput on any other shape."""
@@ -63,6 +78,8 @@ class PlatesConfig:
         0, PLACE_MM[1], "h_mp: joints from the platform's plate, towards the base"
     )
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
 
     def geometry(self) -> LinearGeometry:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""
@@ -71,7 +88,8 @@ class PlatesConfig:
         towards = np.copysign(1.0, self.home_height_mm)
         base[:, 2] = towards * self.base_joint_height_mm
         platform[:, 2] = -towards * self.platform_joint_height_mm
-        return _checked(base, platform, self.home_height_mm)
+        home = at_home(self.home_xy_mm, self.home_rpy_deg)
+        return _checked(base, platform, self.home_height_mm, home)
 
 
 @dataclass(frozen=True)
@@ -81,6 +99,8 @@ class PointsConfig:
     base_joints_mm: SixPoints = quantity(*PLACE_MM, "the legs' joints on the base, base frame")
     platform_joints_mm: SixPoints = quantity(*PLACE_MM, PLATFORM_JOINTS)
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
     screw_lead_mm: float = quantity(
         *PLACE_MM,
         'of screws that turn with their cardan joints; right-hand: positive',
@@ -106,7 +126,8 @@ class PointsConfig:
     def geometry(self) -> LinearGeometry:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""
         base, platform = np.array(self.base_joints_mm), np.array(self.platform_joints_mm)
-        plain = _checked(base, platform, self.home_height_mm)
+        home = at_home(self.home_xy_mm, self.home_rpy_deg)
+        plain = _checked(base, platform, self.home_height_mm, home)
         if self.screw_lead_mm == 0.0:
             return plain
         axes = np.array(self.base_joint_axes), np.array(self.platform_joint_axes)
@@ -122,7 +143,10 @@ def joint_circle(radius: float, first_angle: float) -> Array:
     return radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(LEGS)])
 
 
-def _checked(base_mm: Array, platform_mm: Array, home_height_mm: float) -> LinearGeometry:
-    geometry = LinearGeometry(base_mm * 1e-3, platform_mm * 1e-3, home_height_mm * 1e-3)
+def _checked(
+    base_mm: Array, platform_mm: Array, home_height_mm: float, home: dict[str, Any]
+) -> LinearGeometry:
+    height = home_height_mm * 1e-3
+    geometry = LinearGeometry(base_mm * 1e-3, platform_mm * 1e-3, height, **home)
     check_architecture(geometry.base_points, geometry.platform_points)
     return geometry

@@ -3,12 +3,14 @@
 import numpy as np
 
 from hexapod_control.geometry import LEGS, HexagonConfig, JointsConfig, check_architecture
+from hexapod_control.home import home_problems
 from hexapod_control.leg_limits import LinearLimits, RailLimits, RotaryLimits
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.linear_geometry import PlatesConfig, PointsConfig
 from hexapod_control.parallel_platform import ParallelPlatform
 from hexapod_control.rails import RailPlatform, RailsConfig
 from hexapod_control.rotary import RotaryHexapod
+from manipulator.arrays import Array
 from manipulator.errors import ConfigError
 from manipulator.formatting import shown
 from manipulator.kinematics import Kinematics
@@ -24,14 +26,19 @@ SETTINGS = 8
 
 def hexapod(machine_file: MachineFile) -> Machine:
     """The machine of one file; ConfigError names each fault, also a home beyond a limit."""
+    machine = platform(machine_file)
+    beyond = home_problems(machine, 'crank_tangents' in machine_file.geometry)
+    if beyond:
+        raise ConfigError(beyond)
+    return machine
+
+
+def platform(machine_file: MachineFile) -> Machine:
+    """The same, but that its home may be beyond limits."""
     kind = machine_file.kind
     if kind not in KINDS:
         raise ConfigError([f'kind: {shown(kind)} is not one of {sorted(KINDS)}'])
     kinematics, constraints = KINDS[kind].build(machine_file)
-    home = kinematics.home
-    beyond = constraints.violations(home, kinematics.inverse(home))
-    if beyond:
-        raise ConfigError([f'limits: home has {violation}' for violation in beyond])
     motion = MotionLimits.from_config(machine_file.motion)
     return Machine(kinematics, constraints, motion, make_jogger=PlatformJogger)
 
@@ -42,9 +49,9 @@ def rotary_hexapod(geometry: JointsConfig | HexagonConfig, limits: RotaryLimits)
         geometry.geometry(),
         limits.characteristic_length_mm * 1e-3,
         limits.singularity_margin,
-        limits.crank_centre,
+        limits.crank_middles,
     )
-    _check_architecture(kinematics, limits.crank_range)
+    _check_architecture(kinematics, limits.crank_ranges)
     return kinematics, limits.constraints(kinematics)
 
 
@@ -62,15 +69,15 @@ def rail_hexapod(geometry: RailsConfig, limits: RailLimits) -> Parts:
         geometry.geometry(),
         limits.characteristic_length_mm * 1e-3,
         limits.singularity_margin,
-        limits.travel,
+        limits.rail_ranges,
     )
-    _check_architecture(kinematics, limits.travel)
+    _check_architecture(kinematics, limits.rail_ranges)
     return kinematics, limits.constraints(kinematics)
 
 
-def _check_architecture(kinematics: ParallelPlatform, joint_range: tuple[float, float]) -> None:
-    """As `check_architecture`, with the joints anywhere in their range."""
-    joints = np.random.default_rng(1).uniform(*joint_range, (SETTINGS, LEGS))
+def _check_architecture(kinematics: ParallelPlatform, ranges: tuple[Array, Array]) -> None:
+    """As `check_architecture`, with the joints anywhere in their ranges."""
+    joints = np.random.default_rng(1).uniform(*ranges, (SETTINGS, LEGS))
     points = kinematics.geometry.platform_points
     check_architecture(kinematics.base_points(joints), points)
 

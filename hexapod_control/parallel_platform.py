@@ -27,15 +27,15 @@ from manipulator.pose import Pose
 
 SINGULAR = 1e-6
 
+ENDLESS = 1e6
+"""Metres of a longest rod of which there is none: NEVER of kernel/legs.h is more."""
+
 SAME = 0.02
 """Difference of joints (rad or m) that is a measurement's, not another branch's."""
 
 
 class LegGeometry(Protocol):
-    """Where the legs end on the platform (6, 3), platform frame, and how high it stands at home.
-
-    Metres; at home the platform is level, above the base frame's origin.
-    """
+    """Where the legs end on the platform, and where that is at home; metres."""
 
     @property
     def platform_points(self) -> Array:
@@ -43,8 +43,8 @@ class LegGeometry(Protocol):
         ...
 
     @property
-    def home_height(self) -> float:
-        """The platform's z at home."""
+    def home(self) -> Pose:
+        """T_base_platform at home."""
         ...
 
 
@@ -77,7 +77,7 @@ class ParallelPlatform(ABC):
 
         parameters are the machine as the kernel takes it: platform of kernel/platform.h.
         """
-        home = Pose(np.array([0.0, 0.0, self.geometry.home_height]), np.eye(3))
+        home = self.geometry.home
         self._put('home', home)
         self._lay_out(np.zeros((LEGS, 3)), np.zeros(LEGS))
         try:
@@ -97,8 +97,8 @@ class ParallelPlatform(ABC):
 
     def _lay_out(self, home_rods: Array, home_gains: Array) -> None:
         legs, size = self._legs(), [self.characteristic_length]
-        numbers = [legs.numbers, size, home_rods.T.ravel(), home_gains]
-        parameters = frozen(np.concatenate(numbers))
+        at_home = (home_rods.T.ravel(), home_gains, self.home.rotation.ravel())
+        parameters = frozen(np.concatenate([legs.numbers, size, *at_home]))
         self._put('parameters', parameters)
         self._put('legs', legs)
         self._put('limits', PlatformLimits(parameters))
@@ -152,7 +152,7 @@ class ParallelPlatform(ABC):
         row, leg = np.unravel_index(np.argmax(np.maximum(lack, surplus)), lack.shape)
         rod, is_short = self.legs.rods[leg], lack[row, leg] > surplus[row, leg]
         miss, longest = max(lack[row, leg], surplus[row, leg]), rod - surplus[row, leg]
-        most = f'to {length(longest, 5)}' if math.isfinite(longest) else 'or more'
+        most = 'or more' if longest > ENDLESS else f'to {length(longest, 5)}'
         raise Unreachable(
             f'leg {leg + 1}: rod too {"short" if is_short else "long"} by {length(miss, 3)} '
             f'({length(rod, 5)}, needs {length(rod + lack[row, leg], 5)} {most})',

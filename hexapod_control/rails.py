@@ -7,31 +7,39 @@ import numpy as np
 
 from hexapod_control.geometry import (
     HOME_HEIGHT,
+    HOME_RPY,
+    HOME_XY,
     LEGS,
+    LEVEL,
+    ORIGIN,
     PLATFORM_JOINTS,
     ROD_LENGTH,
-    SixNumbers,
+    AtHome,
+    Range,
     SixPoints,
+    Triple,
+    at_home,
     unit_vectors,
 )
 from hexapod_control.legs import LegKind, Legs
 from hexapod_control.parallel_platform import ParallelPlatform
 from manipulator.arrays import Array, frozen
-from manipulator.config import PLACE_MM, SIZE_MM, key, quantity
+from manipulator.config import PLACE_MM, SIZE_MM, TURN_DEG, key, quantity
 from manipulator.links import Stroke
+from manipulator.motion_limits import SixNumbers
 from manipulator.pose import Pose
 
 Side = Literal['behind', 'ahead']
 
 
 @dataclass(frozen=True, eq=False)
-class RailGeometry:
+class RailGeometry(AtHome):
     """Six rails and struts in metres; see docs/kinematics.md, section 10.
 
     Carriage i at position q has the lower end of its strut at rail_points[i] + q directions[i]
     (base frame); the upper one is at platform_points[i] (platform frame). sides[i] is 1 where the
     carriage stands behind its platform joint along the rail, −1 where it is ahead. home_height is
-    the platform's height at home, where it is level. ConfigError names directions that are none.
+    the platform's height at home, see `AtHome`. ConfigError names directions that are none.
     """
 
     rail_points: Array
@@ -40,6 +48,11 @@ class RailGeometry:
     rod_lengths: Array
     sides: Array
     home_height: float
+
+    @property
+    def home(self) -> Pose:
+        """T_base_platform at home."""
+        return self.home_at(self.home_height)
 
     def __post_init__(self) -> None:
         """Makes directions unit vectors, and lengths and sides six."""
@@ -70,6 +83,8 @@ class RailsConfig:
     platform_joints_mm: SixPoints = quantity(*PLACE_MM, PLATFORM_JOINTS)
     rod_length_mm: float | SixNumbers = quantity(*SIZE_MM, ROD_LENGTH)
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
     carriages: Side | tuple[Side, Side, Side, Side, Side, Side] = key(
         "behind or ahead of the platform's joints, in the rails' directions; one word, or six",
         default='behind',
@@ -84,6 +99,7 @@ class RailsConfig:
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
             sides=np.where(np.array(self.carriages) == 'behind', 1.0, -1.0),
             home_height=self.home_height_mm * 1e-3,
+            **at_home(self.home_xy_mm, self.home_rpy_deg),
         )
 
 
@@ -92,12 +108,12 @@ class RailPlatform(ParallelPlatform):
     """Kinematics of a platform on rails; a joint is a carriage's position in metres.
 
     Carriages stand on the side of their platform joints that the geometry says, unless joints to
-    stay near are nearer on the other. travel (m) is from where to where rails are drawn.
-    Construction as of `ParallelPlatform`.
+    stay near are nearer on the other. travel, (6,) each in metres, is from where to where rails
+    are drawn. Construction as of `ParallelPlatform`.
     """
 
     geometry: RailGeometry
-    travel: tuple[float, float]
+    travel: tuple[Array, Array]
     powerless: ClassVar[str] = 'a rod is square to its rail'
 
     @property
@@ -113,7 +129,7 @@ class RailPlatform(ParallelPlatform):
     @property
     def rail_ends(self) -> Array:
         """Where the carriages' joints are at either end of travel, (6, 2, 3), base frame."""
-        return np.stack([self.base_points(np.full(LEGS, q)) for q in self.travel], axis=1)
+        return np.stack([self.base_points(ends) for ends in self.travel], axis=1)
 
     def skeleton(self, pose: Pose, joints: Array) -> tuple[Stroke, ...]:
         """Six rails, six rods, the platform's outline."""

@@ -8,7 +8,7 @@ import numpy as np
 from hexapod_control.geometry import LEGS, RotaryGeometry
 from hexapod_control.legs import LegKind, Legs
 from hexapod_control.parallel_platform import ParallelPlatform
-from manipulator.arrays import Array
+from manipulator.arrays import Array, frozen
 from manipulator.links import Stroke, outline
 from manipulator.pose import Pose
 
@@ -17,13 +17,19 @@ from manipulator.pose import Pose
 class RotaryHexapod(ParallelPlatform):
     """Kinematics of a crank platform; angles in radians from each leg's tangent towards up.
 
-    Crank angles are given within half a turn of crank_centre, with the elbow out unless joints to
-    stay near are nearer elbow in. Construction as of `ParallelPlatform`.
+    Crank angles are given within half a turn of crank_middles, (6,) or one for all legs, with the
+    elbow out unless joints to stay near are nearer elbow in. Construction as of
+    `ParallelPlatform`.
     """
 
     geometry: RotaryGeometry
-    crank_centre: float
+    crank_middles: Array
     powerless: ClassVar[str] = 'a crank and its rod are in line'
+
+    def __post_init__(self) -> None:
+        """One middle for each leg; then as `ParallelPlatform`."""
+        self._put('crank_middles', frozen(np.broadcast_to(self.crank_middles, (LEGS,))))
+        super().__post_init__()
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -55,5 +61,5 @@ class RotaryHexapod(ParallelPlatform):
             axes=(g.normals, g.tangents, g.ups),
             cranks=g.crank_lengths,
             rods=g.rod_lengths,
-            middle=self.crank_centre,
+            middles=self.crank_middles,
         )

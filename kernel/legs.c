@@ -187,7 +187,7 @@ void leg_misfits(const struct legs *legs, const real position[3], const real rot
     put_along(&legs->shape, gap, along, across);
     for (int i = 0; i < LEGS; i++) {
         shortfall[i] =
-            legs->kind == RAIL ? real_sqrt(across[i]) - legs->shape.rod[i] : -INFINITY;
-        surplus[i] = -INFINITY;
+            legs->kind == RAIL ? real_sqrt(across[i]) - legs->shape.rod[i] : -NEVER;
+        surplus[i] = -NEVER;
     }
 }

@@ -45,7 +45,8 @@ void leg_rows(const struct legs *legs, const struct rods *rods, const real rotat
 void leg_gains(const struct legs *legs, const real joints[LEGS], real unit[3][LEGS],
                real gains[LEGS]);
 
-/* How much too short, and too long, each rod is to close its leg; -INFINITY where it never is. */
+/* How much too short, and too long, each rod is to close its leg; -NEVER where it never is. */
+#define NEVER REAL(1e9) /* m; finite, so that margins to no bound are no NaN */
 void leg_misfits(const struct legs *legs, const real position[3], const real rotation[9],
                  real shortfall[LEGS], real surplus[LEGS]);
 

@@ -11,6 +11,7 @@
 #include "python.h"
 #include "rods.h"
 #include "se3.h"
+#include "vector.h"
 
 static void by_axis(const real points[3 * LEGS], real columns[3][LEGS])
 {
@@ -213,6 +214,28 @@ static Py_ssize_t call_rotation_log(real *const *a, Py_ssize_t items)
 }
 FUNCTION(rotation_log, {ITEMS, 9}, {WRITTEN, 3})
 
+static Py_ssize_t call_quaternion_of(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        quaternion_of(a[0] + 9 * i, a[1] + 4 * i);
+    return 0;
+}
+FUNCTION(quaternion_of, {ITEMS, 9}, {WRITTEN, 4})
+
+/* Tolerance; quaternions. Returns how many are longer or shorter than one by more than that. */
+static Py_ssize_t call_rotation_of(real *const *a, Py_ssize_t items)
+{
+    Py_ssize_t others = 0;
+    for (Py_ssize_t i = 0; i < items; i++) {
+        const real *q = a[1] + 4 * i;
+        real length = real_sqrt(dot3(q, q) + q[3] * q[3]);
+        others += !(real_fabs(length - 1) <= a[0][0]);
+        rotation_of(q, a[2] + 9 * i);
+    }
+    return others;
+}
+FUNCTION(rotation_of, {WHOLE, 1}, {ITEMS, 4}, {WRITTEN, 9})
+
 static Py_ssize_t call_moved(real *const *a, Py_ssize_t items)
 {
     Py_ssize_t endless = 0;
@@ -303,6 +326,8 @@ PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(keeps_limits),
     METHOD(rotation_exp),
     METHOD(rotation_log),
+    METHOD(quaternion_of),
+    METHOD(rotation_of),
     METHOD(moved),
     METHOD(twist_between),
     METHOD(least_distance),

@@ -7,14 +7,10 @@
 /* Below, in rad, sin(x) / x is 1 to the last digit. */
 #define SMALL_ANGLE REAL(1e-6)
 
-void rotation_exp(const real w[3], real rotation[9])
+/* I + s [v] + c [v] [v]. */
+static void rodrigues(const real v[3], real s, real c, real rotation[9])
 {
-    real x = w[0], y = w[1], z = w[2], angle = real_sqrt(dot3(w, w)), s = 1, c = REAL(0.5);
-    if (!(angle < SMALL_ANGLE)) {
-        real half = real_sin(angle / 2) / angle;
-        s = real_sin(angle) / angle;
-        c = 2 * half * half;
-    }
+    real x = v[0], y = v[1], z = v[2];
     rotation[0] = 1 - c * (y * y + z * z);
     rotation[1] = c * x * y - s * z;
     rotation[2] = c * x * z + s * y;
@@ -26,9 +22,26 @@ void rotation_exp(const real w[3], real rotation[9])
     rotation[8] = 1 - c * (x * x + y * y);
 }
 
+void rotation_exp(const real w[3], real rotation[9])
+{
+    real angle = real_sqrt(dot3(w, w)), s = 1, c = REAL(0.5);
+    if (!(angle < SMALL_ANGLE)) {
+        real half = real_sin(angle / 2) / angle;
+        s = real_sin(angle) / angle;
+        c = 2 * half * half;
+    }
+    rodrigues(w, s, c, rotation);
+}
+
+void rotation_of(const real q[4], real rotation[9])
+{
+    real c = 2 / (dot3(q, q) + q[3] * q[3]);
+    rodrigues(q, c * q[3], c, rotation);
+}
+
 /* The longest of the rows of 4 q q' = I + ..., each of which is the unit quaternion x, y, z, w
    times a factor: so that none of its digits are lost (Shepperd 1978). */
-static void quaternion_of(const real r[9], real q[4])
+void quaternion_of(const real r[9], real q[4])
 {
     real trace = r[0] + r[4] + r[8], diagonal[4] = {r[0], r[4], r[8], trace};
     int longest = 0;

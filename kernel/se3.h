@@ -7,6 +7,10 @@
 /* Rodrigues' formula: the rotation by |w| about w. */
 void rotation_exp(const real w[3], real rotation[9]);
 
+/* The unit quaternion x, y, z, w of a matrix, w not negative; a quaternion's matrix. */
+void quaternion_of(const real rotation[9], real q[4]);
+void rotation_of(const real q[4], real rotation[9]);
+
 /* The rotation vector of a matrix, at most pi long. */
 void rotation_log(const real rotation[9], real w[3]);
 

@@ -79,6 +79,12 @@ def rotation_exp(vector: Array, rotation: Array) -> int:
 def rotation_log(rotation: Array, vector: Array) -> int:
     """0; `vector` is written: kernel/se3.h."""
 
+def quaternion_of(rotation: Array, quaternion: Array) -> int:
+    """0; `quaternion` is written: kernel/se3.h."""
+
+def rotation_of(tolerance: Array, quaternion: Array, rotation: Array) -> int:
+    """How many quaternions are not of length one within the tolerance; `rotation` is written."""
+
 def moved(
     position: Array, rotation: Array, twist: Array, new_position: Array, new_rotation: Array
 ) -> int:

@@ -11,6 +11,7 @@ from manipulator.arrays import Array, frozen, stretched
 from manipulator.errors import InvalidInput
 
 UNIT_TOLERANCE = 1e-3
+_TOLERANCE = frozen([UNIT_TOLERANCE])
 
 
 def skew(vector: Array) -> Array:
@@ -23,20 +24,6 @@ def skew(vector: Array) -> Array:
     matrix[..., 2, 0] = -vector[..., 1]
     matrix[..., 0, 1] = -vector[..., 2]
     return matrix
-
-
-def _products() -> Array:
-    """E (16, 9), flat 3×3 matrices with R = Σ qᵢ qⱼ Eᵢⱼ for a unit quaternion q = x, y, z, w."""
-    basis, table = np.eye(3), np.zeros((4, 4, 3, 3))
-    for i, j in np.ndindex(3, 3):
-        outer = np.outer(basis[i], basis[j])
-        table[i, j] = outer + outer.T - basis * basis[i, j]
-    table[:3, 3] = table[3, :3] = skew(basis)
-    table[3, 3] = basis
-    return frozen(table.reshape(16, 9))
-
-
-PRODUCTS = _products()
 
 
 def exp(rotation_vector: ArrayLike) -> Array:
@@ -81,29 +68,20 @@ def from_quaternion(quaternion: ArrayLike) -> Array:
 
     Lengths within 0.1 % of one are normalised; any other raises InvalidInput.
     """
-    q = np.asarray(quaternion, dtype=np.float64)
-    length = np.sqrt(np.einsum('...i,...i->...', q, q))
-    if not np.all(np.abs(length - 1.0) <= UNIT_TOLERANCE):
-        worst = np.ravel(length)[np.argmax(np.abs(np.nan_to_num(np.ravel(length), nan=9.9) - 1))]
+    q = _shaped(quaternion, (4,))
+    matrix = np.empty((*q.shape[:-1], 3, 3))
+    if _kernel.rotation_of(_TOLERANCE, q, matrix):
+        lengths = np.ravel(np.linalg.norm(q, axis=-1))
+        worst = lengths[np.argmax(np.abs(np.nan_to_num(lengths, nan=9.9) - 1))]
         raise InvalidInput(f'quaternion has length {worst:.6g}, a rotation needs 1 ± 0.001')
-    unit = q / length[..., None]
-    outer = unit[..., :, None] * unit[..., None, :]
-    matrix: Array = (outer.reshape(*q.shape[:-1], 16) @ PRODUCTS).reshape(*q.shape[:-1], 3, 3)
     return matrix
 
 
 def to_quaternion(rotation: ArrayLike) -> Array:
-    """The unit quaternion x, y, z, w with w ≥ 0; (..., 3, 3) to (..., 4).
-
-    Every row of 4·q·qᵀ = I + (⟨Eᵢⱼ, R⟩) is the quaternion times a factor; the longest is taken.
-    """
-    m = np.asarray(rotation, dtype=np.float64)
-    leading = m.shape[:-2]
-    rows = (m.reshape(*leading, 9) @ PRODUCTS.T).reshape(-1, 4, 4) + np.eye(4)
-    longest = rows.reshape(-1, 16)[:, ::5].argmax(axis=-1)
-    q = rows[np.arange(len(rows)), longest]
-    q *= np.copysign(1.0, q[:, 3:]) / np.sqrt((q * q).sum(axis=-1))[:, None]
-    quaternion: Array = q.reshape(*leading, 4)
+    """The unit quaternion x, y, z, w with w ≥ 0; (..., 3, 3) to (..., 4)."""
+    matrix = _shaped(rotation, (3, 3))
+    quaternion = np.empty((*matrix.shape[:-2], 4))
+    _kernel.quaternion_of(matrix, quaternion)
     return quaternion
 
 
@@ -113,13 +91,15 @@ def from_rpy(roll_pitch_yaw: ArrayLike) -> Array:
     Seed 1, eq. (1), with φ = yaw, θ = pitch, ψ = roll and the misprinted third column mended.
     """
     angles = np.asarray(roll_pitch_yaw, dtype=np.float64)
-    (sr, sp, sy), (cr, cp, cy) = (np.moveaxis(f(angles), -1, 0) for f in (np.sin, np.cos))
-    rows = [
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    (sr, sp, sy), (cr, cp, cy) = np.sin(angles).T, np.cos(angles).T
+    matrix: Array = np.array(
+        [
+            (cy * cp, sy * cp, -sp),
+            (cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr),
+            (cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr),
+        ]
+    ).T
+    return matrix
 
 
 def to_rpy(rotation: ArrayLike) -> Array:

@@ -24,7 +24,8 @@ from queue import SimpleQueue
 import yaml
 
 from bench.mutants import of_c, of_python
-from bench.mutants.tests import LIBRARIES, PYTEST, Mutant, Tests, library_file, run
+from bench.mutants.libraries import LIBRARIES, build, built_files, library_file
+from bench.mutants.tests import PYTEST, Mutant, Tests, run
 
 FOLDER = Path(__file__).resolve().parent
 ROOT = FOLDER.parents[1]
@@ -54,13 +55,6 @@ def copy_tree(folder: Path) -> Path:
     if not all(build(folder, name) for name in LIBRARIES):
         raise SystemExit('the C libraries do not compile')
     return folder
-
-
-def build(tree: Path, name: str) -> bool:
-    """Builds a library of the tree, as the product is built; whether it compiles."""
-    output = library_file(tree, name)
-    call = f'build_backend.build({LIBRARIES[name]!r}, pathlib.Path({str(output)!r}))'
-    return run([sys.executable, '-c', f'import build_backend, pathlib; {call}'], tree, 120.0) == 0
 
 
 def sampled(patterns: list[str], count: int, seed: int) -> list[Mutant]:
@@ -105,7 +99,7 @@ class Laboratory:
 
     def _tried(self, mutant: Mutant, tree: Path, portions: list[tuple[list[str], float]]) -> str:
         before = [library_file(tree, name).read_bytes() for name in mutant.libraries]
-        if not all(build(tree, name) for name in mutant.libraries):
+        if not all(build(tree, name, mutant.module) for name in mutant.libraries):
             return 'does not compile'
         after = [library_file(tree, name).read_bytes() for name in mutant.libraries]
         if mutant.libraries and before == after:
@@ -119,7 +113,8 @@ class Laboratory:
 @contextmanager
 def applied(mutant: Mutant, tree: Path) -> Iterator[None]:
     """Within, the tree has the change, though libraries are as before until they are built."""
-    files = [tree / mutant.module, *(library_file(tree, name) for name in mutant.libraries)]
+    built = [file for name in mutant.libraries for file in built_files(tree, name)]
+    files = [tree / mutant.module, *built]
     contents = [file.read_bytes() for file in files]
     try:
         files[0].write_bytes(mutant.mutation.applied(contents[0]))
@@ -159,9 +154,13 @@ def main(arguments: list[str]) -> None:
         '--seconds', type=float, default=30.0, help='of tests for a mutant, at most'
     )
     parser.add_argument('--jobs', type=int, default=2, help='mutants at a time')
+    parser.add_argument('--only', type=Path, metavar='FILE', help='those that a report names')
     parser.add_argument('--coverage', type=Path, metavar='DIR', help='where coverage is kept')
     options = parser.parse_args(arguments)
     mutants = sampled(options.modules, options.count, options.seed)
+    if options.only:
+        named = options.only.read_text()
+        mutants = [mutant for mutant in mutants if str(mutant) in named]
     with tempfile.TemporaryDirectory(prefix='hexarm_mutants_') as scratch:
         trees = [copy_tree(Path(scratch) / f'tree_{k}') for k in range(options.jobs)]
         folder = options.coverage or Path(scratch) / 'coverage'

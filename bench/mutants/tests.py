@@ -9,20 +9,20 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from collections import Counter, defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import accumulate
 from pathlib import Path
 
 from coverage import CoverageData
 
-import build_backend
+from bench.mutants.libraries import LIBRARIES, build_traced, library_file
 from bench.mutants.mutation import Mutation
 
 PYTEST = (sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', '--hypothesis-seed=0')
 FAST = ('-m', 'not processes', '-k', 'not chip', '--ignore=test/firmware')
-TRACED = ('-O1', '-g', '-fsanitize-coverage=trace-pc')
-LIBRARIES = {'kernel': 'manipulator._kernel', 'board': 'bridge._board'}
-"""What traced_tests.py calls them, and build_backend.py."""
+COMPILED, NOT_COMPILED = {'PYTHONDONTWRITEBYTECODE': ''}, {'PYTHONDONTWRITEBYTECODE': '1'}
+"""A tree's tests are compiled once; a mutant leaves nothing behind."""
 
 BUSY = 8.0
 """How many times as long as they compute tests may wait, as on a busy computer."""
@@ -38,10 +38,13 @@ class Mutant:
 
     @property
     def libraries(self) -> tuple[str, ...]:
-        """Those that are built of a C file: the board shares some files of the kernel."""
+        """Those that are built of a C file: the board shares the kernel's cranks."""
         if self.module.endswith('.py'):
             return ()
-        return tuple(LIBRARIES) if self.module.startswith('kernel/') else ('board',)
+        if self.module.startswith('firmware/'):
+            return ('board',)
+        is_shared = self.module.endswith(('.h', '/crank.c'))
+        return ('kernel', 'board') if is_shared else ('kernel',)
 
     def __str__(self) -> str:
         return f'{self.module}:{self.mutation.line}: {self.texts[0]}  →  {self.texts[1]}'
@@ -62,7 +65,7 @@ class Tests:
             for case in ElementTree.parse(folder / 'times.xml').iter('testcase')
             if not len(case)  # neither skipped nor failed
         }
-        if run([*PYTEST, '--collect-only', *self._seconds], tree, 600.0) != 0:
+        if run([*PYTEST, '--collect-only', *self._seconds], tree, 600.0, COMPILED) != 0:
             raise SystemExit(f'tests that {folder} names are not there: measure coverage again')
 
     def covering(self, mutant: Mutant) -> list[str]:
@@ -80,8 +83,15 @@ class Tests:
         return {context.split('|')[0] for context in at}
 
     def _on_c_line(self, mutant: Mutant) -> set[str]:
-        """Of a line within a block, those on the block's first; of a file's first lines, all."""
+        """Of a line within a block, those on the block's first; of a file's first lines, all.
+
+        Of a header that only declares: all of its library.
+        """
         by_line = {int(line): at for line, at in self._c_lines.get(mutant.module, {}).items()}
+        if not by_line and mutant.module.endswith('.h'):
+            folder = mutant.module.rpartition('/')[0]
+            lines_of = (lines for file, lines in self._c_lines.items() if file.startswith(folder))
+            return {name for lines in lines_of for at in lines.values() for name in at}
         begun = [line for line in by_line if line <= mutant.mutation.line]
         lines = [max(begun)] if begun else list(by_line)
         return {name for line in lines for name in by_line[line]}
@@ -89,11 +99,16 @@ class Tests:
     def portions(
         self, mutant: Mutant, count: int, seconds: float
     ) -> list[tuple[list[str], float]]:
-        """The first `count` and the others, each with its seconds: not above `seconds` in all."""
+        """The first `count` and the others, each with its seconds: not above `seconds` in all.
+
+        Those of a test file with the module's name come first, and of each test one of its runs.
+        """
         seen: Counter[str] = Counter()
-        turns: list[tuple[int, float, str]] = []
+        own = f'/test_{Path(mutant.module).stem}'
+        turns: list[tuple[tuple[bool, int], float, str]] = []
         for name in self.covering(mutant):
-            turns.append((seen[name.split('[')[0]], self._seconds[name], name))
+            order = own not in name, seen[name.split('[')[0]]
+            turns.append((order, self._seconds[name], name))
             seen[name.split('[')[0]] += 1
         turns.sort()
         portions = []
@@ -106,17 +121,12 @@ class Tests:
         return [portion for portion in portions if portion[0]]
 
 
-def library_file(tree: Path, name: str) -> Path:
-    """Where a tree has a library."""
-    return tree / f'{LIBRARIES[name].replace(".", "/")}.abi3.so'
-
-
 def _measure(folder: Path, tree: Path, modules: list[str], jobs: int) -> None:
     """Coverage of both languages, with libraries of their own that are removed again."""
     built = {name: library_file(tree, name) for name in LIBRARIES}
     plain = {library: library.read_bytes() for library in built.values()}
-    for name, library in built.items():
-        _build_traced(tree, name, library)
+    for name in LIBRARIES:
+        build_traced(tree, name)
     rooms = sorted({f'--cov={m.split("/")[0]}' for m in modules if m.endswith('.py')})
     options = ['--cov-context=test', '--cov-report=', '-n', str(jobs), '--dist=loadfile']
     report = ['-o', 'junit_family=xunit1', f'--junitxml={folder}/times.xml']
@@ -128,15 +138,6 @@ def _measure(folder: Path, tree: Path, modules: list[str], jobs: int) -> None:
     (folder / 'c_lines.json').write_text(json.dumps(_merged(lines.values())))
     for library, content in plain.items():
         library.write_bytes(content)
-
-
-def _build_traced(tree: Path, name: str, output: Path) -> None:
-    library = build_backend.LIBRARIES[LIBRARIES[name]]
-    sources = [*library.files('*.c'), 'bench/mutants/coverage.c']
-    options = [*library.flags, *TRACED, f'-DLIBRARY="{name}"']
-    options += [f'-I{folder}' for folder in library.folders]
-    command = [*build_backend.compiler(), '-std=gnu11', '-fPIC', '-shared', *options, *sources]
-    subprocess.run([*command, '-lm', '-o', str(output)], cwd=tree, check=True)
 
 
 def _lines_of(folder: Path, tree: Path, name: str, library: Path) -> list[tuple[str, int, str]]:
@@ -169,13 +170,15 @@ def _merged(found) -> dict[str, dict[int, list[str]]]:
     return {f: {n: sorted(at) for n, at in by.items()} for f, by in lines.items()}
 
 
-def run(command: list[str], folder: Path, seconds: float) -> int | None:
+def run(
+    command: list[str], folder: Path, seconds: float, variables: Mapping[str, str] = NOT_COMPILED
+) -> int | None:
     """The status of a command that sees the tree in `folder`, and may compute for some seconds.
 
     None where it waits for something that does not come.
     """
-    alone = {'OMP_NUM_THREADS': '1', 'OPENBLAS_NUM_THREADS': '1', 'PYTHONDONTWRITEBYTECODE': '1'}
-    environment = os.environ | alone | {'PYTHONPATH': str(folder)}
+    alone = {'OMP_NUM_THREADS': '1', 'OPENBLAS_NUM_THREADS': '1', 'PYTHONPATH': str(folder)}
+    environment = {**os.environ, **alone, **variables}
     limited = ('sh', '-c', f'ulimit -t {round(seconds)}; exec nice "$@"', 'sh')
     with subprocess.Popen(
         [*limited, *command],

@@ -33,6 +33,10 @@ class AnyBoard(Protocol):
     def pulses(self) -> tuple[float | None, ...]:
         """Pulse width in counts by channel, None where no pulse goes out."""
 
+    @property
+    def rest(self) -> float:
+        """Seconds until it does something by itself: begins a period of pulses, with a STATE."""
+
     def reset(self, cause: ResetCause) -> None:
         """Starts again: silent for the boot, then disarmed and knowing nothing."""
 
@@ -81,7 +85,7 @@ class Board:
 
     def reset(self, cause: ResetCause) -> None:
         """Starts again: silent for the boot, then disarmed and knowing nothing."""
-        self._boot_left_us = self.settings.boot_us
+        self._boot_left_us, self._rest_us = self.settings.boot_us, 0
         self._wires.machine = self.settings.machine
         self._program.host_reset(self._host, cause)
 
@@ -155,7 +159,12 @@ class Board:
         boot_us = min(self._boot_left_us, passed_us)
         self._boot_left_us -= boot_us
         if not self._boot_left_us:
-            self._program.host_run(self._host, passed_us - boot_us)
+            self._rest_us = self._program.host_run(self._host, passed_us - boot_us)
+
+    @property
+    def rest(self) -> float:
+        """See AnyBoard."""
+        return 1e-6 * (self._boot_left_us or self._rest_us)
 
     def take_output(self) -> bytes:
         """The bytes for the host since the last call."""

@@ -22,7 +22,7 @@ from bridge.protocol import ResetCause
 from bridge.servo_config import BoardConfig
 from manipulator.arrays import Array
 
-STEP, LONGEST_STEP = 0.01, 0.05
+LONGEST_STEP, POSITIONS_PERIOD = 0.05, 0.02
 """Seconds; where this process stalls for longer, the board's time stands still meanwhile."""
 
 DRIVES: dict[str, type[Servos]] = {'servos': Servos, 'steppers': Steppers}
@@ -85,7 +85,7 @@ class FakeMachine:
 
 
 class BoardThread(threading.Thread):
-    """Steps the machine at 100 Hz and whenever bytes arrive.
+    """Steps the machine when bytes arrive, and when its board begins a period of pulses.
 
     Board and line are touched in this thread alone; `do` hands a request into it. on_positions
     receives the true joint positions 50 times a second, in this thread.
@@ -129,10 +129,9 @@ class BoardThread(threading.Thread):
 
     def run(self) -> None:
         """The thread's work, until `close`."""
-        start = last = time.monotonic()
-        steps = 0
+        last = due = time.monotonic()
         while not self._is_stopping:
-            has_input = self._wait(start + steps * STEP)
+            has_input = self._wait(last + min(self._machine.board.rest, POSITIONS_PERIOD))
             while self._requests:
                 self._requests.popleft()()
             now = time.monotonic()
@@ -140,11 +139,9 @@ class BoardThread(threading.Thread):
             self._machine.step(min(now - last, LONGEST_STEP), self._faults.stuck_channel)
             last = now
             self._exchange(has_input, now)
-            if now >= start + steps * STEP:
-                # Steps that were missed are not made up for.
-                steps = int((now - start) / STEP) + 1
-                if steps % 2:
-                    self._on_positions(self._machine.servos.positions)
+            if now >= due:
+                due = max(due + POSITIONS_PERIOD, now)  # what was missed is not made up for
+                self._on_positions(self._machine.servos.positions)
 
     def _wait(self, until: float) -> bool:
         """Whether the line has something to read."""

@@ -114,7 +114,7 @@ static void run_loop(Host *host)
     host->wires->mode = safety_mode();
 }
 
-void host_run(Host *host, uint32_t us)
+uint32_t host_run(Host *host, uint32_t us)
 {
     take_turn(host);
     uint64_t end = host->now_us + us;
@@ -123,7 +123,7 @@ void host_run(Host *host, uint32_t us)
             latch(host);
         run_loop(host);
         if (host->now_us == end)
-            return;
+            return (uint32_t)(host->next_latch_us - end);
         uint64_t tick = (host->now_us / TICK_US + 1) * TICK_US;
         host->now_us = tick < end ? tick : end;
     }

@@ -35,8 +35,9 @@ void host_free(Host *host);
 /* Starts again, for the reason that HELLO will give; the first period begins at once. */
 void host_reset(Host *host, uint8_t cause);
 
-/* Lets microseconds pass; the program runs at least once a millisecond, and once for 0. */
-void host_run(Host *host, uint32_t us);
+/* Lets microseconds pass; the program runs at least once a millisecond, and once for 0. Returns
+   how many are left until the next period of pulses begins. */
+uint32_t host_run(Host *host, uint32_t us);
 
 /* Bytes from the host; the program runs after each one, as the chip's does. */
 void host_feed(Host *host, const uint8_t *bytes, uint32_t length);

@@ -16,7 +16,12 @@ DIVIDER = 2
 
 
 class SimulatedBoard:
-    """The firmware for these settings, on a chip, its boot loader's silence included."""
+    """The firmware for these settings, on a chip, its boot loader's silence included.
+
+    rest: seconds until it does something by itself; what a chip does is not known before.
+    """
+
+    rest = 0.01
 
     def __init__(self, settings: BoardSettings, battery_mv: int = 7600) -> None:
         self.settings = settings

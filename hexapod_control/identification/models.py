@@ -35,10 +35,15 @@ from manipulator.yaml_edit import flow_list
 
 def geometry_lines(geometry: RotaryGeometry | LinearGeometry | RailGeometry) -> list[str]:
     """The `geometry` section by coordinates, to 0.1 µm."""
-    height = f'  home_height_mm: {1e3 * geometry.home_height:g}'
+    home = [f'  home_height_mm: {1e3 * geometry.home_height:g}']
+    for key, values in (
+        ('home_xy_mm', 1e3 * geometry.home_xy),
+        ('home_rpy_deg', np.degrees(geometry.home_rpy)),
+    ):
+        home += [f'  {key}: {flow_list(values)}'] if values.any() else []
     joints = _points('platform_joints_mm', 1e3 * geometry.platform_points)
     if isinstance(geometry, LinearGeometry):
-        plain = [*_points('base_joints_mm', 1e3 * geometry.base_points), *joints, height]
+        plain = [*_points('base_joints_mm', 1e3 * geometry.base_points), *joints, *home]
         return plain if geometry.screw_lead == 0.0 else [*plain, *_screw_lines(geometry)]
     if isinstance(geometry, RailGeometry):
         sides = ', '.join('behind' if side > 0 else 'ahead' for side in geometry.sides)
@@ -48,7 +53,7 @@ def geometry_lines(geometry: RotaryGeometry | LinearGeometry | RailGeometry) -> 
             *joints,
             f'  rod_length_mm: {flow_list(1e3 * geometry.rod_lengths)}',
             f'  carriages: [{sides}]',
-            height,
+            *home,
         ]
     are_vertical = np.abs(geometry.normals[:, 2]).max() < 10.0**-DIGITS
     axes = [] if are_vertical else _points('crank_axes', geometry.normals, DIGITS)
@@ -59,7 +64,7 @@ def geometry_lines(geometry: RotaryGeometry | LinearGeometry | RailGeometry) -> 
         *joints,
         f'  crank_length_mm: {flow_list(1e3 * geometry.crank_lengths)}',
         f'  rod_length_mm: {flow_list(1e3 * geometry.rod_lengths)}',
-        height,
+        *home,
     ]
 
 
@@ -222,8 +227,7 @@ class LinearModel(LegModel):
         found = self.identified(values)
         if found.screw_lead == 0.0:
             return 0.0, 0.0
-        home = Pose(np.array([0.0, 0.0, found.home_height]), np.eye(3))
-        return linear_legs(found, home).screw_turns(poses)
+        return linear_legs(found).screw_turns(poses)
 
     def joint_offsets(self, values: Array) -> Array:
         """(6,): true length less the commanded one, m."""

@@ -59,12 +59,10 @@ def linear_model(
     base = add(child(root, 'worldbody'), 'body', name='body')
     heights = geometry.base_points[:, 2]
     low = float(heights.min()) - PLATE
-    if geometry.home_height < low:
+    if geometry.home.position[2] < low:
         low = float(heights.max())
     add_hexagon(root, base, 'body', inradius(geometry.base_points), (low, low + PLATE), METAL)
-    add_platform(
-        root, config.platform, config.payload, geometry.platform_points, geometry.home_height
-    )
+    add_platform(root, config.platform, config.payload, geometry.platform_points, geometry.home)
     rods = kinematics.unit_rods(kinematics.home, kinematics.inverse(kinematics.home))
     universals = tuple(UniversalJoint.across(u) for u in rods)
     closures = {}

@@ -51,9 +51,7 @@ def rail_model(
     base = add(child(root, 'worldbody'), 'body', name='body')
     for begin, end in kinematics.rail_ends:
         tube(base, begin, end, RAIL * 1e-3 * config.carriage.radius_mm, METAL)
-    add_platform(
-        root, config.platform, config.payload, geometry.platform_points, geometry.home_height
-    )
+    add_platform(root, config.platform, config.payload, geometry.platform_points, geometry.home)
     units = kinematics.unit_rods(home, kinematics.inverse(home))
     universals = tuple(UniversalJoint.across(unit) for unit in units)
     closures = {}

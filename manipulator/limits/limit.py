@@ -56,6 +56,11 @@ Bounds: TypeAlias = tuple[slice, Array, Array]
 class LimitGroup(Protocol):
     """A machine that computes the values of many limits at once, and judges them."""
 
+    @property
+    def of_pose(self) -> slice:
+        """Columns of x, y, z, tilt and turn: limits/task_space.py."""
+        ...
+
     def limited_values(self, pose: Pose, joints: Array) -> Array:
         """All values (..., K), NaN where there is none."""
         ...
@@ -145,11 +150,11 @@ class Violation:
         """As 'leg 3: crank angle 3.92 rad outside [0.52, 3.67]'."""
         owner = f'{self.owner}: ' if self.owner else ''
         unit = f' {self.unit}' if self.unit else ''
-        digits = self._digits
+        digits = self.digits
         return f'{owner}{self.quantity} {self.value:.{digits}g}{unit} {self._range_text(digits)}'
 
     @property
-    def _digits(self) -> int:
+    def digits(self) -> int:
         """Four, or as many as distinguish the value from the bound that it is beyond."""
         for digits in range(FEWEST_DIGITS, MOST_DIGITS):
             value, low, high = (f'{x:.{digits}g}' for x in (self.value, self.low, self.high))

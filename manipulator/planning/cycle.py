@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from math import gcd, inf, lcm
 
 import numpy as np
@@ -74,9 +75,13 @@ class Cycle(PosePlan):
         """See `Plan`."""
         return f'{time:.2f} s into the cycle'
 
+    @cached_property
+    def _rate(self) -> Array:
+        """2π f (terms, 6), rad/s."""
+        return 2 * np.pi * np.round(self.frequency * FREQUENCY_STEP) / FREQUENCY_STEP
+
     def _offsets(self, t: Array) -> tuple[Array, Array, Array]:
-        frequency = np.round(self.frequency * FREQUENCY_STEP) / FREQUENCY_STEP
-        rate = 2 * np.pi * frequency
+        rate = self._rate
         angle = rate * t[..., None, None] + self.phase
         sine, cosine = self.amplitude * np.sin(angle), self.amplitude * np.cos(angle)
         return sine.sum(-2), (rate * cosine).sum(-2), (-(rate**2) * sine).sum(-2)
@@ -84,10 +89,10 @@ class Cycle(PosePlan):
 
 def _turning(rpy: Array, rates: Array, pulls: Array) -> tuple[Array, Array]:
     """ω and its derivative in fixed axes of Rz(y)·Ry(p)·Rx(r), by the derivatives of r, p, y."""
-    (_, sp, sy), (_, cp, cy) = (np.moveaxis(f(rpy), -1, 0) for f in (np.sin, np.cos))
-    (r1, p1, y1), (r2, p2, y2) = np.moveaxis(rates, -1, 0), np.moveaxis(pulls, -1, 0)
+    (_, sp, sy), (_, cp, cy) = np.sin(rpy).T, np.cos(rpy).T
+    (r1, p1, y1), (r2, p2, y2) = rates.T, pulls.T
     along, across = cp * r1, cp * r2 - sp * p1 * r1 - p1 * y1
     omega = [cy * along - sy * p1, sy * along + cy * p1, y1 - sp * r1]
     turned = p2 + along * y1
     alpha = [cy * across - sy * turned, sy * across + cy * turned, y2 - sp * r2 - cp * p1 * r1]
-    return np.stack(omega, axis=-1), np.stack(alpha, axis=-1)
+    return np.array(omega).T, np.array(alpha).T

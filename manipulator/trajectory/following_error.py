@@ -123,7 +123,7 @@ class FollowingError:
         self._is_outside = 0
         self._allowed_ticks = round(FOLLOWING_PATIENCE / dt)
         self._ticks_outside = 0
-        self._worst = ''
+        self._away: Array | None = None
         self._measured: Array | None = None
 
     def command(self, joints: Array) -> None:
@@ -141,7 +141,7 @@ class FollowingError:
         self._is_outside = int((nearest > self._tolerances.following).any())
         self._ticks_outside *= self._is_outside
         # Compared with the last command: between two earlier ones no single joint is at fault.
-        self._worst, _ = self._furthest(away[-1], self._tolerances.following, 'its command')
+        self._away = away[-1]
 
     def deviation(self, is_measured: bool) -> str:
         """The joint that is farthest from the last command, in words; '' within tolerance.
@@ -152,8 +152,7 @@ class FollowingError:
             return ''
         tolerance = self._tolerances.goal if is_measured else self._tolerances.following
         away = np.abs(self._commanded[-1] - self._measured)
-        worst, excess = self._furthest(away, tolerance, 'the goal')
-        return worst if excess > 0.0 else ''
+        return self._furthest(away, tolerance, 'the goal') if (away > tolerance).any() else ''
 
     @property
     def is_closest(self) -> bool:
@@ -166,15 +165,17 @@ class FollowingError:
     @property
     def violation(self) -> str:
         """The joint that does not follow, in words; '' while all do."""
-        return self._worst if self._ticks_outside > self._allowed_ticks else ''
+        if self._away is None or self._ticks_outside <= self._allowed_ticks:
+            return ''
+        return self._furthest(self._away, self._tolerances.following, 'its command')
 
-    def _furthest(self, away: Array, tolerance: Array, what: str) -> tuple[str, float]:
-        """The joint farthest beyond its tolerance, in words, and by how much."""
+    def _furthest(self, away: Array, tolerance: Array, what: str) -> str:
+        """The joint farthest beyond its tolerance, in words."""
         k = int(np.argmax(away - tolerance))
         factor, unit = (1e3, ' mm') if self._unit == 'm' else (float(np.degrees(1.0)), '°')
         allowed = f'tolerance {tolerance[k] * factor:.3g}{unit}'
         words = f'{away[k] * factor:.3g}{unit} away from {what} ({allowed})'
-        return f'{self._names[k]} is {words}', float(away[k] - tolerance[k])
+        return f'{self._names[k]} is {words}'
 
 
 class PoseMatch:

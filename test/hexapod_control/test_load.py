@@ -59,7 +59,7 @@ def test_a_crank_range_that_is_none_is_refused(robocake_content, bounds):
 
 def test_a_home_beyond_a_limit_is_refused(robocake_content):
     robocake_content['limits']['crank_range_deg'] = [130.0, 200.0]
-    with pytest.raises(ConfigError, match='home has leg 1: crank angle'):
+    with pytest.raises(ConfigError, match=r'home has crank angle 120° on all legs, outside'):
         load(robocake_content)
 
 
@@ -115,7 +115,7 @@ def test_linear_machines_by_coordinates_load_as_well(stewart_content):
 def test_a_linear_home_beyond_the_stroke_is_refused(stewart_content):
     content = stewart_content('stewart_6_6')
     content['geometry']['home_height_mm'] = 260.0
-    with pytest.raises(ConfigError, match=r'home has leg 1: leg length 0\.2595 m outside'):
+    with pytest.raises(ConfigError, match=r'home has leg length 259\.5 mm on all legs, outside'):
         load(content)
 
 

@@ -10,6 +10,7 @@ from hexapod_control.rails import RailPlatform, RailsConfig
 from hexapod_control.workspace import sample
 from hexarm.machine_check import problems_of
 from leg_kinds import RAILS
+from manipulator.analysis.nearest import nearest_reachable
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError, NoSolution, Unreachable
 from manipulator.limits.machine_limits import JointRange
@@ -174,3 +175,45 @@ def test_servos_in_degrees_are_refused():
         text = text.replace(old, new)
     assert any(p.startswith('servos.joints: in degrees') for p in problems_of(text))
     assert problems_of(Path(RAILS).read_text()) == []
+
+
+def test_carriages_on_the_wrong_side_are_named_with_what_to_write():
+    content = parse_yaml(Path(RAILS).read_text())
+    content['geometry']['carriages'] = ['behind', 'behind', *['behind', 'ahead'] * 2]
+    with pytest.raises(ConfigError) as error:
+        load.hexapod(build(MachineFile, content))
+    (problem,) = error.value.problems
+    assert problem.startswith('limits: home has carriage position')
+    assert 'on leg 2, outside [0, 200] mm' in problem
+    sides = 'behind, ahead, behind, ahead, behind, ahead'
+    assert problem.endswith(
+        f"on their joints' other side they are at 100 mm: write carriages: [{sides}]"
+    )
+
+
+def test_each_rail_may_have_its_own_range():
+    content = parse_yaml(Path(RAILS).read_text())
+    content['limits']['rail_range_mm'] = [[0.0, 200.0]] * 5 + [[50.0, 150.0]]
+    machine = load.hexapod(build(MachineFile, content))
+    np.testing.assert_allclose(machine.joint_ranges, [[0.0] * 5 + [0.05], [0.2] * 5 + [0.15]])
+    np.testing.assert_allclose(
+        np.ptp(machine.kinematics.rail_ends, axis=1)[5],
+        0.1 * np.abs(machine.kinematics.geometry.directions[5]),
+        atol=1e-12,
+    )
+
+
+def test_no_admitted_neighbour_of_the_nearest_reachable_pose_is_nearer(rails):
+    """Limits that this kind of legs does not have, as a longest rod, leave the search its room."""
+    kinematics, length = rails.kinematics, rails.kinematics.characteristic_length
+    target = kinematics.home.moved([0.3, 0.1, 0.0, 0.0, 0.2, 0.1])
+    found = nearest_reachable(rails, target)
+    scale = np.array([1.0] * 3 + [length] * 3)
+    steps = np.random.default_rng(2).standard_normal((2000, 6)) * 1e-3 * length / scale
+    near = found.pose.moved(steps)
+    joints = kinematics.inverse_or_nan(near)
+    inside = np.isfinite(joints).all(axis=1)
+    inside[inside] = rails.constraints.admits(near[inside], joints[inside])
+    assert inside.any()
+    distances = np.linalg.norm(near[inside].twist_to(target) * scale, axis=1)
+    assert distances.min() > found.distance - 1e-4 * length

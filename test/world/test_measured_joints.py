@@ -81,16 +81,16 @@ def test_a_platform_on_drives_in_metres_reaches_its_goals_in_spite_of_play(
     assert_within_limits(world)
 
 
-def circle(home):
+def circle(home, radius=RADIUS):
     centre = home.position + np.array([0.0, 0.0, 0.05])
     return centre, arc(
-        Pose(centre + np.array([RADIUS, 0.0, 0.0]), home.rotation), centre, (0, 0, 1), 2 * np.pi
+        Pose(centre + np.array([radius, 0.0, 0.0]), home.rotation), centre, (0, 0, 1), 2 * np.pi
     )
 
 
-def followed(world, speed, stamps=None):
+def followed(world, speed, stamps=None, radius=RADIUS):
     """A circle from its first pose: the distance from it (N,) (m), and the seconds on the path."""
-    centre, poses = circle(world.machine.kinematics.home)
+    centre, poses = circle(world.machine.kinematics.home, radius)
     assert world.go_to(poses[0]).result == 'reached'
     request = PathRequest(poses, speed, Tolerance(), stamps)
     stamp, core, points = world.user.stamp, world.controller.core, []
@@ -102,13 +102,15 @@ def followed(world, speed, stamps=None):
         points.append(world.pose.position - centre)
     assert world.end_of(stamp).result == 'reached'
     x, y, z = np.array(points).T
-    return np.hypot(np.hypot(x, y) - RADIUS, z), len(points) * DT
+    return np.hypot(np.hypot(x, y) - radius, z), len(points) * DT
 
 
-@pytest.mark.parametrize('speed', [0.03, 0.1, 0.25])
-def test_a_path_is_followed_within_half_a_millimetre_rms_in_spite_of_play(make_world, speed):
+@pytest.mark.parametrize(('speed', 'radius'), [(0.03, 0.01), (0.1, 0.03), (0.25, RADIUS)])
+def test_a_path_is_followed_within_half_a_millimetre_rms_in_spite_of_play(
+    make_world, speed, radius
+):
     world = make_world(ARM, PLAY)
-    off, _ = followed(world, speed)
+    off, _ = followed(world, speed, radius=radius)
     assert np.sqrt((off**2).mean()) < 5e-4
     assert_within_limits(world)
 
@@ -122,8 +124,8 @@ def test_a_path_is_not_slowed_down_where_there_is_no_play(make_world):
 def test_a_stamped_path_keeps_its_times_in_spite_of_play(make_world):
     world = make_world(ARM, PLAY)
     count = len(circle(world.machine.kinematics.home)[1].position)
-    _, seconds = followed(world, 0.1, np.linspace(0.0, 6.0, count))
-    assert seconds < 6.0 + 1.0  # the play of its first motion is taken up before it begins
+    _, seconds = followed(world, 0.1, np.linspace(0.0, 3.0, count))
+    assert seconds < 3.0 + 1.0  # the play of its first motion is taken up before it begins
 
 
 @pytest.mark.parametrize('lateness', [0.06, 0.12])
@@ -132,7 +134,7 @@ def test_measurements_up_to_three_times_as_late_as_assumed_end_at_the_goal(make_
     for name in ('joints', 'pose'):
         world.links[name].delay += lateness
     home = world.machine.kinematics.home
-    for step in STEPS:
+    for step in STEPS[:2]:
         goal = home.moved(np.array(step))
         since = len(world.board.true_joints)
         assert world.go_to(goal).result == 'reached'
@@ -203,7 +205,7 @@ def test_at_rest_the_command_is_constant(make_world):
     assert world.go_to(world.machine.kinematics.home.moved(np.array(STEPS[0]))).result == 'reached'
     world.run(0.3)
     since = len(world.inverse.published)
-    world.run(3.0)
+    world.run(1.5)
     assert np.ptp(commands(world)[since:], axis=0).max() < 1e-9
 
 
@@ -284,7 +286,7 @@ def test_a_cycle_begins_when_its_play_is_taken_up_and_stops(make_world):
     world = make_world(ARM, PLAY)
     Requests(world).cycle(amplitude=[0.02, 0.02, 0.01, 0.05, 0.05, 0.05])
     world.wait('cycle', lambda: world.status.mode == 'cycle')
-    world.run(6.0)
+    world.run(3.0)
     Requests(world).stop()
     world.wait('stop', lambda: world.status.result == 'stopped')
     assert_within_limits(world)

@@ -111,6 +111,21 @@ def test_what_its_encoders_read_is_reported_as_measured():
     assert state.joints == tuple(Joint(Known.MEASURED, c) for c in (2990, 65_535, 0))
 
 
+def test_nothing_is_sent_before_the_rest_is_over_and_a_state_right_then():
+    board = armed(6, 3000)
+    for passed in (0.0, 0.007, 0.019):
+        board.step(passed)
+        board.take_output()
+        board.step(board.rest - 1e-6)
+        assert board.take_output() == b''
+        board.step(1e-6)
+        (state,) = [f.message for f in FrameReader().feed(board.take_output())]
+        assert isinstance(state, State)
+    board.settings = settings(boot_us=300_000)
+    board.reset(ResetCause.WATCHDOG)
+    assert board.rest == pytest.approx(0.3)
+
+
 def test_what_nobody_takes_is_dropped():
     board = Board(settings())
     board.step(60.0)

@@ -12,10 +12,12 @@ import pytest
 from hexapod_control.geometry import HexagonConfig
 from hexarm.cli.main import main
 from hexarm.machine_check import problems_of, report_of
+from hexarm.machines import load
 from leg_kinds import TILTED_CRANKS
 from manipulator.config import build, parse_yaml
 
 CONFIG = Path(__file__).parents[3] / 'config'
+REAL = Path(__file__).parents[1] / 'machines'
 ROBOCAKE = (CONFIG / 'robocake.yaml').read_text()
 ARM = (CONFIG / 'arm_6r.yaml').read_text()
 STEWART = (CONFIG / 'stewart_6_3.yaml').read_text()
@@ -123,27 +125,10 @@ def test_speeds_that_contradict_each_other_are_a_warning(key, value):
     assert warning.endswith('is one of them in another unit?')
 
 
-def precise(text):
-    """The platform as slow as telescopes are turned."""
-    rates = {
-        'linear_speed_mm_s': 0.05, 'linear_acceleration_mm_s2': 0.5, 'linear_jerk_mm_s3': 5.0,
-        'angular_speed_deg_s': 0.01, 'angular_acceleration_deg_s2': 0.01,
-        'angular_jerk_deg_s3': 0.1, 'joint_speed_mm_s': 0.1, 'joint_acceleration_mm_s2': 0.5,
-        'speed_mm_s': 0.1, 'mass_g': 3e6, 'pivot_xyz_mm': '[0, 0, 275.8]',
-    }  # fmt: skip
-    text += 'frames: {pivot_xyz_mm: 0}\n'
-    for key, value in rates.items():
-        text = re.sub(rf'\b{key}: [\d.]+', f'{key}: {value}', text)
-    return text
-
-
-def test_slow_heavy_and_hanging_machines_are_asked_nothing():
-    hanging = changed(
-        STEWART, ('height_mm: 5.0', 'height_mm: 0.0'), ('mm: 183.286', 'mm: -173.286')
-    )
-    for text in (precise(STEWART), precise(hanging)):
-        report = report_of(parse_yaml(text))
-        assert (report.problems, report.warnings) == ((), ())
+@pytest.mark.parametrize('file', sorted(REAL.glob('*.yaml')), ids=lambda file: file.stem)
+def test_large_slow_heavy_and_hanging_machines_are_asked_nothing(file):
+    report = report_of(parse_yaml(file.read_text()))
+    assert (report.problems, report.warnings) == ((), ())
 
 
 def test_problems_of_all_sections_come_at_once():
@@ -176,7 +161,7 @@ def test_home_beyond_a_limit_is_found_beside_a_faulty_section():
     found = problems_of(
         changed(ROBOCAKE, ('[30.0, 210.0]', '[130.0, 210.0]'), ('baud: 250000', 'baud: fast'))
     )
-    assert sum('home has leg' in problem for problem in found) == 6
+    assert 'limits: home has crank angle 120° on all legs, outside [130, 210]°' in found
     assert "link.baud: holds str 'fast', needs a whole number" in found
 
 
@@ -218,8 +203,23 @@ def test_pulse_range_that_does_not_cover_the_joint_range_is_named():
     (found,) = problems_of(changed(ROBOCAKE, narrow))
     # (1600 − 550) / 10.5 = 100° above the centre of 120°, (2450 − 1600) / 10.5 = 80.95° below.
     assert found == (
-        'servos.joints[1]: crank_2 reaches [39.05, 220] deg, its range in limits is [30, 210] deg'
+        'servos.joints: crank_2 reaches [39.05, 220] deg, its range in limits is [30, 210] deg'
     )
+
+
+def test_servos_that_are_too_narrow_alike_are_one_line():
+    (found,) = problems_of(changed(ROBOCAKE, ('[550.0, 2450.0]', '[700.0, 2300.0]')))
+    assert found.startswith('servos.joints: crank_1, crank_2, crank_3, crank_4, crank_5, crank_6 ')
+    assert found.endswith('reach [43.81, 196.2] deg, their range in limits is [30, 210] deg')
+
+
+def test_ranges_that_differ_are_not_written_alike_and_less_than_a_count_is_no_difference():
+    lowest = ('centre_us: 1500.0', 'centre_us: 15000.0'), ('us_per_mm: 10.0', 'us_per_mm: 100.0')
+    narrow = changed(STEWART, *lowest, ('[1000.0, 2000.0]', '[10201.0, 19800.0]'))
+    (found,) = [p for p in problems_of(narrow) if ' reach ' in p]
+    assert found.endswith('reach [142.01, 238] mm, their range in limits is [142, 238] mm')
+    narrow = changed(STEWART, *lowest, ('[1000.0, 2000.0]', '[10200.4, 19800.0]'))
+    assert problems_of(narrow) == []
 
 
 def test_park_beyond_a_limit_or_a_pulse_range_is_named():
@@ -263,8 +263,8 @@ def test_command_answers_programs(tmp_path, capsys):
 def test_file_that_is_no_machine_file_is_one_line_with_its_name(tmp_path, capsys):
     urdf = '<?xml version="1.0"?>\n<robot name="arm">' + '<link name="l"/>' * 800 + '</robot>\n'
     files = {
-        'arm.urdf': (urdf.encode(), 'is a URDF, which cannot be imported yet'),
-        'huge.urdf': (urdf.encode() * 20, 'is a URDF, which cannot be imported yet'),
+        'arm.urdf': (urdf.encode(), 'is a URDF: hexarm import FILE makes'),
+        'huge.urdf': (urdf.encode() * 20, 'is a URDF: hexarm import FILE makes'),
         'page.yaml': (b'<html>' + b'x' * 20_000, 'is XML or HTML, needs YAML'),
         'mesh.yaml': (bytes(range(256)) * 100, 'cannot be read: it is no text'),
         'text.yaml': (b'just words ' * 2000, "holds str 'just words"),
@@ -383,12 +383,88 @@ def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
     path = tmp_path / 'mine.yaml'
     path.write_text(changed(ROBOCAKE, ('us_per_deg: 10.5', 'us_per_deg: 5.25')))
     assert main(['check', str(path)]) == 0
-    head, warning, home = capsys.readouterr().out.splitlines()
+    head, warning, home, *_ = capsys.readouterr().out.splitlines()
     assert head == f'{path}: no problems, 1 warning'
     assert warning.startswith('warning: servos.joints: crank_1, crank_2')
     assert home == f'joints at home: {"  ".join(["2.094473"] * 6)} rad'
     assert main(['check', str(path), '--units', 'mm']) == 0
-    home = capsys.readouterr().out.splitlines()[-1]
+    _, _, home, moves, turns, margins = capsys.readouterr().out.splitlines()
     assert home == f'joints at home: {"  ".join(["120.0045"] * 6)} °'
+    assert moves == (
+        'reach from home: x -15.627 … 15.627  y -15.192 … 19.682  z -17.800 … 17.910 mm'
+    )
+    assert turns.startswith('reach from home: roll -13.3190 … 17.3988  pitch')
+    assert margins.startswith('smallest margins at home: rod shortfall 12.43 mm (leg ')
     assert main(['check', 'stewart_6_6']) == 0
     assert '0.190000  0.190000 m' in capsys.readouterr().out
+
+
+BY_COORDINATES = (CONFIG / 'reachy_mini.yaml').read_text()
+
+
+def bent_the_other_way(content):
+    """The same machine with its tangents along the horns, as they are published; undoes itself."""
+    low, high = content['limits']['crank_range_deg']
+    content['limits']['crank_range_deg'] = [180.0 - high, 180.0 - low]
+    tangents = content['geometry']['crank_tangents']
+    content['geometry']['crank_tangents'] = [[-c for c in tangent] for tangent in tangents]
+    servos = content['servos']
+    servos['park_deg'] = [180.0 - angle for angle in servos['park_deg']]
+    for joint in servos['joints']:
+        joint['centre_deg'], joint['sign'] = 180.0 - joint['centre_deg'], -joint['sign']
+    return content
+
+
+def test_horns_as_hobbyists_enter_them_are_told_what_to_write():
+    naive = bent_the_other_way(parse_yaml(BY_COORDINATES))
+    (problem,) = report_of(naive).problems
+    assert problem.startswith('limits: home has crank angle ')
+    assert 'outside [-80, 80]°; bent the other way it is 31.34°, 39.6°, ' in problem
+    assert 'on all legs: negate the crank_tangents' in problem
+    assert 'crank_range_deg: [100, 260], centre_deg and park_deg 180 minus' in problem
+    assert report_of(bent_the_other_way(naive)).problems == ()
+
+
+def test_one_wrong_word_in_every_entry_of_a_list_is_one_line():
+    assert problems_of(changed(ROBOCAKE, ('centre_deg', 'center_deg'))) == [
+        "servos.joints[0, 1, 2, 3, 4, 5].center_deg: unknown key, did you mean 'centre_deg'?"
+    ]
+
+
+@pytest.mark.parametrize('text', [ROBOCAKE, STEWART, ARM, UR5, BY_COORDINATES])
+def test_one_wrong_letter_is_one_line(text):
+    text = re.sub('#.*|^description.*', '', re.sub('".*?"', 'x', text), flags=re.MULTILINE)
+    for word in sorted({*re.findall(r'(\w{4,}):', text), *re.findall(r'^kind: (\w+)', text)}):
+        wrong = re.sub(rf'\b{word}\b', f'{word[:2]}q{word[3:]}', text, count=1)
+        assert len(problems_of(wrong)) == 1, (word, problems_of(wrong))
+
+
+def test_the_kind_of_another_machine_is_one_line():
+    assert problems_of(changed(STEWART, ('kind: linear_hexapod', 'kind: serial_arm'))) == [
+        "kind: 'serial_arm', but geometry has the keys of a linear_hexapod"
+    ]
+
+
+def test_faults_of_servos_and_a_home_beyond_limits_come_together():
+    found = problems_of(
+        changed(ROBOCAKE, ('[30.0, 210.0]', '[130.0, 210.0]'), ('crank_3, ch', 'crank3, ch'))
+    )
+    assert found == [
+        'limits: home has crank angle 120° on all legs, outside [130, 210]°',
+        "servos.joints: none is called 'crank_3', but 'crank3'",
+    ]
+
+
+def test_reach_and_margins_are_there_for_programs(capsys):
+    assert main(['check', 'stewart_6_6', '--json']) == 0
+    found = json.loads(capsys.readouterr().out)
+    low, high = found['reach']['z']
+    machine = load('stewart_6_6')
+    home = machine.kinematics.home
+    for end in (low, high):
+        edge = home.moved(np.array([0.0, 0.0, end, 0.0, 0.0, 0.0]))
+        beyond = home.moved(np.array([0.0, 0.0, 1.001 * end, 0.0, 0.0, 0.0]))
+        assert machine.constraints.admits(edge, machine.kinematics.inverse(edge))
+        assert not machine.constraints.admits(beyond, machine.kinematics.inverse(beyond))
+    margins = {m['quantity']: m['margin'] for m in found['smallest_margins']}
+    assert margins['leg length'] == pytest.approx(0.048, abs=1e-6)

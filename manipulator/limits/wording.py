@@ -1,0 +1,55 @@
+"""Violated limits in the words and units of a machine file, alike ones together."""
+
+import math
+from collections.abc import Iterable, Sequence
+from itertools import groupby
+
+import numpy as np
+
+from manipulator.arrays import Array
+from manipulator.limits.limit import Violation
+
+UNITS = {'rad': (math.degrees(1.0), '°'), 'm': (1e3, ' mm')}
+"""Of machine files: how many are one of ours, and their name."""
+DECIMALS = 5
+
+
+def in_words(violations: Iterable[Violation]) -> list[str]:
+    """One text for each limit, as 'crank angle -173.8° on all legs, outside [-90, 90]°'."""
+    alike = groupby(violations, key=lambda v: (v.quantity, v.low, v.high))
+    return [_of_one_limit(list(some)) for _, some in alike]
+
+
+def degrees_in_words(angles: Array) -> str:
+    """Angles in radians as degrees: '0°', or '0.1°, 0.2°' where they differ."""
+    return _listed(np.degrees(angles), '°', 4)
+
+
+def _of_one_limit(some: Sequence[Violation]) -> str:
+    factor, unit = UNITS.get(some[0].unit, (1.0, ''))
+    digits = max(v.digits for v in some)
+    low, high = (f'{factor * end:.{digits}g}' for end in (some[0].low, some[0].high))
+    span = f'outside [{low}, {high}]'
+    if not math.isfinite(some[0].high):
+        span = f'below {low}'
+    elif not math.isfinite(some[0].low):
+        span = f'above {high}'
+    values = _listed(np.array([v.value for v in some]) * factor, unit, digits)
+    owners = _owners([v.owner for v in some])
+    return f'{some[0].quantity} {values}{owners}, {span}{unit}'
+
+
+def _owners(owners: Sequence[str]) -> str:
+    """As ' on legs 1, 3', of 'leg 1' and 'leg 3'; empty where nobody in particular is meant."""
+    numbers = [owner.split(' ')[-1] for owner in owners if owner]
+    if not numbers:
+        return ''
+    noun = owners[0].split(' ')[0]
+    if len(numbers) == 1:
+        return f' on {noun} {numbers[0]}'
+    return f' on all {noun}s' if len(numbers) == 6 else f' on {noun}s {", ".join(numbers)}'
+
+
+def _listed(values: Array, unit: str, digits: int) -> str:
+    texts = [f'{value:.{digits}g}{unit}' for value in np.round(values, DECIMALS) + 0.0]
+    return texts[0] if len(set(texts)) == 1 else ', '.join(texts)
