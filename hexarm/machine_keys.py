@@ -110,7 +110,8 @@ def keys_of(schema: Any, place: str = '') -> Iterator[Key]:
 
 def tables() -> str:
     """The generated part of docs/machine-files.md."""
-    lines = ['## The file', '', *_table(MachineFile, is_flat=True)]
+    kinds = ', '.join(f'`{kind}`' for kind in KINDS)
+    lines = ['## The file', '', *_table(MachineFile, is_flat=True), f'Kinds: {kinds}.', '']
     for kind in KINDS:
         for name in OF_KINDS:
             schema = sections_of(kind)[name]
@@ -130,7 +131,7 @@ def json_schema() -> dict[str, Any]:
         top['properties'][name] |= _schema(schema)
     kinds = []
     for kind in KINDS:
-        own = {name: _schema(sections_of(kind)[name]) for name in OF_KINDS}
+        own = {n: _schema(s) for n, s in sections_of(kind).items() if n in OF_KINDS}
         kinds.append(
             {
                 'if': {'properties': {'kind': {'const': kind}}, 'required': ['kind']},
@@ -146,7 +147,7 @@ def _table(schema: Any, is_flat: bool = False) -> list[str]:
     for key in keys_of(schema):
         if is_flat and '.' in key.place:
             continue
-        meaning = key.field.metadata['meaning']
+        meaning = re.sub(r'docs/(\S+\.md)', r'[\1](\1)', key.field.metadata['meaning'])
         cells = (f'`{key.place}`', key.kind, key.unit, key.range, key.default, meaning)
         rows.append(f'| {" | ".join(cells)} |')
     return [*rows, '']

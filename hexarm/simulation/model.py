@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from arm_control.geometry import ArmLimits
+from arm_control.joint_limits import ArmLimits
 from hexapod_control.geometry import LEGS
 from hexapod_control.load_stack import section_files
 from hexapod_control.stack_kinematics import StackKinematics
