@@ -99,7 +99,7 @@ def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
         found.problems += home
         if calibration is not None:
             found.problems += contradictions(machine, calibration, is_home_good=not home)
-    doubts = () if machine is None else warnings_of(machine, calibration)
+    doubts = [] if machine is None else warnings_of(machine, calibration, content['geometry'])
     return Report(_merged(found.problems), tuple(doubts), machine)
 
 
