@@ -305,7 +305,7 @@ def test_a_goal_during_a_joint_move_is_planned_from_the_joints_that_the_move_has
     for time in np.arange(DT, move.duration - LEADS[0] * DT, DT):
         active.time = time
         planning = Planning(replace(arm, kinematics=Costly(arm.kinematics)), DT, worker)
-        planning.request(Goal(arm.kinematics.home, 1.0))
+        planning.request(Goal(arm.kinematics.home, 1.0), move.at(time).pose, move.joints_at(time))
         planning.step(active, move.joints_at(time))
         _, task, *_ = worker.waiting[-1]
         _, ahead = task.args
