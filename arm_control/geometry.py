@@ -1,19 +1,18 @@
-"""A serial arm in its machine file: three forms of geometry, each as a `Chain`; joint limits."""
+"""A serial arm in its machine file: four forms of geometry, each as a `Chain`."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from arm_control.chain import Chain
-from manipulator.arrays import Array, frozen
-from manipulator.config import PLACE_MM, RATE, SIZE_MM, TURN_DEG, key, quantity
+from arm_control.chain import JOINTS, Chain
+from manipulator.arrays import Array
+from manipulator.config import PLACE_MM, SIZE_MM, TURN_DEG, key, quantity
 from manipulator.errors import ConfigError
-from manipulator.formatting import length
-from manipulator.limits.constraints import Constraints
-from manipulator.limits.machine_limits import JointRange
+from manipulator.formatting import counted, length
 from manipulator.pose import Pose
 
-JOINTS = 6
 SixAngles = tuple[float, float, float, float, float, float]
 Three = tuple[float, float, float]
 
@@ -27,6 +26,9 @@ HOME_ANGLES = 'joint angles at home'
 FAR_MM = 1e8
 """Along an axis a point may lie as far off as a double keeps to 0.01 µm, for `placed` moves it."""
 
+MOST_DEG = 360_000.0
+"""Of a joint range or a home position: a thousand turns either way, by gears and winches."""
+
 
 @dataclass(frozen=True)
 class LengthsConfig:
@@ -39,7 +41,7 @@ class LengthsConfig:
     L2_mm: float = quantity(*SIZE_MM, 'from joint 2 to joint 3')
     L3_mm: float = quantity(*SIZE_MM, 'from joint 3 to the centre of the wrist')
     tool_mm: float = quantity(0, PLACE_MM[1], 'from there to the tool')
-    home_deg: SixAngles = quantity(*TURN_DEG, HOME_ANGLES)
+    home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
 
     def chain(self) -> Chain:
         """Axes and points by the paper's figure 1."""
@@ -57,15 +59,15 @@ class LengthsConfig:
 
 @dataclass(frozen=True)
 class DhRow:
-    """One line of a standard Denavit–Hartenberg table; offset_deg is θ at joint angle zero.
+    """One line of a Denavit–Hartenberg table; offset_deg is θ at joint angle zero.
 
     Between axes that are almost parallel, as in a calibrated UR, d is huge and says nothing of the
     arm's size: the next ones take it back. `placed` judges the size.
     """
 
-    a_mm: float = quantity(*PLACE_MM, 'along the new x axis')
-    alpha_deg: float = quantity(*TURN_DEG, 'about the new x axis')
-    d_mm: float = quantity(-FAR_MM, FAR_MM, 'along the old z axis')
+    a_mm: float = quantity(*PLACE_MM, 'along the x axis')
+    alpha_deg: float = quantity(*TURN_DEG, 'about the x axis')
+    d_mm: float = quantity(-FAR_MM, FAR_MM, 'along the joint axis')
     offset_deg: float = quantity(*TURN_DEG, 'θ at joint angle 0', default=0.0)
 
 
@@ -74,7 +76,7 @@ class DhConfig:
     """Standard Denavit–Hartenberg parameters: each link is Rz(θ)·Tz(d)·Tx(a)·Rx(α)."""
 
     dh: tuple[DhRow, DhRow, DhRow, DhRow, DhRow, DhRow] = key('standard Denavit–Hartenberg table')
-    home_deg: SixAngles = quantity(*TURN_DEG, HOME_ANGLES)
+    home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
     tool_mm: float = quantity(0, PLACE_MM[1], 'to the tool along z of frame 6', default=0.0)
 
     def chain(self) -> Chain:
@@ -84,9 +86,33 @@ class DhConfig:
         for row in self.dh:
             axes.append(frame[:3, 2])
             points.append(frame[:3, 3])
-            frame = frame @ _link(row)
-        tool = frame[:3, 3] + self.tool_mm * 1e-3 * frame[:3, 2]
-        return Chain(np.array(axes), np.array(points), Pose(tool, frame[:3, :3]))
+            frame = frame @ _about_z(row) @ _along_x(row)
+        return _chain(axes, points, frame, self.tool_mm)
+
+
+@dataclass(frozen=True)
+class ModifiedDhConfig:
+    """Modified Denavit–Hartenberg parameters (Craig): each link is Rx(α)·Tx(a)·Rz(θ)·Tz(d).
+
+    Row i holds α and a of the link before joint i: often written αᵢ₋₁ and aᵢ₋₁.
+    """
+
+    modified_dh: tuple[DhRow, DhRow, DhRow, DhRow, DhRow, DhRow] = key(
+        'modified Denavit–Hartenberg table (Craig): α and a of the link before the joint'
+    )
+    home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
+    tool_mm: float = quantity(0, PLACE_MM[1], 'to the tool along z of frame 6', default=0.0)
+
+    def chain(self) -> Chain:
+        """Joint i turns about the z axis of frame i; the tool lies along z of frame 6."""
+        frame = np.eye(4)
+        axes, points = [], []
+        for row in self.modified_dh:
+            frame = frame @ _along_x(row)
+            axes.append(frame[:3, 2])
+            points.append(frame[:3, 3])
+            frame = frame @ _about_z(row)
+        return _chain(axes, points, frame, self.tool_mm)
 
 
 @dataclass(frozen=True)
@@ -111,7 +137,7 @@ class ScrewsConfig:
     )
     tool_position_mm: Three = quantity(*PLACE_MM, 'the tool there')
     tool_rpy_deg: Three = quantity(*TURN_DEG, 'its roll, pitch and yaw')
-    home_deg: SixAngles = quantity(*TURN_DEG, HOME_ANGLES)
+    home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
 
     def chain(self) -> Chain:
         """As given, with axes of unit length."""
@@ -125,7 +151,21 @@ class ScrewsConfig:
         )
 
 
-ArmGeometry = LengthsConfig | DhConfig | ScrewsConfig
+ArmGeometry = LengthsConfig | DhConfig | ModifiedDhConfig | ScrewsConfig
+
+
+def check_axes(geometry: Mapping[str, Any], limits: Mapping[str, Any]) -> None:
+    """Raises ConfigError, with one sentence, for an arm of another number of axes than six."""
+    lists = {f'geometry.{form}': geometry.get(form) for form in ('dh', 'modified_dh', 'screws')}
+    for place, rows in (lists | {'limits.joints': limits.get('joints')}).items():
+        if isinstance(rows, list) and len(rows) != JOINTS:
+            raise ConfigError([f'{place}: has {other_axes(len(rows))}'])
+
+
+def other_axes(count: int) -> str:
+    """What is said of an arm with `count` axes, which are not six."""
+    there = counted(count, 'axis', 'axes')
+    return f'{there}, arms with 6 are supported; 5 and 7 are planned'
 
 
 def placed(chain: Chain) -> Chain:
@@ -159,82 +199,26 @@ def _check_size(places: Array) -> None:
         raise ConfigError([f'geometry: {whole}, {ends}: is it in another unit?'])
 
 
-def _link(row: DhRow) -> Array:
-    theta, alpha = np.radians([row.offset_deg, row.alpha_deg])
-    (ct, ca), (st, sa) = np.cos([theta, alpha]), np.sin([theta, alpha])
-    a, d = row.a_mm * 1e-3, row.d_mm * 1e-3
-    return np.array(
-        [
-            [ct, -st * ca, st * sa, a * ct],
-            [st, ct * ca, -ct * sa, a * st],
-            [0.0, sa, ca, d],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
+def _about_z(row: DhRow) -> Array:
+    """Rz(θ)·Tz(d), which commute."""
+    cosine, sine = _of(row.offset_deg)
+    d = row.d_mm * 1e-3
+    return np.array([[cosine, -sine, 0, 0], [sine, cosine, 0, 0], [0, 0, 1, d], [0, 0, 0, 1.0]])
 
 
-JOINT_NAMES = tuple(f'joint_{i}' for i in range(1, JOINTS + 1))
-OWNERS = tuple(f'joint {i}' for i in range(1, JOINTS + 1))
+def _along_x(row: DhRow) -> Array:
+    """Tx(a)·Rx(α), which commute."""
+    cosine, sine = _of(row.alpha_deg)
+    a = row.a_mm * 1e-3
+    return np.array([[1, 0, 0, a], [0, cosine, -sine, 0], [0, sine, cosine, 0], [0, 0, 0, 1.0]])
 
 
-@dataclass(frozen=True)
-class JointConfig:
-    """One joint in the units of its machine file."""
-
-    range_deg: tuple[float, float] = quantity(-720, 720, 'travel')
-    speed_deg_s: float = quantity(*RATE, 'largest')
-    acceleration_deg_s2: float = quantity(*RATE, 'largest')
-
-    def __post_init__(self) -> None:
-        """Raises ConfigError for an empty range."""
-        low, high = self.range_deg
-        if not low < high:
-            raise ConfigError([f'range_deg: [{low:g}, {high:g}] is empty'])
+def _of(degrees: float) -> tuple[float, float]:
+    """Cosine and sine."""
+    return float(np.cos(np.radians(degrees))), float(np.sin(np.radians(degrees)))
 
 
-@dataclass(frozen=True)
-class ArmLimits:
-    """The `limits` section of a serial arm's machine file.
-
-    damping_onset is the singular value below which a posture counts as near to singular, with
-    metres divided by characteristic_length_mm (docs/arm-kinematics.md, 8).
-    """
-
-    joints: tuple[JointConfig, JointConfig, JointConfig, JointConfig, JointConfig, JointConfig] = (
-        key('base first')
-    )
-    characteristic_length_mm: float = quantity(
-        *SIZE_MM, 'what one radian counts: about half the reach'
-    )
-    damping_onset: float = quantity(
-        0.001, 0.5, 'singular value from which a posture is near to singular'
-    )
-
-    def joint_limits(self) -> 'JointLimits':
-        """In radians."""
-        ranges = np.radians([joint.range_deg for joint in self.joints])
-        return JointLimits(
-            ranges[:, 0],
-            ranges[:, 1],
-            np.radians([joint.speed_deg_s for joint in self.joints]),
-            np.radians([joint.acceleration_deg_s2 for joint in self.joints]),
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class JointLimits:
-    """Arrays (6,) in rad, rad/s and rad/s²."""
-
-    low: Array
-    high: Array
-    speed: Array
-    acceleration: Array
-
-    def __post_init__(self) -> None:
-        """Freezes the arrays."""
-        for name in ('low', 'high', 'speed', 'acceleration'):
-            object.__setattr__(self, name, frozen(getattr(self, name)))
-
-    def constraints(self) -> Constraints:
-        """The joint ranges alone: a serial arm may stand in a singular posture."""
-        return Constraints((JointRange(self.low, self.high, OWNERS),))
+def _chain(axes: list[Array], points: list[Array], frame: Array, tool_mm: float) -> Chain:
+    """With a tool along z of the last frame."""
+    tool = frame[:3, 3] + tool_mm * 1e-3 * frame[:3, 2]
+    return Chain(np.array(axes), np.array(points), Pose(tool, frame[:3, :3]))

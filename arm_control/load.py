@@ -5,7 +5,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.geometry import ArmGeometry, ArmLimits, placed
+from arm_control.geometry import ArmGeometry, check_axes, placed
+from arm_control.joint_limits import ArmLimits
 from arm_control.rate_scaling import AT_ONCE
 from arm_control.resolved_rate import STRAIGHT, JogState, ResolvedRate
 from manipulator.arrays import Array, frozen
@@ -166,13 +167,13 @@ def _serial_arm(geometry: ArmGeometry, limits: ArmLimits) -> SerialArm:
     return SerialArm(placed(geometry.chain()), limits.joint_limits(), length, rest)
 
 
-KINDS = {KIND: Kind(ArmGeometry, ArmLimits, _serial_arm)}
+KINDS = {KIND: Kind(ArmGeometry, ArmLimits, _serial_arm, check_axes)}
 
 
 def jogging(machine_file: MachineFile) -> ResolvedRate:
     """The resolved-rate step of one file's arm, within its joint and motion limits."""
-    limits = build(ArmLimits, machine_file.limits, 'limits')
     kinematics = serial_arm(machine_file)
+    limits = build(ArmLimits, machine_file.limits, 'limits')
     motion = MotionLimits.from_config(machine_file.motion)
     own = kinematics.limits
     motion = replace(motion, joint=motion.joint.tightened(own.speed, own.acceleration))

@@ -10,7 +10,7 @@ from typing import Literal
 from bridge.protocol import MAX_JOINTS
 from manipulator.config import PLACE_MM, RATE, build, key, quantity
 from manipulator.errors import ConfigError
-from manipulator.formatting import counted, shown
+from manipulator.formatting import counted, shown, told_apart
 from manipulator.machine import MachineFile
 
 PARK = 'positions at which the servos are switched on and off, in the order of joints'
@@ -50,7 +50,8 @@ class ServoConfig:
             problems.append(f'sign: {self.sign} is neither 1 nor -1')
         low, high = self.pulse_range_us
         if not low <= self.centre_us <= high:
-            problems.append(f'centre_us: {self.centre_us:g} outside [{low:g}, {high:g}]')
+            centre, *ends = told_apart([self.centre_us, low, high])
+            problems.append(f'centre_us: {centre} outside [{", ".join(ends)}]')
         if problems:
             raise ConfigError([f'{self.name}: {problem}' for problem in problems])
 
@@ -156,6 +157,9 @@ class BoardConfig:
     @classmethod
     def from_machine(cls, machine: MachineFile, source: str = '') -> 'BoardConfig':
         """Checked against the schemas above; ConfigError lists everything that is wrong."""
+        if machine.driver != 'serial':
+            problem = f'driver: {machine.driver}, the machine has no board and no servos of ours'
+            raise ConfigError([problem], source)
         sections = {
             'servos': machine.servos,
             'link': machine.link,

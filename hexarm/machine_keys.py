@@ -49,12 +49,8 @@ GENERATED = '<!-- From here on generated: python -m hexarm.machine_keys -->\n'
 def sections_of(kind: str) -> dict[str, Any]:
     """The schema of each section that depends on the kind, and of the bridge's."""
     room = KINDS[kind]
-    return {
-        'geometry': room.geometry,
-        'limits': room.limits,
-        'dynamics': SCHEMAS[kind],
-        **BRIDGE,
-    }
+    own = {'geometry': room.geometry, 'limits': room.limits, 'dynamics': SCHEMAS.get(kind)}
+    return {name: schema for name, schema in own.items() if schema is not None} | BRIDGE
 
 
 @dataclasses.dataclass(frozen=True)
@@ -109,11 +105,11 @@ def keys_of(schema: Any, place: str = '') -> Iterator[Key]:
 
 def tables() -> str:
     """The generated part of docs/machine-files.md."""
-    lines = ['## The file', '', *_table(MachineFile, is_flat=True)]
+    kinds = ', '.join(f'`{kind}`' for kind in KINDS)
+    lines = ['## The file', '', *_table(MachineFile, is_flat=True), f'Kinds: {kinds}.', '']
     for kind in KINDS:
-        for name in OF_KINDS:
-            schema = sections_of(kind)[name]
-            for form in forms_of(schema):
+        for name, schema in sections_of(kind).items():
+            for form in forms_of(schema) if name in OF_KINDS else ():
                 lines += [f'### `{name}` of a `{kind}`{_form(form, schema)}', '', *_table(form)]
     others = {'frames': FramesConfig, 'task_space': TaskSpaceConfig}
     for name, schema in {'motion': MotionConfig, **BRIDGE, **others}.items():
@@ -129,7 +125,7 @@ def json_schema() -> dict[str, Any]:
         top['properties'][name] |= _schema(schema)
     kinds = []
     for kind in KINDS:
-        own = {name: _schema(sections_of(kind)[name]) for name in OF_KINDS}
+        own = {n: _schema(s) for n, s in sections_of(kind).items() if n in OF_KINDS}
         kinds.append(
             {
                 'if': {'properties': {'kind': {'const': kind}}, 'required': ['kind']},
@@ -145,7 +141,7 @@ def _table(schema: Any, is_flat: bool = False) -> list[str]:
     for key in keys_of(schema):
         if is_flat and '.' in key.place:
             continue
-        meaning = key.field.metadata['meaning']
+        meaning = re.sub(r'docs/(\S+\.md)', r'[\1](\1)', key.field.metadata['meaning'])
         cells = (f'`{key.place}`', key.kind, key.unit, key.range, key.default, meaning)
         rows.append(f'| {" | ".join(cells)} |')
     return [*rows, '']

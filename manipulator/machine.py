@@ -1,8 +1,8 @@
 """A machine as the nodes use it: its kinematics, its limits, its jogger."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Literal, TypeVar
 
 import numpy as np
 
@@ -30,15 +30,25 @@ class MachineFile:
     """The sections of a machine file; each room checks its own against its own schema.
 
     geometry and limits belong to the kind of machine, servos, link and simulation to the bridge,
-    dynamics to hexarm/simulation/.
+    dynamics to hexarm/simulation/. driver: what moves the joints, a board on a serial line
+    (sections servos and link) or other software, by topics (neither).
     """
 
     kind: str = key('of machine')
     geometry: dict[str, Any] = key('where the joints are')
     limits: dict[str, Any] = key('what the machine may not exceed')
     motion: MotionConfig = key('how fast it may move (docs/motion.md)')
-    servos: dict[str, Any] = key('its servos, and the pulses for their positions')
-    link: dict[str, Any] = key('the serial line to the board')
+    driver: Literal['serial', 'topic'] = key(
+        'what moves the joints: a board on a serial line, or other software (docs/your-arm.md)',
+        default='serial',
+    )
+    servos: dict[str, Any] = key(
+        'its servos, and the pulses for their positions; only with driver: serial',
+        default_factory=dict,
+    )
+    link: dict[str, Any] = key(
+        'the serial line to the board; only with driver: serial', default_factory=dict
+    )
     description: str = key('one line, for lists', default='')
     simulation: dict[str, Any] | None = key(
         "what the fake board's servos and battery do", default=None
@@ -50,20 +60,35 @@ class MachineFile:
         default_factory=TaskSpaceConfig,
     )
 
+    def __post_init__(self) -> None:
+        """Raises ConfigError for sections of the bridge that are missing, or without a use."""
+        parts = {'servos': self.servos, 'link': self.link}
+        if self.driver == 'serial':
+            problems = [f'{name}: missing' for name, part in parts.items() if not part]
+        else:
+            parts['simulation'] = self.simulation or {}
+            unused = [name for name, part in parts.items() if part]
+            problems = [f'{name}: without a use, driver: topic has no board' for name in unused]
+        if problems:
+            raise ConfigError(problems)
+
 
 @dataclass(frozen=True)
 class Kind(Generic[T]):
     """A kind of machine: the schemas of its sections geometry and limits, and what makes it.
 
-    geometry may be a union of forms; make takes both sections as built by the schemas.
+    geometry may be a union of forms; make takes both sections as built by the schemas. screen
+    raises ConfigError for sections of which no schema has to tell more.
     """
 
     geometry: Any
     limits: type
     make: Callable[[Any, Any], T]
+    screen: Callable[[Mapping[str, Any], Mapping[str, Any]], None] = lambda geometry, limits: None
 
     def build(self, machine_file: MachineFile) -> T:
         """What a file of this kind makes; ConfigError with all problems of both sections."""
+        self.screen(machine_file.geometry, machine_file.limits)
         sections: tuple[Any, Any] = build_both(
             (self.geometry, machine_file.geometry, 'geometry'),
             (self.limits, machine_file.limits, 'limits'),

@@ -105,8 +105,10 @@ def answer(arguments: argparse.Namespace) -> Answer:
 
 def servo_errors(kinematics: Kinematics, file: MachineFile, noise: float) -> JointErrors:
     """The requested noise, dead band and play of the machine file's simulated servos."""
-    config = BoardConfig.from_machine(file)
     count = len(kinematics.joint_names)
+    if file.driver != 'serial':
+        return JointErrors(np.full(count, noise), np.zeros(count), np.zeros(count))
+    config = BoardConfig.from_machine(file)
     servos = config.servos.joints[:count]  # an arm's gripper comes after its joints
     per_unit = [servo.us_per_mm or servo.us_per_deg or math.inf for servo in servos]
     unit = 1e-3 if kinematics.joint_unit == 'm' else math.radians(1.0)
@@ -119,6 +121,8 @@ def servo_errors(kinematics: Kinematics, file: MachineFile, noise: float) -> Joi
 
 def common_error(file: MachineFile, noise: float, joints: int) -> JointErrors:
     """One signal within ±noise on all servos, in the direction that each servo turns."""
+    if file.driver != 'serial':
+        return JointErrors.common(np.full(joints, noise))
     servos = BoardConfig.from_machine(file).servos.joints[:joints]
     return JointErrors.common(noise * np.array([float(servo.sign) for servo in servos]))
 

@@ -17,6 +17,8 @@ from hexarm.cli.answers import (
 from hexarm.cli.statuses import STATUSES
 from hexarm.machines import load
 from manipulator.arrays import Array
+from manipulator.errors import InvalidInput
+from manipulator.formatting import counted
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.unit_hints import hint_at_metres
@@ -37,6 +39,10 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     add_machine(parser)
     add_pose(parser)
     parser.add_argument('--all', action='store_true', help='every branch, also beyond limits')
+    parser.add_argument(
+        '--near', nargs='+', type=float, metavar='Q',
+        help='one a joint, rad or m (or ° or mm): the branch and turns nearest to these',
+    )  # fmt: skip
     parser.set_defaults(run=answering(answer))
 
 
@@ -46,16 +52,32 @@ def answer(arguments: argparse.Namespace) -> Answer:
     pose = pose_asked(arguments)
     kinematics = machine.kinematics
     with hint_at_metres(kinematics, pose):
-        joints = kinematics.inverse(pose)
+        joints = kinematics.inverse(pose, near_of(arguments, machine))
         if arguments.all:
             return every_branch(machine, pose, units_of(arguments))
         machine.constraints.check(pose, joints)
     names, positions, units = list(kinematics.joint_names), joints.tolist(), units_of(arguments)
+    width = max(12, *map(len, names))
     lines = [
-        f'{name:<12} {units.quantities([position], kinematics.joint_unit):>16}'
+        f'{name:<{width}} {units.quantities([position], kinematics.joint_unit):>16}'
         for name, position in zip(names, positions, strict=True)
     ]
     return {'joints': {'names': names, 'positions': positions}}, lines
+
+
+def near_of(arguments: argparse.Namespace, machine: Machine) -> Array | None:
+    """The joints (n,) of --near; None without it, InvalidInput for another number of them."""
+    if arguments.near is None:
+        return None
+    names, units = machine.kinematics.joint_names, units_of(arguments)
+    if len(arguments.near) != len(names):
+        count = counted(len(arguments.near), 'number')
+        raise InvalidInput(f'--near: {count}, needs {len(names)}: {", ".join(names)}')
+    is_angle = machine.kinematics.joint_unit == 'rad'
+    near: Array = np.array(arguments.near) / (units.per_radian if is_angle else units.per_metre)
+    if not np.isfinite(near).all():
+        raise InvalidInput(f'--near: {near[~np.isfinite(near)][0]}, needs finite numbers')
+    return near
 
 
 def every_branch(machine: Machine, pose: Pose, units: Units) -> Answer:
@@ -74,10 +96,12 @@ def every_branch(machine: Machine, pose: Pose, units: Units) -> Answer:
     unit = kinematics.joint_unit
     headers = [f'{name} ({units.name(unit)})' for name in names]
     numbers = [[units.number(value, unit) for value in q] for q in closed]
+    width = max(14, *map(len, headers))
     lines = [
-        '  '.join(f'{header:>14}' for header in headers),
+        '  '.join(f'{header:>{width}}' for header in headers),
         *(
-            '  '.join(f'{number:>14}' for number in row) + (f'  {broken[0]}' if broken else '')
+            '  '.join(f'{number:>{width}}' for number in row)
+            + (f'  {broken[0]}' if broken else '')
             for row, broken in zip(numbers, violations, strict=True)
         ),
     ]

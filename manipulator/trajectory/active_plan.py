@@ -8,27 +8,35 @@ from dataclasses import dataclass
 from manipulator.errors import Refused
 from manipulator.planning.cycle import Cycle
 from manipulator.planning.joint_move import JointMove
+from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
 from manipulator.planning.point_to_point import LineMove, MoveInMotion
+from manipulator.planning.stream import StreamMove
 from manipulator.states import MotionMode
 
 MODES: dict[type, MotionMode] = {
     Hold: MotionMode.HOLD,
     LineMove: MotionMode.MOVE,
     MoveInMotion: MotionMode.MOVE,
+    StreamMove: MotionMode.MOVE,
     JointMove: MotionMode.MOVE,
     Cycle: MotionMode.CYCLE,
     TimedPath: MotionMode.PATH,
+    JointTrajectory: MotionMode.PATH,
 }
+
+
+TIMED = TimedPath, JointTrajectory
 
 
 @dataclass
 class ActivePlan:
-    """A plan, the stamp of the goal that it came from, and how far its own time has come."""
+    """A plan, stamp and note of the goal that it came from, and how far its own time has come."""
 
     plan: Plan
     stamp: float = 0.0
+    note: str = ''
     time: float = 0.0
 
     @property
@@ -58,8 +66,9 @@ class ActivePlan:
 
     @property
     def percent(self) -> int | None:
-        """How much of a path's time is over; None for other plans."""
-        return self.plan.percent(self.time) if isinstance(self.plan, TimedPath) else None
+        """How much of the time of a path or trajectory is over; None for other plans."""
+        plan = self.plan
+        return plan.percent(self.time) if isinstance(plan, TIMED) else None
 
 
 SPEEDING_UP_RATE = 2.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from arm_control.closed_forms import ParallelAxes, SphericalWrist
-from arm_control.geometry import ArmLimits
+from arm_control.joint_limits import ArmLimits
 from arm_control.load import arm, jogging, serial_arm
 from arm_control.numerical import Numerical
 from bridge.servo_config import BoardConfig
@@ -59,7 +59,7 @@ def test_a_geometry_of_no_form_or_two_is_refused(machine_file):
     dh = machine_file('ur5').geometry['dh']
     neither, both = {'home_deg': [0.0] * 6}, {**file.geometry, 'dh': dh}
     for geometry, said in (
-        (neither, r"one of \['L1_mm', 'dh', 'screws'\]"),
+        (neither, r"one of \['L1_mm', 'dh', 'modified_dh', 'screws'\]"),
         (both, 'dh: unknown'),
     ):
         with pytest.raises(ConfigError, match=said):
@@ -78,7 +78,7 @@ def test_every_fault_of_the_limits_is_named(machine_file):
 
 
 ENDS = {
-    'range_deg': (-720.0, 720.0),
+    'range_deg': (-360_000.0, 360_000.0),
     'speed_deg_s': (1e-6, 1e9),
     'acceleration_deg_s2': (1e-6, 1e9),
     'characteristic_length_mm': (1e-3, 1e6),
