@@ -49,7 +49,11 @@ class Stream:
 
     def continued(self, goal: Goal, now: float) -> Goal:
         """The goal, with its flow where it continues a stream; now in seconds."""
-        is_simple = goal.then is None and goal.joints is None and goal.motion is not Motion.JOINT
+        is_simple = (
+            goal.joints is None
+            and goal.motion is not Motion.JOINT
+            and (goal.then is None or isinstance(goal.then, Goal))
+        )
         last = self._recent[-1] if self._recent else None
         if not is_simple or last is None or not 0.0 < goal.stamp - last.stamp <= LONGEST_GAP:
             self._recent.clear()
