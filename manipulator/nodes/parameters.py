@@ -65,8 +65,8 @@ def checked(name: str, value: Any, default: Any, bounds: tuple[float, float] | N
 CHOICES: dict[str, tuple[type[Enum], str]] = {
     'goal_motion': (
         Motion,
-        'how a machine at rest goes to goal_pose: line, joint (all joints in proportion), or any '
-        '(a line where it can)',
+        'how a machine at rest goes to goal_pose: line, joint (all joints in proportion), any '
+        '(a line where it can), or unwind (joint, to the branch and turns of home)',
     ),
     'goal_orientation': (
         Orientation,

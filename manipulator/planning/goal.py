@@ -19,6 +19,8 @@ class Motion(Enum):
     """All joints in proportion: to the nearest branch, wherever the tool passes."""
     ANY = 'any'
     """A line where the machine can drive it, else a joint move."""
+    UNWIND = 'unwind'
+    """All joints in proportion: to home's branch, and the turns nearest to home's."""
 
 
 class OnUnreachable(Enum):

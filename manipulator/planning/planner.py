@@ -61,7 +61,7 @@ def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pla
     cannot be slowed down enough, or costs more `effort` than a plan may.
     """
     refuse_absurd(machine, goal.pose)
-    if goal.motion is Motion.JOINT:
+    if goal.motion in (Motion.JOINT, Motion.UNWIND):
         return _plan_joints(machine, start, goal, effort)
     flowing = (
         None if goal.flow is None else _plan_stream(machine, start, goal.pose, goal.flow, effort)
@@ -164,7 +164,8 @@ def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> 
     joints = goal.joints
     if joints is None:
         check_goal(machine, goal.pose, start.joints)
-        joints = machine.kinematics.inverse(goal.pose, start.joints)
+        near = None if goal.motion is Motion.UNWIND else start.joints
+        joints = machine.kinematics.inverse(goal.pose, near)
     joints = _off_the_stops(machine, joints)
 
     def move(limits: MotionLimits, slowdown: float) -> Plan:

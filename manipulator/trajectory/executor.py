@@ -68,6 +68,11 @@ class Executor:
         return self._active.state
 
     @property
+    def active(self) -> ActivePlan:
+        """The plan that is executed, a hold plan at rest."""
+        return self._active
+
+    @property
     def newest_stamp(self) -> float:
         """The stamp of the newest goal, active or waiting."""
         waiting = self._planning.goal or self._next
