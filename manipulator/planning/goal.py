@@ -50,9 +50,10 @@ class Goal:
 
     then: the path or cycle to drive from there, whose first pose it is, or another goal. joints
     (n,): those to arrive with, None where any of the pose's will do. orientation: where the
-    pose's comes from.
-    flow: of the stream of goals that it continues, None where it continues none. on_unreachable:
-    see there. note: what is to be said of it while it is pursued, as that it is the nearest pose.
+    pose's comes from. flow: of the stream of goals that it continues, None where it continues
+    none. on_unreachable: see there. received: when, by a monotonic clock, in seconds; 0 where
+    that is not known. note: what is to be said of it while it is pursued, as that it is the
+    nearest pose.
     """
 
     pose: Pose
@@ -63,4 +64,5 @@ class Goal:
     orientation: OrientationRule = field(default_factory=OrientationRule)
     flow: Flow | None = None
     on_unreachable: OnUnreachable = OnUnreachable.REFUSE
+    received: float = 0.0
     note: str = ''
