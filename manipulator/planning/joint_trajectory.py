@@ -119,13 +119,12 @@ def plan_joint_trajectory(
     its time. Raises Refused, with the point, joint, value and limit, where a limit would be
     broken, and where the machine stands elsewhere: times are never changed.
     """
-    whole = points.of_all(machine.kinematics.joint_names, start.joints)
-    _check_begin(machine, start, whole)
+    _check_begin(machine, start, points)
     if points.times[-1] > MOST_TICKS * start.dt:
         most = MOST_TICKS * start.dt
         raise Refused(f'the trajectory would take {points.times[-1]:.0f} s, at most {most:.0f} s')
-    for curve, ends in _curves(machine, start, whole):
-        plan = _plan(machine, start, curve, ends, whole.numbers, effort)
+    for curve, ends in _curves(machine, start, points):
+        plan = _plan(machine, start, curve, ends, points.numbers, effort)
         try:
             peak = check_plan(plan, machine, start.joints, start.dt, effort)
         except NoSolution as error:
