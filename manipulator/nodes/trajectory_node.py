@@ -135,7 +135,13 @@ class TrajectoryNode(Node):
         pose = pose_of(message, (BASE_FRAME, WORK_FRAME), rule.is_given)
         stamp = seconds(message.header.stamp)
         self._controller.pursue(
-            Goal(pose, stamp, motion=chosen.motion, orientation=rule),
+            Goal(
+                pose,
+                stamp,
+                motion=chosen.motion,
+                orientation=rule,
+                on_unreachable=chosen.on_unreachable,
+            ),
             lambda error: self._goals.refuse(message, error),
             time.monotonic(),
             is_of_platform,
