@@ -173,7 +173,8 @@ def _curves(
     elif points.velocities is not None:
         still = np.zeros((1, positions.shape[1]))
         velocities = np.concatenate([still, points.velocities[skipped:]])
-        accelerations = np.concatenate([still, points.accelerations[skipped:]])
+        first = points.accelerations[:1] if skipped else still
+        accelerations = np.concatenate([first, points.accelerations[skipped:]])
         yield splines(times, positions, velocities, accelerations), points.times
         return
     most, limits = room(times), machine.motion.for_plans.joint

@@ -258,3 +258,22 @@ def test_a_platform_refuses_joints_that_do_not_fit_together_on_the_way(make_worl
     assert refused.result == 'refused'
     assert 'on the trajectory: forward kinematics found no pose' in refused.reason
     assert world.moved(since) <= 1.0
+
+
+def test_a_trajectory_may_begin_with_its_full_acceleration(arm):
+    """As planners make them: an acceleration that falls as a cosine from the first point on."""
+    begin, duration = arm.joints[5], 0.6
+    pull = 0.97 * arm.machine.motion.for_plans.angular.acceleration
+    times = np.linspace(0.0, duration, 13)
+    phase, rate = np.pi * times / duration, np.pi / duration
+    rows = zip(
+        times.tolist(),
+        (begin + pull / rate**2 * (1 - np.cos(phase))).tolist(),
+        (pull / rate * np.sin(phase)).tolist(),
+        (pull * np.cos(phase)).tolist(),
+        strict=True,
+    )
+    points = [JointPoint(t, [q], [v], [a]) for t, q, v, a in rows]
+    assert arm.end_of(send(arm, ('joint_6',), points)).result == 'reached'
+    arm.run(0.3)
+    assert arm.joints[5] == pytest.approx(begin + 2 * pull / rate**2, abs=2e-3)
