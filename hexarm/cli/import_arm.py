@@ -2,6 +2,7 @@
 
 import argparse
 import re
+from dataclasses import replace
 from pathlib import Path
 
 from arm_control.urdf_chain import arm_of
@@ -19,6 +20,9 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument('--base', metavar='LINK', help='default: the root')
     parser.add_argument(
         '--tip', metavar='LINK', help='default: the last link that six axes move, or tool0'
+    )
+    parser.add_argument(
+        '--prefix', default='', metavar='TEXT', help='before the name of each joint, as in left_'
     )
     parser.add_argument(
         '--home', nargs=6, type=float, metavar='DEG', help='the joints at home; default: chosen'
@@ -40,6 +44,8 @@ def answer(arguments: argparse.Namespace) -> Answer:
     try:
         robot = read_urdf(_text_of(source))
         arm = arm_of(robot, arguments.base, arguments.tip)
+        named = (replace(joint, name=arguments.prefix + joint.name) for joint in arm.joints)
+        arm = replace(arm, joints=tuple(named))
         wishes = Wishes(arguments.home, arguments.acceleration)
         imported = machine_text(arm, robot.name or source.stem, source.name, wishes)
     except ConfigError as error:

@@ -348,11 +348,23 @@ def test_an_arm_ends_at_what_carries_its_fingers():
 
 def test_command_writes_a_file_that_is_good_and_never_over_another(tmp_path, capsys):
     source, output = saved(tmp_path, weighed(), 'arm.urdf'), tmp_path / 'mine.yaml'
-    words = ['import', source, '--tip', 'tool', '--output', str(output), '--json']
+    words = [
+        'import',
+        source,
+        '--tip',
+        'tool',
+        '--prefix',
+        'l/',
+        '--output',
+        str(output),
+        '--json',
+    ]
     assert main(words) == 0
     answer = json.loads(capsys.readouterr().out)
     assert answer['tip'] == 'tool'
     assert any('acceleration' in line for line in answer['assumed'])
+    assert machines.load(str(output)).kinematics.joint_names == tuple(answer['joints'])
+    assert answer['joints'][0] == 'l/joint_0'
     assert main(['check', str(output)]) == 0
     capsys.readouterr()
     before = output.read_text()
