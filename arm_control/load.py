@@ -95,7 +95,8 @@ class ArmJogger:
         line = motion.off_line, motion.is_leaving, motion.is_under_way
         before = JogState(motion.joints, motion.rates, *line)
         step = self.jog.step(before, self._of_tool(wanted, motion.pose), dt, slowing)
-        state = step.state
+        state, along = step.state, step.driven * wanted
+        along.setflags(write=False)
         return JogMotion(
             self.frames.pivot(self.jog.arm.chain.forward(state.joints)),
             state.joints,
@@ -106,7 +107,7 @@ class ArmJogger:
             state.off_line,
             state.is_leaving,
             state.is_under_way,
-            frozen(step.driven * wanted),
+            along,
         )
 
     def _of_tool(self, twist: Array, T_work_pivot: Pose) -> Array:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+from numpy import empty
 
 from hexapod_control.geometry import LEGS, RotaryGeometry
 from hexapod_control.parallel_platform import ParallelPlatform
@@ -45,7 +46,7 @@ class RotaryHexapod(ParallelPlatform):
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """Crank angles (..., 6); see `Kinematics`. Elbow out unless `near` is nearer elbow in."""
         position = pose.position
-        joints = np.empty(LEGS if position.ndim == 1 else (*position.shape[:-1], LEGS))
+        joints = empty(LEGS if position.ndim == 1 else (*position.shape[:-1], LEGS))
         if near is not None:
             near = stretched(near, joints.shape)
         if crank_inverse(self.legs, position, pose.rotation, near, joints):

@@ -62,7 +62,7 @@ class PlateConfig:
     """
 
     source: str = key(SOURCE)
-    mass_g: float = quantity(*MASS_G, 'of one')
+    mass_g: float = quantity(*MASS_G, 'of the plate')
     thickness_mm: float = quantity(*SIZE_MM, 'of the plate')
     centre_mm: Three = quantity(*PLACE_MM, 'of mass, platform frame', default=(0.0, 0.0, 0.0))
     inertia_g_mm2: Three | None = quantity(0, 1e18, INERTIA, default=None)
@@ -80,7 +80,7 @@ class PayloadConfig:
     source: str = key(SOURCE)
     mass_g: float = quantity(0, MASS_G[1], '0 is nothing')
     radius_mm: float = quantity(*SIZE_MM, 'of a cylinder')
-    height_mm: float = quantity(*SIZE_MM, 'of it')
+    height_mm: float = quantity(*SIZE_MM, 'of the cylinder')
 
 
 @dataclass(frozen=True)
@@ -194,6 +194,11 @@ class ArmDynamicsConfig:
     )
     payload: PayloadConfig = key('what is carried, on the xy plane of the moving frame')
     compensation: bool = key(COMPENSATION, default=False)
+
+
+@dataclass(frozen=True)
+class StackDynamicsConfig:
+    """A stack has no masses and drives but those of its sections."""
 
 
 SCHEMAS: dict[str, type[RotaryDynamicsConfig | LinearDynamicsConfig | ArmDynamicsConfig]] = {
