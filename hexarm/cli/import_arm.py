@@ -63,13 +63,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
         raise ConfigError(error.problems, str(source)) from error
     stem = re.sub(r'\W+', '_', robot.name or source.stem).strip('_') or 'arm'
     output: Path = arguments.output or Path(f'{stem}.yaml')
-    try:
-        with output.open('x', encoding='utf-8') as file:
-            file.write(imported.text)
-    except FileExistsError:
-        raise InvalidInput(f'{output} exists: another name with --output') from None
-    except OSError as error:
-        raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
+    _write(output, imported.text)
     is_rounded = closed_form(arm.chain) is None and closed_form(exact.chain) is not None
     lines = [
         f'{output}: {arm.base} to {arm.tip}, {", ".join(joint.name for joint in arm.joints)}',
@@ -81,6 +75,17 @@ def answer(arguments: argparse.Namespace) -> Answer:
     names = [joint.name for joint in arm.joints]
     answer = {'output': str(output), 'base': arm.base, 'tip': arm.tip, 'joints': names}
     return answer | {'assumed': list(imported.assumed)}, lines
+
+
+def _write(output: Path, text: str) -> None:
+    """InvalidInput where it cannot be written, or is there."""
+    try:
+        with output.open('x', encoding='utf-8') as file:
+            file.write(text)
+    except FileExistsError:
+        raise InvalidInput(f'{output} exists: another name with --output') from None
+    except OSError as error:
+        raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
 
 
 def _text_of(path: Path) -> str:
