@@ -115,7 +115,7 @@ def report_of(content: Mapping[str, Any]) -> Report:
         found.problems += home
         if calibration is not None:
             found.problems += _between(machine, calibration, is_home_good=not home)
-    doubts = () if machine is None else warnings_of(machine, calibration)
+    doubts = [] if machine is None else warnings_of(machine, calibration, content['geometry'])
     return Report(_merged(found.problems), tuple(doubts), machine)
 
 

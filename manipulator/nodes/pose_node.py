@@ -73,7 +73,7 @@ class Markers:
         if now < self._next or self._publisher.get_subscription_count() == 0:
             return
         self._next = now + PERIOD
-        width = WIDTH * float(kinematics.home.position[2])
+        width = WIDTH * kinematics.characteristic_length
         strokes = enumerate(kinematics.skeleton(pose, joints))
         markers = [_marker(k, stroke, width, self._frame, stamp) for k, stroke in strokes]
         self._publisher.publish(MarkerArray(markers=markers))

@@ -10,11 +10,13 @@ from hexarm import machine_keys
 from hexarm.machine_check import problems_of
 from hexarm.machine_keys import KINDS, keys_of, sections_of
 from hexarm.machines import KINDS as LOADED
+from leg_kinds import FOLDER
 from manipulator.config import forms_of, parse_yaml
 from manipulator.machine import MachineFile
 
 CONFIG = Path(__file__).parents[2] / 'config'
 MACHINES = [path for path in sorted(CONFIG.glob('*.yaml')) if 'kind:' in path.read_text()]
+MACHINES += sorted(FOLDER.glob('*.yaml'))
 REAL = sorted(Path(__file__).with_name('machines').glob('*.yaml'))
 VALIDATOR = jsonschema.Draft7Validator(json.loads(machine_keys.SCHEMA.read_text()))
 WRITE = 'write it anew: python -m hexarm.machine_keys'

@@ -14,6 +14,7 @@ from hexapod_control.geometry import HexagonConfig
 from hexarm.cli.main import main
 from hexarm.machine_check import problems_of, report_of
 from hexarm.machines import content_of, load
+from leg_kinds import TILTED_CRANKS
 from manipulator.config import build, parse_yaml
 
 CONFIG = Path(__file__).parents[3] / 'config'
@@ -375,6 +376,17 @@ def test_home_on_the_wrong_bend_is_a_warning_with_both_values():
     (warning,) = report.warnings
     assert 'crank_1, crank_2, crank_3, crank_4, crank_5, crank_6 at 109.9°' in warning
     assert 'on the other branch: 0.0°, 0.0°' in warning
+
+
+def test_tangents_that_rise_without_axes_are_a_warning_that_says_which_plane_was_taken():
+    text = Path(TILTED_CRANKS).read_text()
+    assert report_of(parse_yaml(text)).warnings == ()
+    content = parse_yaml(text)
+    del content['geometry']['crank_axes']
+    (warning,) = report_of(content).warnings
+    assert warning.startswith('geometry.crank_tangents: crank_1, crank_2')
+    assert '14.1°' in warning
+    assert 'vertical plane' in warning
 
 
 def test_tilted_home_in_the_middle_of_its_range_is_no_warning():
