@@ -13,7 +13,14 @@ from hexarm.cli.main import main
 
 @pytest.mark.parametrize(
     ('machine', 'freedoms'),
-    [('robocake', 24), ('stewart_6_3', 24), ('stewart_6_6', 24), ('arm_6r', 6), ('ur5', 6)],
+    [
+        ('robocake', 24),
+        ('stewart_6_3', 24),
+        ('stewart_6_6', 24),
+        ('linear_rails', 24),
+        ('arm_6r', 6),
+        ('ur5', 6),
+    ],
 )
 def test_file_is_read_by_mujoco(tmp_path, capsys, machine, freedoms):
     path = tmp_path / 'machine.xml'
