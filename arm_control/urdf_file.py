@@ -169,7 +169,8 @@ def _joint(name: str, element: ET.Element) -> UrdfJoint:
     keys = ('lower', 'upper', 'velocity', 'effort')
     lower, upper, velocity, effort = (_number(limit, key) for key in keys)
     return UrdfJoint(
-        name, kind, parent, child, _origin(element), _axis(element.find('axis')),
+        name, kind, parent, child, _origin(element),
+        _axis(element.find('axis') if kind != 'fixed' else None),
         lower, upper, velocity, effort, '' if mimic is None else mimic.get('joint', '?'),
     )  # fmt: skip
 

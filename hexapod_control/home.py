@@ -47,10 +47,12 @@ def _other_bend(machine: Machine, kinematics: RotaryHexapod, has_tangents: bool)
     is_other = ((joints < low) | (joints > high)) & (other >= low) & (other <= high)
     if not is_other.all():
         return ''
-    ends = ', '.join(f'{180.0 - end:.6g}' for end in np.degrees([high[0], low[0]]))
+    turned = 180.0 - np.degrees(np.stack([high, low], axis=1))
+    pairs = [f'[{first:.6g}, {last:.6g}]' for first, last in turned]
+    ends = pairs[0] if len(set(pairs)) == 1 else f'[{", ".join(pairs)}]'
     write = (
         'negate the crank_tangents (and crank_axes, if there are any) and count the angles '
-        f'from there: crank_range_deg: [{ends}], '
+        f'from there: crank_range_deg: {ends}, '
         'centre_deg and park_deg 180 minus what they are, and each sign the other'
     )
     if not has_tangents:

@@ -8,6 +8,7 @@ import numpy as np
 from hexapod_control.assembly_modes import modes_of
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.parallel_platform import ParallelPlatform
+from hexapod_control.stack_kinematics import StackKinematics
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution
 from manipulator.framed_machine import FramedKinematics
@@ -53,7 +54,7 @@ class Modes:
 def all_modes(machine: Machine, joints: Array) -> Modes:
     """Every pose with joints (6,); a serial machine's joints have but one.
 
-    Raises NoSolution for joints that are not six finite numbers, or fix no pose.
+    Raises NoSolution for joints that are not six finite numbers, or fix no pose, and for stacks.
     """
     poses, is_complete = _poses(machine.kinematics, joints)
     modes = (_judged(machine, pose, joints, at_home) for pose, at_home in poses)
@@ -65,6 +66,8 @@ def _poses(kinematics: Kinematics, joints: Array) -> tuple[list[tuple[Pose, bool
     if isinstance(kinematics, FramedKinematics):
         poses, is_complete = _poses(kinematics.inner, joints)
         return [(kinematics.frames.pivot(pose), side) for pose, side in poses], is_complete
+    if isinstance(kinematics, StackKinematics):
+        raise NoSolution('a stack has those of its sections, combined')
     if not isinstance(kinematics, ParallelPlatform):
         return [(kinematics.forward(joints).pose, True)], True
     found = modes_of(kinematics, joints)

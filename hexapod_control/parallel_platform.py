@@ -8,7 +8,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from hexapod_control.forward import rules, solution
+from hexapod_control.forward import End, rules, solution
 from hexapod_control.geometry import LEGS
 from hexapod_control.leg_jacobian import (
     leg_jacobian,
@@ -219,6 +219,20 @@ class ParallelPlatform(ABC):
             position, rotation, report,
         )  # fmt: skip
         return solution(position, rotation, report, margin)
+
+    def forward_or_nan(self, joints: Array, near: Pose) -> Pose:
+        """As `forward` for joints (..., 6), from `near` (...); NaN for no pose."""
+        shape = np.broadcast_shapes(np.shape(joints)[:-1], near.position.shape[:-1])
+        position, rotation = np.empty((*shape, 3)), np.empty((*shape, 3, 3))
+        report = np.empty((*shape, 5))
+        _kernel.platform_forward(
+            self.parameters, self.warm, stretched(joints, (*shape, LEGS)),
+            stretched(near.position, (*shape, 3)), stretched(near.rotation, (*shape, 3, 3)),
+            position, rotation, report,
+        )  # fmt: skip
+        missed = report[..., 0] != End.FOUND
+        position[missed], rotation[missed] = np.nan, np.nan
+        return Pose.unchecked(position, rotation)
 
     def is_as_at_home(self, pose: Pose, joints: Array) -> Mask:
         """Which configurations (...) are on home's side of every singularity, of both types."""

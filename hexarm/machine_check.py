@@ -1,10 +1,10 @@
 """Everything that is wrong with a machine file: in each section, and between them."""
 
-import difflib
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -13,16 +13,21 @@ from bridge.calibration import Calibration
 from bridge.servo_config import ServosConfig
 from hexapod_control import load as hexapods
 from hexapod_control.home import home_problems
+from hexapod_control.load_stack import StackConfig
+from hexapod_control.stack_kinematics import StackKinematics
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
+from hexarm.machine_spelling import corrected
 from hexarm.machine_warnings import warnings_of
-from hexarm.machines import frames_of, loader
+from hexarm.machines import frames_of, loader, with_sections
+from hexarm.simulation.dynamics_config import SCHEMAS
 from manipulator.arrays import Array
-from manipulator.config import build, forms_of, parse_yaml
+from manipulator.config import build, forms_of, nearest, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
-from manipulator.formatting import shown
+from manipulator.formatting import shown, told_apart
 from manipulator.limits.wording import in_words
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionConfig
+from manipulator.pose import Pose
 
 T = TypeVar('T')
 ROOM = ('geometry', 'limits')
@@ -32,6 +37,10 @@ INDEX = re.compile(r'\[(\d+)\]')
 
 STAND_IN = MotionConfig(1.0, 1.0, 10.0, 1.0, 1.0, 10.0)
 """For a motion section with faults of its own, so that the others are looked at all the same."""
+
+
+PARK_SHARE = 1e-4
+"""m or rad by which a stack's park position may be off the rule that shares its motion."""
 
 
 class Findings:
@@ -60,10 +69,10 @@ class Report:
     machine: Machine | None = None
 
 
-def problems_of(text: str) -> list[str]:
-    """All problems of a machine file's text, none for a good one."""
+def problems_of(text: str, folder: Path = Path()) -> list[str]:
+    """All problems of the text of a machine file in a folder, none for a good one."""
     try:
-        return list(report_of(parse_yaml(text)).problems)
+        return list(report_of(with_sections(parse_yaml(text), folder)).problems)
     except ConfigError as error:
         return list(error.problems)
 
@@ -75,11 +84,15 @@ def report_of(content: Mapping[str, Any]) -> Report:
     as both are good: home, names, units, ranges, speeds and the park position.
     """
     found = Findings()
+    content = dict(corrected(MachineFile, content, '', found.problems))
+    kind = _kind(found, content)
+    schemas = sections_of(kind) if kind else BRIDGE
+    content = content | {
+        name: corrected(schema, content[name], name, found.problems)
+        for name, schema in schemas.items()
+        if name in content
+    }
     whole = found.of(lambda: build(MachineFile, content))
-    kind, other = str(content.get('kind')), _kind_by_keys(content)
-    if other:
-        found.problems.append(f'kind: {shown(kind)}, but geometry has the keys of a {other}')
-    schemas = sections_of(kind) if kind in KINDS and not other else BRIDGE
     unfit = _unfit(kind, content)
     if unfit:
         return Report(unfit)
@@ -88,21 +101,37 @@ def report_of(content: Mapping[str, Any]) -> Report:
         for name, schema in schemas.items()
         if isinstance(content.get(name), Mapping)
     }
-    is_whole = all(sections.get(name) for name in ROOM if name in schemas)
+    if kind == 'stack':
+        _check_sections(found, sections.get('geometry'))
     machine = None
-    if isinstance(content.get('kind'), str) and is_whole and not other:
+    if kind and all(sections.get(name) for name in ROOM):
         machine = found.of(lambda: _machine(kind, content, whole))
     if machine is not None and whole is not None:
         found.of(partial(frames_of, whole, machine.kinematics))
         machine = found.of(partial(machine.within, whole.task_space)) or machine
     calibration = _calibration(found, sections.get('servos'))
     if machine is not None:
-        home = _home_problems(machine, content)
+        home = _home_problems(kind, machine, content)
         found.problems += home
         if calibration is not None:
             found.problems += _between(machine, calibration, is_home_good=not home)
     doubts = [] if machine is None else warnings_of(machine, calibration, content['geometry'])
     return Report(_merged(found.problems), tuple(doubts), machine)
+
+
+def _kind(found: Findings, content: Mapping[str, Any]) -> str:
+    """The kind that the file is of, whatever it says of it; empty where nothing tells."""
+    told, likely = content.get('kind'), _kind_by_keys(content)
+    if not isinstance(told, str):
+        return likely
+    if told not in KINDS:
+        found.of(lambda: loader(told))
+        return likely
+    own, other = (_shared(content, kind) for kind in (told, likely or told))
+    if other > FEW * max(own, 1):
+        found.problems.append(f'kind: {shown(told)}, but geometry has the keys of a {likely}')
+        return likely
+    return told
 
 
 def _unfit(kind: str, content: Mapping[str, Any]) -> tuple[str, ...]:
@@ -118,16 +147,18 @@ def _unfit(kind: str, content: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _kind_by_keys(content: Mapping[str, Any]) -> str:
-    """The kind whose keys the section geometry has, where it has none of the kind that is told."""
-    geometry, told = content.get('geometry'), content.get('kind')
-    if not isinstance(geometry, Mapping) or not isinstance(told, str) or told not in KINDS:
-        return ''
-    shared = {
-        kind: max(len({f.name for f in fields(form)} & {*geometry}) for form in forms_of(room))
-        for kind, room in ((name, KINDS[name].geometry) for name in KINDS)
-    }
-    likely = max(shared, key=shared.__getitem__)
-    return likely if shared[likely] > FEW * max(shared[told], 1) else ''
+    shared = {kind: _shared(content, kind) for kind in KINDS}
+    best = max(shared.values())
+    return next(kind for kind in KINDS if shared[kind] == best) if best else ''
+
+
+def _shared(content: Mapping[str, Any], kind: str) -> int:
+    """How many keys of the section geometry this kind has."""
+    geometry = content.get('geometry')
+    keys = {*geometry} if isinstance(geometry, Mapping) else set()
+    return max(
+        len({f.name for f in fields(form)} & keys) for form in forms_of(KINDS[kind].geometry)
+    )
 
 
 def _calibration(found: Findings, servos: object) -> Calibration | None:
@@ -136,8 +167,8 @@ def _calibration(found: Findings, servos: object) -> Calibration | None:
     return found.of(lambda: Calibration.from_config(servos))
 
 
-def _home_problems(machine: Machine, content: Mapping[str, Any]) -> list[str]:
-    if content['kind'] not in hexapods.KINDS:
+def _home_problems(kind: str, machine: Machine, content: Mapping[str, Any]) -> list[str]:
+    if kind not in hexapods.KINDS:
         return []
     return home_problems(machine, 'crank_tangents' in content['geometry'])
 
@@ -162,22 +193,32 @@ def _machine(kind: str, content: Mapping[str, Any], whole: MachineFile | None) -
     return make(MachineFile(kind, geometry, limits, motion, driver='topic'))
 
 
+def _check_sections(found: Findings, geometry: object) -> None:
+    """What the sections of a stack say of their masses and drives."""
+    for i, section in enumerate(geometry.sections if isinstance(geometry, StackConfig) else ()):
+        if section.dynamics is not None and section.kind in SCHEMAS:
+            where = f'geometry.sections[{i}].dynamics'
+            found.of(partial(build, SCHEMAS[section.kind], section.dynamics, where))
+
+
 def _between(machine: Machine, calibration: Calibration, is_home_good: bool) -> Iterator[str]:
     """Contradictions between servos and machine; where home is wrong, park can hardly be right."""
-    expected, names = machine.kinematics.joint_names, calibration.names
-    missing = [name for name in expected if name not in names]
-    for name in missing:
-        near = difflib.get_close_matches(name, set(names) - set(expected), n=1)
-        yield f'servos.joints: none is called {name!r}{f", but {near[0]!r}" if near else ""}'
+    expected, names = machine.kinematics.joint_names, list(calibration.names)
+    for name in (name for name in expected if name not in names):
+        near = nearest(name, [other for other in names if other not in expected])
+        yield f'servos.joints: none is called {name!r}{f", but {near!r}" if near else ""}'
+        if near:
+            names[names.index(near)] = name
     if calibration.unit != machine.kinematics.joint_unit:
         unit = 'millimetres' if calibration.unit == 'm' else 'degrees'
         yield f'servos.joints: in {unit}, which are not what the joints of this kind are in'
-    elif not missing:
+        return
+    yield from _slow_servos(machine, calibration)
+    if {*expected} <= {*names}:
         order = [names.index(name) for name in expected]
         yield from _narrow_servos(machine, calibration, order)
         if is_home_good:
             yield from _park_problems(machine, calibration, order)
-        yield from _slow_servos(machine, calibration)
 
 
 def _narrow_servos(machine: Machine, calibration: Calibration, order: list[int]) -> Iterator[str]:
@@ -187,23 +228,13 @@ def _narrow_servos(machine: Machine, calibration: Calibration, order: list[int])
         lowest, highest = calibration.range_of(i)
         count = 1.0 / abs(float(calibration.scale[i]))
         if lowest > low + count or highest < high - count:
-            ends = np.array([lowest, highest, low, high]) * factor
-            narrow.setdefault(_told_apart(ends, unit), []).append(calibration.names[i])
+            ends = told_apart(np.array([lowest, highest, low, high]) * factor, fewest=4)
+            reach, span = (f'[{low}, {high}] {unit}' for low, high in (ends[:2], ends[2:]))
+            narrow.setdefault((reach, span), []).append(calibration.names[i])
     for (reach, span), some in narrow.items():
         reaches, whose = ('reach', 'their') if len(some) > 1 else ('reaches', 'its')
         names = ', '.join(some)
         yield f'servos.joints: {names} {reaches} {reach}, {whose} range in limits is {span}'
-
-
-def _told_apart(ends: Array, unit: str) -> tuple[str, str]:
-    """Two intervals, with as many digits as tell them apart."""
-    for digits in range(4, 13):
-        reach, span = (
-            f'[{low:.{digits}g}, {high:.{digits}g}] {unit}' for low, high in (ends[:2], ends[2:])
-        )
-        if reach != span:
-            break
-    return reach, span
 
 
 def _park_problems(machine: Machine, calibration: Calibration, order: list[int]) -> Iterator[str]:
@@ -216,6 +247,22 @@ def _park_problems(machine: Machine, calibration: Calibration, order: list[int])
         return
     for words in in_words(machine.constraints.violations(pose, park)):
         yield f'servos.park_{unit}: {words}'
+    if isinstance(machine.kinematics, StackKinematics):
+        yield from _unshared_park(machine.kinematics, pose, park, unit)
+
+
+def _unshared_park(
+    kinematics: StackKinematics, pose: Pose, park: Array, unit: str
+) -> Iterator[str]:
+    """Of a stack, whose joints at a pose are those of a rule: it would jump when it is enabled."""
+    joints = kinematics.inverse_or_nan(pose, park)
+    worst = int(np.argmax(np.abs(joints - park)))
+    if not np.abs(joints - park)[worst] < PARK_SHARE:
+        yield (
+            f'servos.park_{unit}: not where the sections share the pose of the end '
+            f'(docs/kinematics.md, 9): {kinematics.joint_names[worst]} would be at '
+            f'{joints[worst]:.5g} {kinematics.joint_unit}'
+        )
 
 
 def _slow_servos(machine: Machine, calibration: Calibration) -> Iterator[str]:
@@ -223,9 +270,10 @@ def _slow_servos(machine: Machine, calibration: Calibration) -> Iterator[str]:
     expected = float(np.max(machine.motion.joint.speed)) * factor
     rated = calibration.speed * factor
     if np.isfinite(expected) and expected > rated * (1 + 1e-9):
+        asked, most = told_apart([expected, rated])
         yield (
-            f'motion.joint_speed_{unit}_s: {expected:g} is more than the servos do '
-            f'(servos.speed_{unit}_s: {rated:g})'
+            f'motion.joint_speed_{unit}_s: {asked} is more than the servos do '
+            f'(servos.speed_{unit}_s: {most})'
         )
 
 

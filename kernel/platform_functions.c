@@ -11,6 +11,7 @@
 #include "python.h"
 #include "rods.h"
 #include "se3.h"
+#include "stack.h"
 #include "vector.h"
 
 static void by_axis(const real points[3 * LEGS], real columns[3][LEGS])
@@ -173,6 +174,34 @@ static Py_ssize_t call_limited_values(real *const *a, Py_ssize_t items)
 FUNCTION(limited_values, {WHOLE, NUMBERS(struct platform)}, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, LEGS},
          {WRITTEN, VALUES})
 
+/* Stack; whether each end begins where the one before came to, all of the row then ending with the
+   first that does not settle; ends; free twists; sections; whether they settled. */
+static Py_ssize_t call_stack_sections(real *const *a, Py_ssize_t items)
+{
+    const struct stack *stack = (const struct stack *)a[0];
+    for (Py_ssize_t i = 0; i < items; i++) {
+        struct placement end, sections[MOST_SECTIONS];
+        real *free = a[4] + 6 * MOST_SECTIONS * i;
+        a[7][i] = 0;
+        if (i > 0 && *a[1] != 0) {
+            if (a[7][i - 1] == 0)
+                continue;
+            memcpy(free, free - 6 * MOST_SECTIONS, 6 * MOST_SECTIONS * sizeof(real));
+        }
+        memcpy(end.position, a[2] + 3 * i, sizeof end.position);
+        memcpy(end.rotation, a[3] + 9 * i, sizeof end.rotation);
+        a[7][i] = stack_sections(stack, &end, free, sections);
+        for (int k = 0; k < (int)stack->count; k++) {
+            memcpy(a[5] + 3 * (MOST_SECTIONS * i + k), sections[k].position, 3 * sizeof(real));
+            memcpy(a[6] + 9 * (MOST_SECTIONS * i + k), sections[k].rotation, 9 * sizeof(real));
+        }
+    }
+    return 0;
+}
+FUNCTION(stack_sections, {WHOLE, NUMBERS(struct stack)}, {WHOLE, 1}, {ITEMS, 3}, {ITEMS, 9},
+         {WRITTEN, 6 * MOST_SECTIONS}, {WRITTEN, 3 * MOST_SECTIONS}, {WRITTEN, 9 * MOST_SECTIONS},
+         {WRITTEN, 1})
+
 static Py_ssize_t call_limit_ranges(real *const *a, Py_ssize_t items)
 {
     for (Py_ssize_t i = 0; i < items; i++)
@@ -322,6 +351,7 @@ PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(forward_by_lengths),
     METHOD(platform_forward),
     METHOD(limited_values),
+    METHOD(stack_sections),
     METHOD(limit_ranges),
     METHOD(keeps_limits),
     METHOD(rotation_exp),

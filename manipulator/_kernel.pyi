@@ -65,6 +65,18 @@ def limited_values(
 ) -> int:
     """0; `values` is written: kernel/limits.h."""
 
+def stack_sections(
+    stack: Array,
+    is_row: Array,
+    position: Array,
+    rotation: Array,
+    free: Array,
+    positions: Array,
+    rotations: Array,
+    settled: Array,
+) -> int:
+    """0; the last four are written, `free` says where the descent begins: kernel/stack.h."""
+
 def limit_ranges(platform: Array, low: Array, high: Array, ranges: Array) -> int:
     """0; `ranges` is written: kernel/limits.h."""
 

@@ -69,7 +69,7 @@ class PlateConfig:
     """
 
     source: str = key(SOURCE)
-    mass_g: float = quantity(*MASS_G, 'of one')
+    mass_g: float = quantity(*MASS_G, 'of the plate')
     thickness_mm: float = quantity(*SIZE_MM, 'of the plate')
     centre_mm: Three = quantity(*PLACE_MM, 'of mass, platform frame', default=(0.0, 0.0, 0.0))
     inertia_g_mm2: Three | None = quantity(0, 1e18, INERTIA, default=None)
@@ -87,7 +87,7 @@ class PayloadConfig:
     source: str = key(SOURCE)
     mass_g: float = quantity(0, MASS_G[1], '0 is nothing')
     radius_mm: float = quantity(*SIZE_MM, 'of a cylinder')
-    height_mm: float = quantity(*SIZE_MM, 'of it')
+    height_mm: float = quantity(*SIZE_MM, 'of the cylinder')
 
 
 @dataclass(frozen=True)
@@ -140,10 +140,9 @@ class PushingDriveConfig:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DynamicsConfig:
-    """What the section has for every kind of machine."""
+class GravityConfig:
+    """Where gravity pulls, for every kind of machine."""
 
-    compensation: bool = key(COMPENSATION, default=False)
     gravity_direction: Three = quantity(-1000, 1000, GRAVITY_DIRECTION, default=(0.0, 0.0, -1.0))
 
     def __post_init__(self) -> None:
@@ -156,6 +155,13 @@ class DynamicsConfig:
         """The acceleration of free fall, (3,) m/s², base frame."""
         direction = np.array(self.gravity_direction)
         return frozen(GRAVITY * direction / np.linalg.norm(direction))
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicsConfig(GravityConfig):
+    """What the section has for every machine with masses and drives of its own."""
+
+    compensation: bool = key(COMPENSATION, default=False)
 
 
 @dataclass(frozen=True)
@@ -228,6 +234,11 @@ class ArmDynamicsConfig(DynamicsConfig):
         'base first'
     )
     payload: PayloadConfig = key('what is carried, on the xy plane of the moving frame')
+
+
+@dataclass(frozen=True)
+class StackDynamicsConfig(GravityConfig):
+    """A stack has no masses and drives but those of its sections; gravity is its own."""
 
 
 Dynamics = RotaryDynamicsConfig | LinearDynamicsConfig | RailDynamicsConfig | ArmDynamicsConfig

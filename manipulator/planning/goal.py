@@ -19,6 +19,29 @@ class Motion(Enum):
     """All joints in proportion: to the nearest branch, wherever the tool passes."""
     ANY = 'any'
     """A line where the machine can drive it, else a joint move."""
+    UNWIND = 'unwind'
+    """All joints in proportion: to home's branch, and the turns nearest to home's."""
+
+
+class OnUnreachable(Enum):
+    """What becomes of a goal out of reach; parameter `on_unreachable` of the trajectory node."""
+
+    REFUSE = 'refuse'
+    """It is refused, and the active plan continues."""
+    NEAREST = 'nearest'
+    """The machine goes to the nearest pose within all limits."""
+
+
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """How a stream of goals moves at one of them: twist (6,) and its time derivative (6,).
+
+    due: when to be there, on the clock of who plans, in seconds.
+    """
+
+    twist: Array
+    acceleration: Array
+    due: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +50,8 @@ class Goal:
 
     then: the path or cycle to drive from there, whose first pose it is. joints (n,): those to
     arrive with, None where any of the pose's will do. orientation: where the pose's comes from.
+    flow: of the stream of goals that it continues, None where it continues none. on_unreachable:
+    see there. note: what is to be said of it while it is pursued, as that it is the nearest pose.
     """
 
     pose: Pose
@@ -35,3 +60,6 @@ class Goal:
     motion: Motion = Motion.LINE
     joints: Array | None = None
     orientation: OrientationRule = field(default_factory=OrientationRule)
+    flow: Flow | None = None
+    on_unreachable: OnUnreachable = OnUnreachable.REFUSE
+    note: str = ''

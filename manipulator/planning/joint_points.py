@@ -104,14 +104,14 @@ def joint_points(
         raise InvalidInput(f'a trajectory of {count}, needs 1 to {MOST_POINTS:,}')
     times = _times(points)
     positions = _rows(names, points, 'positions')
-    has_velocities = [bool(point.velocities) for point in points]
+    has_velocities = [len(point.velocities) > 0 for point in points]
     if any(has_velocities) and not all(has_velocities):
         missing = has_velocities.index(False) + 1
         raise InvalidInput(f'point {missing} has no velocities, others have: give all or none')
     velocities = _rows(names, points, 'velocities') if all(has_velocities) else None
     accelerations = _rows(names, points, 'accelerations', is_optional=True)
     for number, point in enumerate(points, start=1):
-        if point.effort:
+        if len(point.effort):
             raise InvalidInput(f'point {number}: effort is not supported')
     _check_ends(names, velocities)
     numbers = tuple(range(1, len(points) + 1))
@@ -151,7 +151,7 @@ def _rows(
     rows = np.full((len(points), len(names)), np.nan)
     for i, point in enumerate(points):
         values = getattr(point, what)
-        if is_optional and not values:
+        if is_optional and not len(values):
             continue
         if len(values) != len(names):
             count, joints = counted(len(values), 'number'), counted(len(names), 'joint')

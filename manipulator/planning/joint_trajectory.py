@@ -14,6 +14,7 @@ from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine
 from manipulator.planning.check import check_plan
 from manipulator.planning.joint_curve import Curve, narrowest, room, rounded_lines, splines
+from manipulator.planning.joint_move import refuse_rule
 from manipulator.planning.joint_points import AT_REST, JointPoints
 from manipulator.planning.path_timing import MOST_TICKS
 from manipulator.planning.plan import MotionState
@@ -119,6 +120,7 @@ def plan_joint_trajectory(
     its time. Raises Refused, with the point, joint, value and limit, where a limit would be
     broken, and where the machine stands elsewhere: times are never changed.
     """
+    refuse_rule(len(start.joints))
     whole = points.of_all(machine.kinematics.joint_names, start.joints)
     _check_begin(machine, start, whole)
     if points.times[-1] > MOST_TICKS * start.dt:

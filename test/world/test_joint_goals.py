@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from manipulator.planning.check import TOLERANCE
+from manipulator.planning.goal import Goal, Motion
 
 DEAD_BAND = 4e-3
 """rad or m by which the dead bands of the servos may miss a goal."""
@@ -52,6 +53,18 @@ def test_a_turn_more_is_unwound(make_world):
     assert arm.end_of(arm.send_goal_joints(joint_6=home)).result == 'reached'
     arm.run(0.3)
     assert arm.joints[5] == pytest.approx(home, abs=DEAD_BAND)
+
+
+def test_a_pose_is_reached_with_the_turns_of_home_where_that_is_asked_for(make_world):
+    arm = make_world('ur5')
+    home = arm.joints
+    named = {'joint_6': home[5] + 2 * np.pi, 'joint_1': home[0] + 0.2}
+    assert arm.end_of(arm.send_goal_joints(**named)).result == 'reached'
+    goal = Goal(arm.machine.kinematics.home, arm.user.stamp, motion=Motion.UNWIND)
+    arm.controller.core.pursue(goal, lambda error: None, arm.now)
+    assert arm.end_of(goal.stamp).result == 'reached'
+    arm.run(0.3)
+    assert np.abs(arm.joints - home).max() < DEAD_BAND
 
 
 def test_the_named_joint_moves_where_its_axis_is_in_line_with_another(make_world):
