@@ -141,6 +141,15 @@ def test_a_newer_trajectory_begins_where_the_older_one_was_braked(arm):
     assert arm.joints[0] == pytest.approx(0.0, abs=2e-3)
 
 
+def test_a_bad_trajectory_does_not_stop_the_one_that_is_executed(arm):
+    good = send(arm, ('joint_1',), smooth([0.0], [0.3], 3.0))
+    arm.run(1.0)
+    bad = arm.send_trajectory(('joint_1', 'joint_1'), [JointPoint(1.0, [0.1, 0.1])])
+    assert arm.end_of(bad).result == 'refused'
+    assert arm.status.mode == 'path'
+    assert arm.end_of(good).result == 'reached'
+
+
 def test_a_goal_takes_the_place_of_a_trajectory_that_waits_for_its_time(arm):
     stamp = send(arm, ('joint_1',), smooth([0.0], [0.5], 3.0), starts_in=1.0)
     arm.run(0.3)
