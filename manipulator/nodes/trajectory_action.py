@@ -109,6 +109,8 @@ class TrajectoryAction:
             active.left = 0.0
             if active.is_reached:
                 self._judge(active, active.plan, actual, now)
+            elif supervisor.status.goal_stamp != active.stamp:
+                self._finish('INVALID_GOAL', 'replaced by a newer goal')
 
     def _watch(self, active: _Active, time: float, actual: Array, now: float) -> None:
         """Ends a trajectory that is left by more than its path tolerances; else feedback."""

@@ -232,6 +232,11 @@ def test_what_ends_an_action_is_told_by_its_code(arm, actions):
         assert (replaced[0], replaced[1].error_code) == (ABORTED, code.INVALID_GOAL)
         assert replaced[1].error_string == 'replaced by a newer trajectory'
         assert actions.result(second)[0] == SUCCEEDED
+        third = actions.send(trajectory((4.0, [0.5, 0.0])))
+        arm.wait_while_driven('motion', lambda: arm.motion('mode') == 'path')
+        arm.home()
+        replaced = actions.result(third)
+        assert (replaced[0], replaced[1].error_code) == (ABORTED, code.INVALID_GOAL)
 
     arm.persist(go)
 
