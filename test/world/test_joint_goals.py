@@ -8,7 +8,7 @@ import pytest
 from manipulator.planning.check import TOLERANCE
 from manipulator.planning.goal import Goal, Motion
 
-DEAD_BAND = 4e-3
+DEAD_BAND = 0.008
 """rad or m by which the dead bands of the servos may miss a goal."""
 
 

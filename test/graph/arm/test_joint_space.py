@@ -26,7 +26,7 @@ KINEMATICS = load('arm_6r_stepper').kinematics
 NAMES = KINEMATICS.joint_names
 HOME = KINEMATICS.inverse(KINEMATICS.home).tolist()
 NEAR = 2e-3
-SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+EXECUTING, SUCCEEDED, CANCELED, ABORTED = 2, 4, 5, 6
 
 
 @pytest.fixture(scope='module', autouse=True)
@@ -223,11 +223,20 @@ def test_what_ends_an_action_is_told_by_its_code(arm, actions):
         assert (left[0], left[1].error_code) == (ABORTED, code.PATH_TOLERANCE_VIOLATED)
         assert 'joint_1 is' in left[1].error_string
         first = actions.send(trajectory((4.0, [0.0, 0.0])))
+        bad = actions.result(actions.send(trajectory((1.0, [0.0, np.nan]))))
+        assert (bad[0], bad[1].error_code) == (ABORTED, code.INVALID_GOAL)
+        assert 'positions of joint_6 is nan' in bad[1].error_string
+        assert first.status == EXECUTING
         second = actions.send(trajectory((4.0, [0.1, 0.0])))
         replaced = actions.result(first)
         assert (replaced[0], replaced[1].error_code) == (ABORTED, code.INVALID_GOAL)
         assert replaced[1].error_string == 'replaced by a newer trajectory'
         assert actions.result(second)[0] == SUCCEEDED
+        third = actions.send(trajectory((4.0, [0.5, 0.0])))
+        arm.wait_while_driven('motion', lambda: arm.motion('mode') == 'path')
+        arm.home()
+        replaced = actions.result(third)
+        assert (replaced[0], replaced[1].error_code) == (ABORTED, code.INVALID_GOAL)
 
     arm.persist(go)
 
