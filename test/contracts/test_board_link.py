@@ -162,13 +162,13 @@ def test_unknown_and_malformed_frames_are_refused_and_counted(armed):
 @pytest.mark.parametrize(
     ('code', 'lengths'),
     [
-        (0x02, (0, 1, 11, 18)),  # ARM: two bytes a joint, of eight at most
+        (0x02, (0, 1, 11, 17)),  # ARM: two bytes a joint
         (0x03, (1,)),
         (0x04, (1, 2)),
         (0x05, (1,)),
         (0x06, (10, 12)),
         (0x07, (3, 5)),
-        (0x08, (2, 3, 20)),
+        (0x08, (2, 3, 19)),
         (0x09, (1, 3)),
         (0x0A, (1, 3)),
         (0x0B, (1,)),
