@@ -1,10 +1,12 @@
 """Which poses one set of joints can mean: every assembly mode, judged by the machine's limits."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 
 from hexapod_control.assembly_modes import modes_of
+from hexapod_control.linear import LinearPlatform
 from hexapod_control.parallel_platform import ParallelPlatform
 from hexapod_control.stack_kinematics import StackKinematics
 from manipulator.arrays import Array
@@ -69,8 +71,25 @@ def _poses(kinematics: Kinematics, joints: Array) -> tuple[list[tuple[Pose, bool
     if not isinstance(kinematics, ParallelPlatform):
         return [(kinematics.forward(joints).pose, True)], True
     found = modes_of(kinematics, joints)
-    sides = [bool(kinematics.is_as_at_home(pose, joints)) for pose in found.poses]
-    return list(zip(found.poses, sides, strict=True)), found.is_complete
+    modes, is_complete = found.poses, found.is_complete
+    if isinstance(kinematics, LinearPlatform) and kinematics.geometry.screw_lead != 0.0:
+        modes = _with_screws(kinematics, joints, modes)
+        is_complete = is_complete and len(modes) == len(found.poses)
+    sides = [bool(kinematics.is_as_at_home(pose, joints)) for pose in modes]
+    return list(zip(modes, sides, strict=True)), is_complete
+
+
+def _with_screws(
+    kinematics: LinearPlatform, joints: Array, poses: tuple[Pose, ...]
+) -> tuple[Pose, ...]:
+    """The modes near those of legs as long as their joints, where Newton's method finds others."""
+    found: list[Pose] = []
+    for pose in poses:
+        with suppress(NoSolution):
+            there = kinematics.forward(joints, pose).pose
+            if all(np.abs(there.twist_to(other)).max() > SAME for other in found):
+                found.append(there)
+    return tuple(found)
 
 
 def _judged(machine: Machine, pose: Pose, joints: Array, is_on_home_side: bool) -> Mode:

@@ -119,12 +119,17 @@ class StackKinematics:
         return np.concatenate(columns, axis=-1)
 
     def skeleton(self, pose: Pose, joints: Array) -> tuple[Stroke, ...]:
-        """Those of all sections."""
+        """Those of all sections; cranks and rods with the names of their legs."""
         strokes, base = [], Pose.identity()
         for i, at in enumerate(self.sections_of(joints)):
-            own = self.platforms[i]
-            for stroke in own.skeleton(at, joints[LEGS * i : LEGS * (i + 1)]):
-                strokes.append(Stroke(stroke.part, base.transform(stroke.points)))
+            counts = dict.fromkeys(('crank', 'rod'), 0)
+            own = joints[LEGS * i : LEGS * (i + 1)]
+            for stroke in self.platforms[i].skeleton(at, own):
+                owners: tuple[str, ...] = ()
+                if stroke.part in counts:
+                    counts[stroke.part] += 1
+                    owners = (f'section {i + 1} leg {counts[stroke.part]}',) * len(stroke.points)
+                strokes.append(Stroke(stroke.part, base.transform(stroke.points), owners))
             base = base @ at @ self.stack.transforms[i]
         return tuple(strokes)
 

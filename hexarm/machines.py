@@ -44,6 +44,7 @@ def _stack(machine_file: MachineFile) -> Machine:
 KINDS: dict[str, Callable[[MachineFile], Machine]] = {
     'rotary_hexapod': _hexapod,
     'linear_hexapod': _hexapod,
+    'rail_hexapod': _hexapod,
     'serial_arm': _arm,
     'stack': _stack,
 }

@@ -1,6 +1,7 @@
 """The page's readings: nodes' reports, the margin of each limit, curves of the last seconds."""
 
 from collections import deque
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -97,7 +98,7 @@ class Plots:
         empty = np.zeros(1)
         self._joints = gui.add_uplot(
             (empty,) * (1 + self._count),
-            ({}, *(_series(n, c) for n, c in zip(names, JOINT_COLOURS, strict=True))),
+            ({}, *(_series(n, c) for n, c in zip(names, cycle(JOINT_COLOURS), strict=False))),
             title=f'Joints [{unit}]', axes=axes, scales=scales, aspect=1.4,
         )  # fmt: skip
         self._errors = gui.add_uplot(

@@ -14,10 +14,13 @@ from hexarm.simulation.drives import Drives, pushing, servo_speeds, turning
 from hexarm.simulation.dynamics_config import (
     SCHEMAS,
     ArmDynamicsConfig,
+    Dynamics,
     LinearDynamicsConfig,
+    RailDynamicsConfig,
     RotaryDynamicsConfig,
 )
 from hexarm.simulation.linear_model import linear_model
+from hexarm.simulation.rail_model import rail_model
 from hexarm.simulation.rigid_body import Mechanism
 from hexarm.simulation.rotary_model import rotary_model
 from hexarm.simulation.stack_model import stack_model
@@ -25,8 +28,6 @@ from manipulator.config import build
 from manipulator.errors import ConfigError
 from manipulator.kinematics import Kinematics
 from manipulator.machine import MachineFile
-
-Dynamics = RotaryDynamicsConfig | LinearDynamicsConfig | ArmDynamicsConfig
 
 
 def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dynamics:
@@ -54,7 +55,7 @@ def drives_of(dynamics: Dynamics, machine_file: MachineFile) -> Drives:
     An arm without servos of ours has drives as fast as its joints may turn.
     """
     servos = machine_file.servos
-    if isinstance(dynamics, LinearDynamicsConfig):
+    if isinstance(dynamics, LinearDynamicsConfig | RailDynamicsConfig):
         return pushing(dynamics.drive, LEGS, servos)
     if isinstance(dynamics, RotaryDynamicsConfig):
         return turning((dynamics.drive,) * LEGS, servo_speeds(servos, LEGS))
@@ -119,6 +120,7 @@ def _crank_platform(limits: dict[str, Any]) -> Callable[..., Mechanism]:
 _MODELS: dict[type[Dynamics], Callable[[dict[str, Any]], Callable[..., Mechanism]]] = {
     RotaryDynamicsConfig: _crank_platform,
     LinearDynamicsConfig: lambda limits: linear_model,
+    RailDynamicsConfig: lambda limits: rail_model,
     ArmDynamicsConfig: lambda limits: arm_model,
 }
 """What makes the model of a kind of machine, from the limits of its machine file."""

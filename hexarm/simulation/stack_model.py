@@ -24,8 +24,8 @@ FREE = 7
 
 
 def stack_model(name: str, kinematics: StackKinematics, parts: tuple[Mechanism, ...]) -> Mechanism:
-    """The model at home, of the models of the sections from the ground up."""
-    root = document(name)
+    """The model at home, of the sections' models from the ground up; gravity as of the first."""
+    root = document(name, _gravity(parts[0]))
     below, base = child(root, 'worldbody'), Pose.identity()
     closures = {}
     for i, part in enumerate(parts):
@@ -51,6 +51,11 @@ def stack_model(name: str, kinematics: StackKinematics, parts: tuple[Mechanism, 
         _together([part.drives for part in parts]),
         _seat(kinematics, parts),
     )
+
+
+def _gravity(part: Mechanism) -> Array:
+    option = child(ET.fromstring(part.xml), 'option')
+    return np.array([float(number) for number in option.get('gravity', '').split()])
 
 
 def _put_section(

@@ -18,7 +18,7 @@ from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.machine import Machine
 from manipulator.nodes.joint_topics import JointTopics
-from manipulator.planning.joint_points import InvalidJoints, check_names
+from manipulator.planning.joint_points import InvalidJoints, check_all_named
 from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.states import MotionResult
 from manipulator.trajectory.controller import MotionController
@@ -154,7 +154,7 @@ class TrajectoryAction:
         self._active = _Active(handle, stamp, no_tolerances)
         try:
             self._active.tolerances = tolerances_of(handle.request, machine)
-            check_names(handle.request.trajectory.joint_names, self._joints.names)
+            check_all_named(handle.request.trajectory.joint_names, self._joints.names)
             self._joints.begin(handle.request.trajectory, stamp)
         except InvalidJoints as error:
             self._finish('INVALID_JOINTS', str(error))

@@ -12,6 +12,7 @@ from hexapod_control.load import hexapod
 from hexapod_control.load_stack import stack
 from hexapod_control.workspace import sample
 from hexarm.machines import content_of
+from leg_kinds import FLAT_CRANKS, HANGING_LEGS, RAILS, SCREW_LEGS, TILTED_CRANKS
 from manipulator.config import build
 from manipulator.errors import NoSolution, Unreachable
 from manipulator.machine import Machine, MachineFile
@@ -47,6 +48,11 @@ def sample_arm(machine: Machine, count: int, rng: np.random.Generator) -> Pose:
 CASES = [
     Case('robocake.yaml', hexapod, sample),
     Case('stewart_6_3.yaml', hexapod, sample),
+    Case(TILTED_CRANKS, hexapod, sample),
+    Case(FLAT_CRANKS, hexapod, sample),
+    Case(RAILS, hexapod, sample),
+    Case(HANGING_LEGS, hexapod, sample),
+    Case(SCREW_LEGS, hexapod, sample),
     Case('stewart_6_6.yaml', hexapod, sample),
     Case('stack_6_6.yaml', stack, sample_stack, settles=1e-9),
     Case('arm_6r.yaml', arm, sample_arm),
@@ -63,7 +69,7 @@ class Subject:
     settles: float
 
 
-@pytest.fixture(scope='module', params=CASES, ids=lambda case: case.file)
+@pytest.fixture(scope='module', params=CASES, ids=lambda case: Path(case.file).stem)
 def subject(request):
     case = request.param
     file = build(MachineFile, content_of(CONFIG / case.file), source=case.file)

@@ -87,3 +87,30 @@ def test_a_goal_that_is_absurd_is_refused_all_the_same(make_nearest):
     status = world.go_to(world.machine.kinematics.home.moved([1e6, 0, 0, 0, 0, 0]))
     assert status.result == 'refused'
     assert 'm from home, needs at most' in status.reason
+
+
+FAR_APART = {
+    'robocake': (
+        (0.072, 0.008, -0.059, -0.46, -0.23, 0.11),
+        (-0.081, -0.017, -0.013, 0.27, 0.1, 0.18),
+    ),
+    'stewart_6_6': (
+        (0.27, 0.03, -0.22, -0.46, -0.23, 0.11),
+        (-0.3, -0.06, -0.05, 0.27, 0.1, 0.18),
+    ),
+}
+
+
+@pytest.mark.parametrize('name', FAR_APART)
+def test_limits_that_bend_are_followed_where_the_line_to_the_nearest_pose_is_blocked(
+    make_nearest, name
+):
+    world = make_nearest(name)
+    machine = world.machine
+    for offset in FAR_APART[name]:
+        goal = machine.kinematics.home.moved(offset)
+        status = world.go_to(goal)
+        assert status.result == 'reached'
+    at = world.controller.supervisor.executor.state.pose
+    least = nearest_reachable(machine, goal).distance
+    assert float(distance(machine, at, goal)) <= (1.0 + FARTHER[name]) * least
