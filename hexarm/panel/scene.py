@@ -10,7 +10,7 @@ import numpy as np
 
 from hexarm.panel.body import Body
 from hexarm.panel.pieces import hull, wxyz_of
-from hexarm.panel.readout import shares
+from hexarm.panel.room import shares
 from hexarm.panel.view import Stance, View
 from manipulator.arrays import Array
 from manipulator.machine import Machine
