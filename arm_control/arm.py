@@ -6,7 +6,7 @@ import numpy as np
 
 from arm_control.chain import JOINTS, Chain, aligned, flat, in_parts
 from arm_control.closed_forms import BRANCHES
-from arm_control.geometry import JOINT_NAMES, JointLimits
+from arm_control.geometry import JointLimits
 from arm_control.inverse_method import InverseMethod, fitting_method
 from arm_control.numerical import arm_branches
 from manipulator import _kernel
@@ -55,8 +55,8 @@ class SerialArm:
 
     @property
     def joint_names(self) -> tuple[str, ...]:
-        """joint_1 to joint_6, base first."""
-        return JOINT_NAMES
+        """Those of the machine file, or joint_1 to joint_6; base first."""
+        return self.limits.names
 
     @property
     def joint_unit(self) -> str:
@@ -130,7 +130,7 @@ class SerialArm:
         Raises NoSolution unless joints are six finite numbers.
         """
         checked = np.asarray(joints, dtype=np.float64)
-        if checked.shape != (len(JOINT_NAMES),) or not np.isfinite(checked).all():
+        if checked.shape != (JOINTS,) or not np.isfinite(checked).all():
             raise NoSolution(f'joints {checked.tolist()} are not six finite angles')
         pose = self.chain.forward(checked)
         return ForwardSolution(pose, 0, 0.0, float(self.sigma_min(pose, checked)))
@@ -150,7 +150,8 @@ class SerialArm:
         """One line from the base through a point of each joint's axis to the tool point."""
         moved = self.chain.displacements(self._checked(joints))[:-1]
         points = np.einsum('nij,nj->ni', moved[:, :3, :3], self.chain.points) + moved[:, :3, 3]
-        return (Stroke('link', np.vstack([np.zeros(3), points, pose.position])),)
+        line = np.vstack([np.zeros(3), points, pose.position])
+        return (Stroke('link', line, ('', *self.limits.owners, '')),)
 
     def links(self, pose: Pose, joints: Array) -> tuple[Link, ...]:
         """link_1 to link_6, each on its joint's axis, with base axes at zero; then the tool."""

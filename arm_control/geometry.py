@@ -1,6 +1,9 @@
-"""A serial arm in its machine file: three forms of geometry, each as a `Chain`; joint limits."""
+"""A serial arm in its machine file: four forms of geometry, each as a `Chain`; joint limits."""
 
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -8,7 +11,7 @@ from arm_control.chain import Chain
 from manipulator.arrays import Array, frozen
 from manipulator.config import PLACE_MM, RATE, SIZE_MM, TURN_DEG, key, quantity
 from manipulator.errors import ConfigError
-from manipulator.formatting import length
+from manipulator.formatting import length, shown
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.machine_limits import JointRange
 from manipulator.pose import Pose
@@ -20,12 +23,15 @@ Three = tuple[float, float, float]
 LONG_LINK, SHORTEST_ARM, LONGEST_ARM = 5.0, 0.02, 200.0
 """Metres: between two joints, and from the base through all of them to the tool."""
 
-PROPORTION = 50.0
-"""Of the longest link to the others: beyond it, one of both is in another unit."""
+PROPORTION = 150.0
+"""Of the longest link to the next: beyond it, one of both is in another unit."""
 
 HOME_ANGLES = 'joint angles at home'
 FAR_MM = 1e8
 """Along an axis a point may lie as far off as a double keeps to 0.01 µm, for `placed` moves it."""
+
+MOST_DEG = 360_000.0
+"""Of a joint range or a home position: a thousand turns either way, by gears and winches."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +45,7 @@ class LengthsConfig:
     L2_mm: float = quantity(*SIZE_MM, 'from joint 2 to joint 3')
     L3_mm: float = quantity(*SIZE_MM, 'from joint 3 to the centre of the wrist')
     tool_mm: float = quantity(0, PLACE_MM[1], 'from there to the tool')
-    home_deg: SixAngles = quantity(*TURN_DEG, HOME_ANGLES)
+    home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
 
     def chain(self) -> Chain:
         """Axes and points by the paper's figure 1."""
@@ -57,15 +63,15 @@ class LengthsConfig:
 
 @dataclass(frozen=True)
 class DhRow:
-    """One line of a standard Denavit–Hartenberg table; offset_deg is θ at joint angle zero.
+    """One line of a Denavit–Hartenberg table; offset_deg is θ at joint angle zero.
 
     Between axes that are almost parallel, as in a calibrated UR, d is huge and says nothing of the
     arm's size: the next ones take it back. `placed` judges the size.
     """
 
-    a_mm: float = quantity(*PLACE_MM, 'along the new x axis')
-    alpha_deg: float = quantity(*TURN_DEG, 'about the new x axis')
-    d_mm: float = quantity(-FAR_MM, FAR_MM, 'along the old z axis')
+    a_mm: float = quantity(*PLACE_MM, 'along the x axis')
+    alpha_deg: float = quantity(*TURN_DEG, 'about the x axis')
+    d_mm: float = quantity(-FAR_MM, FAR_MM, 'along the joint axis')
     offset_deg: float = quantity(*TURN_DEG, 'θ at joint angle 0', default=0.0)
 
 
@@ -74,7 +80,7 @@ class DhConfig:
     """Standard Denavit–Hartenberg parameters: each link is Rz(θ)·Tz(d)·Tx(a)·Rx(α)."""
 
     dh: tuple[DhRow, DhRow, DhRow, DhRow, DhRow, DhRow] = key('standard Denavit–Hartenberg table')
-    home_deg: SixAngles = quantity(*TURN_DEG, HOME_ANGLES)
+    home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
     tool_mm: float = quantity(0, PLACE_MM[1], 'to the tool along z of frame 6', default=0.0)
 
     def chain(self) -> Chain:
@@ -84,9 +90,33 @@ class DhConfig:
         for row in self.dh:
             axes.append(frame[:3, 2])
             points.append(frame[:3, 3])
-            frame = frame @ _link(row)
-        tool = frame[:3, 3] + self.tool_mm * 1e-3 * frame[:3, 2]
-        return Chain(np.array(axes), np.array(points), Pose(tool, frame[:3, :3]))
+            frame = frame @ _about_z(row) @ _along_x(row)
+        return _chain(axes, points, frame, self.tool_mm)
+
+
+@dataclass(frozen=True)
+class ModifiedDhConfig:
+    """Modified Denavit–Hartenberg parameters (Craig): each link is Rx(α)·Tx(a)·Rz(θ)·Tz(d).
+
+    Row i holds α and a of the link before joint i: often written αᵢ₋₁ and aᵢ₋₁.
+    """
+
+    modified_dh: tuple[DhRow, DhRow, DhRow, DhRow, DhRow, DhRow] = key(
+        'modified Denavit–Hartenberg table (Craig): α and a of the link before the joint'
+    )
+    home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
+    tool_mm: float = quantity(0, PLACE_MM[1], 'to the tool along z of frame 6', default=0.0)
+
+    def chain(self) -> Chain:
+        """Joint i turns about the z axis of frame i; the tool lies along z of frame 6."""
+        frame = np.eye(4)
+        axes, points = [], []
+        for row in self.modified_dh:
+            frame = frame @ _along_x(row)
+            axes.append(frame[:3, 2])
+            points.append(frame[:3, 3])
+            frame = frame @ _about_z(row)
+        return _chain(axes, points, frame, self.tool_mm)
 
 
 @dataclass(frozen=True)
@@ -111,7 +141,7 @@ class ScrewsConfig:
     )
     tool_position_mm: Three = quantity(*PLACE_MM, 'the tool there')
     tool_rpy_deg: Three = quantity(*TURN_DEG, 'its roll, pitch and yaw')
-    home_deg: SixAngles = quantity(*TURN_DEG, HOME_ANGLES)
+    home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
 
     def chain(self) -> Chain:
         """As given, with axes of unit length."""
@@ -125,7 +155,20 @@ class ScrewsConfig:
         )
 
 
-ArmGeometry = LengthsConfig | DhConfig | ScrewsConfig
+ArmGeometry = LengthsConfig | DhConfig | ModifiedDhConfig | ScrewsConfig
+
+
+def check_axes(geometry: Mapping[str, Any], limits: Mapping[str, Any]) -> None:
+    """Raises ConfigError, with one sentence, for an arm of another number of axes than six."""
+    lists = {f'geometry.{form}': geometry.get(form) for form in ('dh', 'modified_dh', 'screws')}
+    for place, rows in (lists | {'limits.joints': limits.get('joints')}).items():
+        if isinstance(rows, list) and len(rows) != JOINTS:
+            raise ConfigError([f'{place}: has {other_axes(len(rows))}'])
+
+
+def other_axes(count: int) -> str:
+    """What is said of an arm with `count` axes, which are not six."""
+    return f'{count} axes, arms with 6 are supported; 5 and 7 are planned'
 
 
 def placed(chain: Chain) -> Chain:
@@ -148,10 +191,10 @@ def _check_size(places: Array) -> None:
     links = np.linalg.norm(np.diff(places, axis=0), axis=1)
     names = ['the base', *(f'joint {i}' for i in range(1, len(links))), 'the tool']
     longest = int(np.argmax(links))
-    usual = float(np.median(links[links > 0.0])) if links.any() else 0.0
-    if links[longest] > PROPORTION * usual:
+    next_long = float(np.sort(links)[-2])
+    if links[longest] > PROPORTION * next_long > 0.0:
         gap = f'{names[longest + 1]} is {length(links[longest])} from {names[longest]}'
-        others = f'the others are about {length(usual)} long'
+        others = f'the next link is {length(next_long)} long'
         raise ConfigError([f'geometry: {gap}, {others}: is it in another unit?'])
     if not SHORTEST_ARM <= links.sum() <= LONGEST_ARM:
         whole = f'all links together are {length(links.sum())}'
@@ -159,37 +202,72 @@ def _check_size(places: Array) -> None:
         raise ConfigError([f'geometry: {whole}, {ends}: is it in another unit?'])
 
 
-def _link(row: DhRow) -> Array:
-    theta, alpha = np.radians([row.offset_deg, row.alpha_deg])
-    (ct, ca), (st, sa) = np.cos([theta, alpha]), np.sin([theta, alpha])
-    a, d = row.a_mm * 1e-3, row.d_mm * 1e-3
-    return np.array(
-        [
-            [ct, -st * ca, st * sa, a * ct],
-            [st, ct * ca, -ct * sa, a * st],
-            [0.0, sa, ca, d],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
+def _about_z(row: DhRow) -> Array:
+    """Rz(θ)·Tz(d), which commute."""
+    cosine, sine = _of(row.offset_deg)
+    d = row.d_mm * 1e-3
+    return np.array([[cosine, -sine, 0, 0], [sine, cosine, 0, 0], [0, 0, 1, d], [0, 0, 0, 1.0]])
+
+
+def _along_x(row: DhRow) -> Array:
+    """Tx(a)·Rx(α), which commute."""
+    cosine, sine = _of(row.alpha_deg)
+    a = row.a_mm * 1e-3
+    return np.array([[1, 0, 0, a], [0, cosine, -sine, 0], [0, sine, cosine, 0], [0, 0, 0, 1.0]])
+
+
+def _of(degrees: float) -> tuple[float, float]:
+    """Cosine and sine."""
+    return float(np.cos(np.radians(degrees))), float(np.sin(np.radians(degrees)))
+
+
+def _chain(axes: list[Array], points: list[Array], frame: Array, tool_mm: float) -> Chain:
+    """With a tool along z of the last frame."""
+    tool = frame[:3, 3] + tool_mm * 1e-3 * frame[:3, 2]
+    return Chain(np.array(axes), np.array(points), Pose(tool, frame[:3, :3]))
 
 
 JOINT_NAMES = tuple(f'joint_{i}' for i in range(1, JOINTS + 1))
-OWNERS = tuple(f'joint {i}' for i in range(1, JOINTS + 1))
+"""Of joints that have no name of their own."""
+NAME = re.compile(r'[\w./-]{1,64}')
 
 
 @dataclass(frozen=True)
 class JointConfig:
-    """One joint in the units of its machine file."""
+    """One joint in the units of its machine file.
 
-    range_deg: tuple[float, float] = quantity(-720, 720, 'travel')
+    A continuous joint turns without end, and has no range. name: as in `joint_states`, with any
+    prefix; without it joint_1 to joint_6.
+    """
+
     speed_deg_s: float = quantity(*RATE, 'largest')
     acceleration_deg_s2: float = quantity(*RATE, 'largest')
+    range_deg: tuple[float, float] | None = quantity(-MOST_DEG, MOST_DEG, 'travel', default=None)
+    continuous: bool = key('turns without end, and has no range', default=False)
+    name: str | None = key(
+        'in `joint_states` and messages, with any prefix; default `joint_1` …', default=None
+    )
 
     def __post_init__(self) -> None:
-        """Raises ConfigError for an empty range."""
-        low, high = self.range_deg
-        if not low < high:
-            raise ConfigError([f'range_deg: [{low:g}, {high:g}] is empty'])
+        """Raises ConfigError unless there is a range, or none, and for a name that is none."""
+        problems = []
+        if self.continuous and self.range_deg is not None:
+            problems.append('range_deg: a continuous joint has none')
+        elif not self.continuous and self.range_deg is None:
+            problems.append('range_deg: missing (a joint without end needs continuous: true)')
+        elif self.range_deg is not None and not self.range_deg[0] < self.range_deg[1]:
+            low, high = self.range_deg
+            problems.append(f'range_deg: [{low:g}, {high:g}] is empty')
+        if self.name is not None and NAME.fullmatch(self.name) is None:
+            needs = 'needs 1 to 64 letters, digits, _ . / or -'
+            problems.append(f'name: {shown(self.name)} {needs}')
+        if problems:
+            raise ConfigError(problems)
+
+    @property
+    def ends_deg(self) -> tuple[float, float]:
+        """The range; infinite where it turns without end."""
+        return (-np.inf, np.inf) if self.range_deg is None else self.range_deg
 
 
 @dataclass(frozen=True)
@@ -210,31 +288,56 @@ class ArmLimits:
         0.001, 0.5, 'singular value from which a posture is near to singular'
     )
 
+    def __post_init__(self) -> None:
+        """Raises ConfigError for two joints of one name."""
+        if len(set(self.names)) < JOINTS:
+            raise ConfigError([f'joints: duplicate names in {list(self.names)}'])
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the joints, base first."""
+        named = zip(self.joints, JOINT_NAMES, strict=True)
+        return tuple(joint.name or default for joint, default in named)
+
     def joint_limits(self) -> 'JointLimits':
         """In radians."""
-        ranges = np.radians([joint.range_deg for joint in self.joints])
+        ranges = np.radians([joint.ends_deg for joint in self.joints])
         return JointLimits(
             ranges[:, 0],
             ranges[:, 1],
             np.radians([joint.speed_deg_s for joint in self.joints]),
             np.radians([joint.acceleration_deg_s2 for joint in self.joints]),
+            self.names,
         )
 
 
 @dataclass(frozen=True, eq=False)
 class JointLimits:
-    """Arrays (6,) in rad, rad/s and rad/s²."""
+    """Arrays (6,) in rad, rad/s and rad/s²; ±∞ where a joint turns without end. Names by joint."""
 
     low: Array
     high: Array
     speed: Array
     acceleration: Array
+    names: tuple[str, ...] = JOINT_NAMES
 
     def __post_init__(self) -> None:
         """Freezes the arrays."""
         for name in ('low', 'high', 'speed', 'acceleration'):
             object.__setattr__(self, name, frozen(getattr(self, name)))
 
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """What messages call the joints: 'joint 3', or its own name."""
+        pairs = zip(self.names, JOINT_NAMES, strict=True)
+        return tuple(n.replace('_', ' ') if n == default else n for n, default in pairs)
+
+    @property
+    def sampled(self) -> tuple[Array, Array]:
+        """Low and high (6,) between which every posture is: one turn of a continuous joint."""
+        has_end = np.isfinite(self.high)
+        return np.where(has_end, self.low, -np.pi), np.where(has_end, self.high, np.pi)
+
     def constraints(self) -> Constraints:
         """The joint ranges alone: a serial arm may stand in a singular posture."""
-        return Constraints((JointRange(self.low, self.high, OWNERS),))
+        return Constraints((JointRange(self.low, self.high, self.owners),))

@@ -1,11 +1,11 @@
 """From a machine file to a serial arm that the nodes can use, with its `Jogger`."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.geometry import ArmGeometry, ArmLimits, placed
+from arm_control.geometry import ArmGeometry, ArmLimits, check_axes, placed
 from arm_control.rate_scaling import AT_ONCE
 from arm_control.resolved_rate import STRAIGHT, JogState, ResolvedRate
 from manipulator.arrays import Array, frozen
@@ -13,6 +13,9 @@ from manipulator.config import build
 from manipulator.errors import ConfigError
 from manipulator.formatting import shown
 from manipulator.frames import Frames
+from manipulator.limits.constraints import Constraints
+from manipulator.limits.limit import LimitOf
+from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Kind, Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
@@ -23,6 +26,8 @@ SHARE_BEFORE_STOPS = 0.5
 may turn ever faster while the tool goes straight on."""
 ROUNDING = 1e-6
 """Part of a tick's change of twist."""
+STILL, LONG = 1e-9, 1e6
+"""Rates of a value (m/s or rad/s) that count as none; seconds that are no bound."""
 LAG = 0.02
 """Of a tick's change of twist, by which a tool that is pulled back on its line may pass it."""
 
@@ -32,24 +37,51 @@ class ArmJogger:
     """`Jogger` of an arm: what it follows and keeps is said in `ResolvedRate`.
 
     The wanted twist goes on from motion.along, the part of it that the joints could follow, or
-    from motion.twist where the tool would otherwise pass its accelerations.
+    from motion.twist where the tool would otherwise pass its accelerations. of_pose are the
+    limits in task space, for poses of the pivot.
     """
 
     jog: ResolvedRate
     frames: Frames
+    of_pose: Constraints = field(default_factory=lambda: Constraints(()))
 
     def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
         """See `Jogger`; in a corner of the joint ranges the tool slides, so as to get out."""
+        if not self.of_pose.limits or not twist.any():
+            return self._within_joints(motion, twist, dt)
+        part, name = self._part_before_limits(motion, twist, dt)
+        after = self._within_joints(motion, part * twist, dt)
+        return replace(after, scale=part * after.scale, held_by=name or after.held_by)
+
+    def _part_before_limits(self, motion: JogMotion, twist: Array, dt: float) -> tuple[float, str]:
+        """The part of a twist from which the tool can brake in time, and which limit bounds it.
+
+        By the rates of the limited values, which change little while it brakes.
+        """
+        limits, joints = self.of_pose, motion.joints
+        here = limits.values(motion.pose, joints)
+        rate = (limits.values(motion.pose.moved(twist * dt), joints) - here) / dt
+        is_rising, is_falling = rate > STILL, rate < -STILL
+        room = np.where(
+            is_rising, limits.high - here, np.where(is_falling, here - limits.low, np.inf)
+        )
+        time = np.maximum(room, 0.0) / np.maximum(np.abs(rate), STILL)
+        braking = float(ticks_for(twist, self.jog.motion, dt)) * dt / SHARE_BEFORE_STOPS
+        parts = 2.0 * time / (dt + np.sqrt(dt**2 + 2.0 * braking * np.minimum(time, LONG)))
+        worst = int(np.argmin(parts))
+        return (float(parts[worst]), limits.names[worst][0]) if parts[worst] < 1.0 else (1.0, '')
+
+    def _within_joints(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
+        """The step, with no limits but those of the joints."""
         limits = self.jog.motion
         wanted = towards(motion.along, twist, limits, dt)
-        change, ticks = ticks_for(np.array((wanted - motion.twist, wanted)), limits, dt).tolist()
-        if change > 1.0 + LAG:
+        ticks = ticks_for(wanted, limits, dt)
+        if ticks_for(wanted - motion.twist, limits, dt) > 1.0 + LAG:
             wanted = towards(motion.twist, twist, limits, dt)
         slowing = SHARE_BEFORE_STOPS / (max(ticks, 1.0) * dt)
         after = self._stepped(motion, wanted, dt, slowing)
-        changes = np.array((after.along - motion.along, after.twist - motion.twist))
-        along, whole = ticks_for(changes, limits, dt).tolist()
-        if along > 1.0 + ROUNDING or whole > 1.0 + LAG:
+        along = ticks_for(after.along - motion.along, limits, dt)
+        if along > 1.0 + ROUNDING or ticks_for(after.twist - motion.twist, limits, dt) > 1.0 + LAG:
             # No part of what is wanted can be reached as gently as the tool asks for.
             straight = towards(motion.twist, np.zeros(6), limits, dt)
             braked = self._stepped(replace(motion, off_line=STRAIGHT), straight, dt)
@@ -111,7 +143,13 @@ def arm(machine_file: MachineFile) -> Machine:
 
 def _jogger(jog: ResolvedRate, machine: Machine) -> ArmJogger:
     slides = machine.jog_singularity == 'slide'
-    return ArmJogger(replace(jog, slides=slides), machine.frames)
+    of_pose = [
+        limit
+        for limit in machine.constraints.limits
+        if not isinstance(limit.inner if isinstance(limit, LimitOf) else limit, JointRange)
+    ]
+    jog = replace(jog, slides=slides)
+    return ArmJogger(jog, machine.frames, Constraints(tuple(of_pose)))
 
 
 def serial_arm(machine_file: MachineFile) -> SerialArm:
@@ -127,13 +165,13 @@ def _serial_arm(geometry: ArmGeometry, limits: ArmLimits) -> SerialArm:
     return SerialArm(placed(geometry.chain()), limits.joint_limits(), length, rest)
 
 
-KINDS = {KIND: Kind(ArmGeometry, ArmLimits, _serial_arm)}
+KINDS = {KIND: Kind(ArmGeometry, ArmLimits, _serial_arm, check_axes)}
 
 
 def jogging(machine_file: MachineFile) -> ResolvedRate:
     """The resolved-rate step of one file's arm, within its joint and motion limits."""
-    limits = build(ArmLimits, machine_file.limits, 'limits')
     kinematics = serial_arm(machine_file)
+    limits = build(ArmLimits, machine_file.limits, 'limits')
     motion = MotionLimits.from_config(machine_file.motion)
     own = kinematics.limits
     motion = replace(motion, joint=motion.joint.tightened(own.speed, own.acceleration))

@@ -52,9 +52,9 @@ class Scale:
     limit: str = ''
     joint: int = 0
 
-    def __str__(self) -> str:
-        """As in 'speed of joint 2'."""
-        return f'{self.limit} of joint {self.joint}' if self.limit else ''
+    def words(self, owners: tuple[str, ...]) -> str:
+        """As in 'speed of joint 2'; owners are what the joints are called."""
+        return f'{self.limit} of {owners[self.joint - 1]}' if self.limit else ''
 
 
 @dataclass(frozen=True, eq=False)

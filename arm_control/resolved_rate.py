@@ -40,6 +40,8 @@ AHEAD = 0.1
 """Radians of the fastest joint, over which a motion out of a singular posture must show."""
 SHARE = 0.2
 """Of what the best single joint gains, that such a motion must gain."""
+ENDLESS = 1e3
+"""Radians of room that count as endless."""
 SLIDING = 'sliding off the line: '
 JOINT_CORNER = 'corner of the joint ranges'
 STRAIGHT = frozen(np.zeros(6))
@@ -193,7 +195,7 @@ class _Tick:
         rates = self.posture.damped_rates(self._twist, self._jog._onset)
         scale = self._scale(rates, STRAIGHT)
         if self.posture.sigma_min >= self._jog.onset:
-            return _Drive(rates, scale.part, str(scale))
+            return _Drive(rates, scale.part, self._words(scale))
         return _Drive(rates, scale.part, SLIDING + self._place(), is_sliding=True)
 
     def way_out(self) -> _Drive | None:
@@ -224,11 +226,15 @@ class _Tick:
     def _scaled(self, line: LineRates) -> _Drive:
         scale = self._scale(line.rates, line.bend)
         if self.posture.sigma_min >= self._jog.onset:
-            return _Drive(line.rates, scale.part, str(scale))
+            return _Drive(line.rates, scale.part, self._words(scale))
         if line.is_lost or (scale.limit != 'stop' and self._is_too_near(scale.part, line.growth)):
             return _Drive(line.rates, 0.0, self._place(line.direction))
-        held_by = self._place(line.direction) if scale.limit == 'acceleration' else str(scale)
+        is_bent = scale.limit == 'acceleration'
+        held_by = self._place(line.direction) if is_bent else self._words(scale)
         return _Drive(line.rates, scale.part, held_by)
+
+    def _words(self, scale: Scale) -> str:
+        return scale.words(self._jog.arm.limits.owners)
 
     def _is_too_near(self, part: float, growth: float) -> bool:
         """Whether a singular posture ahead leaves only creep, or is about to be stepped over."""
@@ -240,7 +246,7 @@ class _Tick:
     def _folding(self) -> _Drive | None:
         """The beginning of a lost joint's bend that leads along the line."""
         stops = self.room.to_low <= AT_STOP, self.room.to_high <= AT_STOP
-        to_middle = self.room.to_high - self.room.to_low
+        to_middle = np.fmin(self.room.to_high, ENDLESS) - np.fmin(self.room.to_low, ENDLESS)
         rates = folding_rates(self.posture, self._twist, to_middle, *stops)
         if not rates.any():
             return None

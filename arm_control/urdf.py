@@ -36,14 +36,15 @@ def urdf(name: str, arm: SerialArm, radii: Sequence[float], torques: Sequence[fl
             _cylinder(link, np.zeros(3), chain.axes[i - 1], 1.3 * widths[i], 2.6 * widths[i])
     ET.SubElement(robot, 'link', name=PLATFORM)
     for i, joint_name in enumerate(arm.joint_names):
-        joint = _joint(robot, joint_name, 'revolute', parts[i], parts[i + 1])
+        kind = 'revolute' if np.isfinite(arm.limits.high[i]) else 'continuous'
+        joint = _joint(robot, joint_name, kind, parts[i], parts[i + 1])
         ET.SubElement(joint, 'origin', xyz=_text(places[i + 1] - places[i]), rpy='0 0 0')
         ET.SubElement(joint, 'axis', xyz=_text(chain.axes[i]))
-        low, high, speed = (
-            _text([v[i]]) for v in (arm.limits.low, arm.limits.high, arm.limits.speed)
-        )
-        effort = _text([torques[i]])
-        ET.SubElement(joint, 'limit', lower=low, upper=high, velocity=speed, effort=effort)
+        limit = {'velocity': _text([arm.limits.speed[i]]), 'effort': _text([torques[i]])}
+        if kind == 'revolute':
+            low, high = (_text([v[i]]) for v in (arm.limits.low, arm.limits.high))
+            limit = {'lower': low, 'upper': high, **limit}
+        ET.SubElement(joint, 'limit', limit)
     tool = _joint(robot, 'tool', 'fixed', parts[-1], PLATFORM)
     ET.SubElement(tool, 'origin', xyz=_text(places[-1] - places[-2]), rpy=_text(chain.home.rpy))
     ET.indent(robot)

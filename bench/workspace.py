@@ -127,8 +127,8 @@ def volume_rows(machine: Machine) -> list[Row]:
         close = abs(1e3 * v.value - litres) < 1e-4
         found.append(Row(f'volume unturned, z ≥ 0, {name}', text, f'{litres} dm³', close))
         if cranks is None:
-            wide = bounding_box(SomeOrientation(free, 0.5, 20), home.position, 0.04, 4000)
-            v = volume(SomeOrientation(free, 0.5, 150), wide, 16_000, np.random.default_rng(1))
+            wide = bounding_box(SomeOrientation.of(free, 0.5, 20), home.position, 0.04, 4000)
+            v = volume(SomeOrientation.of(free, 0.5, 150), wide, 16_000, np.random.default_rng(1))
             text = f'{1e3 * v.value:.4f} ± {1e3 * v.error:.4f} dm³'
             found.append(Row('volume, tilts up to ±0.5 rad, z ≥ 0, free cranks', text))
     return found

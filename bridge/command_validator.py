@@ -16,19 +16,22 @@ LONGEST_GAP = 0.05
 START = 0.005
 
 
-class CommandValidator:
-    """Turns joint commands into setpoints; what must not move the machine is refused whole.
+class JumpValidator:
+    """What every joint command must be: each joint named once, fresh, and no jump.
 
-    No jump: a command must lie within what the servos slew, at their rated speed, in the time
+    No jump: a command must lie within what the joints can turn, at full speed, in the time
     since the last command (at most 0.05 s) and one pulse period of 0.02 s; what that one left
     unused of a gap before it counts as well, for after a stall two come at once. Where there is
     no last command, or its deadline has passed, it must begin where the joints are: within
     0.005 s at full speed.
     """
 
-    def __init__(self, calibration: Calibration, deadline: float) -> None:
-        """The deadline that every setpoint carries, in seconds."""
-        self._calibration = calibration
+    def __init__(
+        self, names: tuple[str, ...], unit: str, speed: Array | float, deadline: float
+    ) -> None:
+        """Speeds, one or (n,), in rad/s or m/s as the unit is; how long a command is good, s."""
+        self._known, self._unit = names, unit
+        self._speeds = np.broadcast_to(np.asarray(speed, dtype=np.float64), (len(names),))
         self._deadline = deadline
         self._stamps = StampFilter(maximum_age=deadline)
         self._names: tuple[str, ...] | None = None
@@ -52,29 +55,17 @@ class CommandValidator:
         """The next command must start where the joints are."""
         self._last = None
 
-    def admit(
-        self,
-        names: Sequence[str],
-        positions: Sequence[float],
-        stamp: float | None,
-        receipt: float,
-        present: Array | None,
-    ) -> Setpoint:
-        """The setpoint for a command that came at `receipt` (s, monotonic up to an offset).
-
-        `present` is where the joints are (rad or m, in the calibration's order; NaN: unknown).
-        stamp None means "now". InvalidInput, StaleMessage or Refused names what is wrong.
-        """
-        target = self._ordered(names, positions)
-        counts = self._calibration.counts(target)
+    def take(
+        self, target: Array, stamp: float | None, receipt: float, present: Array | None
+    ) -> None:
+        """Raises StaleMessage or Refused for a target (n,) that must not be commanded now."""
         if stamp is not None:
             self._stamps.admit(stamp, receipt)
         self._refuse_jump(target, receipt, present)
         self._last, self._last_at = target, receipt
-        return Setpoint(round(1e3 * self._deadline), counts)
 
-    def _ordered(self, names: Sequence[str], positions: Sequence[float]) -> Array:
-        """Positions in the calibration's order, from any order."""
+    def ordered(self, names: Sequence[str], positions: Sequence[float]) -> Array:
+        """Positions (n,) in the order of the names, from any order; InvalidInput else."""
         if len(names) != len(positions):
             there = counted(len(positions), 'position')
             raise InvalidInput(f'{counted(len(names), "joint name")}, but {there}')
@@ -84,7 +75,7 @@ class CommandValidator:
         return np.array(positions, dtype=np.float64)[self._order]
 
     def _order_of(self, names: Sequence[str]) -> list[int]:
-        known = self._calibration.names
+        known = self._known
         unknown = next((name for name in names if name not in known), None)
         if unknown is not None:
             raise InvalidInput(f'unknown joint {unknown[:80]!r} (there are {", ".join(known)})')
@@ -106,13 +97,40 @@ class CommandValidator:
         else:
             raise Refused('the positions of the joints are not known yet')
         steps = np.abs(target - start)
-        i = int(np.argmax(steps))
-        allowed = self._calibration.speed * time
+        times = steps / self._speeds
+        i = int(np.argmax(times))
+        allowed = self._speeds[i] * time
         if steps[i] > allowed:
-            name, unit = self._calibration.names[i], self._calibration.unit
+            name, unit = self._known[i], self._unit
             raise Refused(
                 f'{name}: {target[i]:.4g} {unit} would jump by {steps[i]:.4g} from {where}, '
                 f'at most {allowed:.4g}'
             )
-        needed = float(steps[i]) / self._calibration.speed
-        self._unused = max(elapsed - PULSE_PERIOD - needed, 0.0)
+        self._unused = max(elapsed - PULSE_PERIOD - float(times[i]), 0.0)
+
+
+class CommandValidator(JumpValidator):
+    """Turns joint commands into setpoints; what must not move the machine is refused whole."""
+
+    def __init__(self, calibration: Calibration, deadline: float) -> None:
+        """The deadline that every setpoint carries, in seconds."""
+        super().__init__(calibration.names, calibration.unit, calibration.speed, deadline)
+        self._calibration = calibration
+
+    def admit(
+        self,
+        names: Sequence[str],
+        positions: Sequence[float],
+        stamp: float | None,
+        receipt: float,
+        present: Array | None,
+    ) -> Setpoint:
+        """The setpoint for a command that came at `receipt` (s, monotonic up to an offset).
+
+        `present` is where the joints are (rad or m, in the calibration's order; NaN: unknown).
+        stamp None means "now". InvalidInput, StaleMessage or Refused names what is wrong.
+        """
+        target = self.ordered(names, positions)
+        counts = self._calibration.counts(target)
+        self.take(target, stamp, receipt, present)
+        return Setpoint(round(1e3 * self._deadline), counts)

@@ -28,6 +28,9 @@ from bridge.session import Session
 from manipulator.errors import Refused
 from manipulator.states import MachineState
 
+SERVOS_ON = (MachineState.HOLDING, MachineState.UNCLAIMED, MachineState.PLAYING)
+"""Where an ARM moves nothing: the board only takes a new host, or halts its program."""
+
 
 @dataclass(frozen=True)
 class Request:
@@ -120,7 +123,10 @@ class BoardDriver:
             # An ARM would hold up the setpoints of a machine that is moving.
             return _answered('enabled already')
         park = self.calibration.counts(self.calibration.park)
-        return self._request(Arm(park), 'arming: the servos go to park one by one')
+        done = 'arming: the servos go to park one by one'
+        if self.monitor.status.state in SERVOS_ON:
+            done = 'enabled: the servos are on already, nothing moves'
+        return self._request(Arm(park), done)
 
     def clear_fault(self) -> Request:
         """Ends a stop or a fault."""

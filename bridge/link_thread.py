@@ -62,8 +62,16 @@ class SerialPort:
         except OSError as error:
             raise LinkError(f'{self.name} was disconnected ({_reason(error)})') from error
         if not received:
-            raise LinkError(f'{self.name} was disconnected (unplugged?)')
+            raise LinkError(f'{self.name} {self._why_nothing()}')
         return received
+
+    def _why_nothing(self) -> str:
+        """Why a port that was readable held nothing: its end, or another reader was quicker."""
+        poll = select.poll()
+        poll.register(self.fileno(), 0)  # POLLHUP and POLLERR are reported in any case
+        if poll.poll(0):
+            return 'was disconnected (unplugged?)'
+        return 'is read by another program as well, which takes bytes away: end that one'
 
     def write(self, waiting: bytes) -> bytes:
         """Writes what fits and returns the rest; LinkError when the port was disconnected."""

@@ -156,6 +156,9 @@ class BoardConfig:
     @classmethod
     def from_machine(cls, machine: MachineFile, source: str = '') -> 'BoardConfig':
         """Checked against the schemas above; ConfigError lists everything that is wrong."""
+        if machine.driver != 'serial':
+            problem = f'driver: {machine.driver}, the machine has no board and no servos of ours'
+            raise ConfigError([problem], source)
         sections = {
             'servos': machine.servos,
             'link': machine.link,

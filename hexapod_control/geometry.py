@@ -11,30 +11,57 @@ import numpy as np
 from hexapod_control.leg_jacobian import leg_jacobian, smallest_singular_value
 from manipulator import rotation as so3
 from manipulator.arrays import Array, frozen
-from manipulator.config import PLACE_MM, SIZE_MM, quantity
+from manipulator.config import PLACE_MM, SIZE_MM, TURN_DEG, quantity
 from manipulator.errors import ConfigError
+from manipulator.motion_limits import SixNumbers
 from manipulator.pose import Pose
 
 LEGS = 6
 Triple: TypeAlias = tuple[float, float, float]
 SixPoints: TypeAlias = tuple[Triple, Triple, Triple, Triple, Triple, Triple]
-SixNumbers: TypeAlias = tuple[float, float, float, float, float, float]
+Range: TypeAlias = tuple[float, float]
+SixRanges: TypeAlias = tuple[Range, Range, Range, Range, Range, Range]
 VERTICAL_TANGENT = 0.999
 
 CRANK_LENGTH = "from a crank's axis to its rod end; one number for all, or six"
 ROD_LENGTH = 'between the joints of a rod; one number for all, or six'
 PLATFORM_JOINTS = "the legs' joints on the platform, platform frame"
-HOME_HEIGHT = 'the platform frame above the base frame at home, where it is level; below: negative'
+HOME_HEIGHT = 'the platform frame above the base frame at home; below: negative'
+HOME_XY, ORIGIN = "the platform's x and y at home", (0.0, 0.0)
+HOME_RPY, LEVEL = "the platform's roll, pitch and yaw at home", (0.0, 0.0, 0.0)
 """Meanings of keys that several forms have."""
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class AtHome:
+    """Where a platform is at home, beside its height: level above the origin, unless given.
+
+    home_xy (2,) in metres, home_rpy (3,) in radians, base frame.
+    """
+
+    home_xy: Array = field(default_factory=lambda: frozen(np.zeros(2)))
+    home_rpy: Array = field(default_factory=lambda: frozen(np.zeros(3)))
+
+    def home_at(self, height: float) -> Pose:
+        """Home, for the platform's height there."""
+        return Pose.from_xyz_rpy([*self.home_xy, height], self.home_rpy)
+
+
+def at_home(xy_mm: tuple[float, float], rpy_deg: Triple) -> dict[str, Array]:
+    """The fields of `AtHome`, by the keys."""
+    return {
+        'home_xy': frozen(1e-3 * np.array(xy_mm)),
+        'home_rpy': frozen(np.radians(rpy_deg)),
+    }
+
+
 @dataclass(frozen=True, eq=False)
-class RotaryGeometry:
+class RotaryGeometry(AtHome):
     """Six cranks and rods in metres; see docs/kinematics.md, section 1.
 
     Crank i turns about crank_centres[i] (base frame) in the plane of tangents[i] and ups[i]; its
     angle counts from the tangent towards up. Its rod ends at platform_points[i] (platform frame).
-    normals = tangents × ups. home_height is the platform's height at home, where it is level.
+    normals = tangents × ups. home_height is the platform's height at home, see `AtHome`.
     """
 
     crank_centres: Array
@@ -45,6 +72,11 @@ class RotaryGeometry:
     home_height: float
     ups: Array = field(init=False)
     normals: Array = field(init=False)
+
+    @property
+    def home(self) -> Pose:
+        """T_base_platform at home."""
+        return self.home_at(self.home_height)
 
     def __post_init__(self) -> None:
         """Makes the tangents unit vectors and up what of z is square to them."""
@@ -81,6 +113,8 @@ class HexagonConfig:
         *PLACE_MM, "s: the platform's joints from the middle of a side, along it"
     )
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
 
     def geometry(self) -> RotaryGeometry:
         """The joints by Prokopovich 2019, eqs (5) and (6), in closed form.
@@ -98,6 +132,7 @@ class HexagonConfig:
             crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
             home_height=self.home_height_mm * 1e-3,
+            **at_home(self.home_xy_mm, self.home_rpy_deg),
         )
 
 
@@ -118,6 +153,8 @@ class JointsConfig:
     crank_length_mm: float | SixNumbers = quantity(*SIZE_MM, CRANK_LENGTH)
     rod_length_mm: float | SixNumbers = quantity(*SIZE_MM, ROD_LENGTH)
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
 
     def geometry(self) -> RotaryGeometry:
         """The same joints in metres; ConfigError where a tangent is zero or vertical."""
@@ -128,6 +165,7 @@ class JointsConfig:
             crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
             home_height=self.home_height_mm * 1e-3,
+            **at_home(self.home_xy_mm, self.home_rpy_deg),
         )
 
 

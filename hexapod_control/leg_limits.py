@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hexapod_control.geometry import LEGS
+from hexapod_control.geometry import LEGS, Range, SixRanges
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.parallel_platform import ParallelPlatform
 from hexapod_control.platform_limits import (
@@ -92,12 +92,35 @@ def _each_leg(
     return PlatformLimit(kinematics.limits, columns, quantity, unit, LEG_NAMES, *bounds)
 
 
+def _of_legs(ranges: Range | SixRanges) -> Array:
+    """Where each leg's range begins, and where it ends: (2, 6)."""
+    ends: Array = np.broadcast_to(np.asarray(ranges, dtype=np.float64), (LEGS, 2)).T
+    return ends
+
+
+def _check_ranges(
+    key: str, ranges: Range | SixRanges, widest: float = np.inf, within: str = ''
+) -> None:
+    """Raises ConfigError with every range that is empty, or wider than `widest`."""
+    rows = np.atleast_2d(ranges)
+    problems = [
+        f'{key}{f"[{leg}]" if len(rows) > 1 else ""}: [{low:g}, {high:g}] is no range{within}'
+        for leg, (low, high) in enumerate(rows)
+        if not 0.0 < high - low <= widest
+    ]
+    if problems:
+        raise ConfigError(problems)
+
+
 @dataclass(frozen=True)
 class RotaryLimits:
-    """What a crank hexapod may not exceed, in the units of its machine file."""
+    """What a crank hexapod may not exceed, in the units of its machine file.
 
-    crank_range_deg: tuple[float, float] = quantity(
-        -360, 720, 'travel of every crank, from its tangent towards up'
+    crank_range_deg is one range for all cranks, or one for each.
+    """
+
+    crank_range_deg: Range | SixRanges = quantity(
+        -360, 720, 'travel of every crank, from its tangent towards up, or of each'
     )
     minimum_height_mm: float = quantity(*PLACE_MM, "of the platform frame's origin, base frame")
     platform_joint_swing_deg: float = quantity(
@@ -110,32 +133,32 @@ class RotaryLimits:
     characteristic_length_mm: float = quantity(*SIZE_MM, CHARACTERISTIC_LENGTH)
 
     def __post_init__(self) -> None:
-        """Raises ConfigError for a crank range that is empty or more than a turn."""
-        low, high = self.crank_range_deg
-        if not 0.0 < high - low <= 360.0:
-            raise ConfigError([f'crank_range_deg: [{low:g}, {high:g}] is no range within a turn'])
+        """Raises ConfigError for crank ranges that are empty or more than a turn."""
+        _check_ranges('crank_range_deg', self.crank_range_deg, 360.0, ' within a turn')
 
     @property
-    def crank_range(self) -> tuple[float, float]:
-        """The crank range in radians."""
-        low, high = np.radians(self.crank_range_deg)
-        return float(low), float(high)
+    def crank_ranges(self) -> tuple[Array, Array]:
+        """Where each crank's range begins and ends, (6,) each, in radians."""
+        low, high = np.radians(_of_legs(self.crank_range_deg))
+        return low, high
 
     @property
-    def crank_centre(self) -> float:
-        """The middle of the crank range, in radians."""
-        return float(np.radians(sum(self.crank_range_deg) / 2))
+    def crank_middles(self) -> Array:
+        """The middle of each crank's range (6,), in radians."""
+        low, high = self.crank_ranges
+        middles: Array = (low + high) / 2
+        return middles
 
     def constraints(self, kinematics: RotaryHexapod) -> Constraints:
         """The limits, cheapest first."""
-        low, high = self.crank_range
+        low, high = self.crank_ranges
         return Constraints(
             (
                 rod_closure(kinematics),
                 rod_closure(kinematics, is_surplus=True),
                 JointRange(
-                    np.full(LEGS, low),
-                    np.full(LEGS, high),
+                    low,
+                    high,
                     LEG_NAMES,
                     'crank angle',
                     group=kinematics.limits,
@@ -153,12 +176,12 @@ class RotaryLimits:
 class LinearLimits:
     """What a linear platform may not exceed, in the units of its machine file.
 
-    A stroke is a leg's length between its joint centres. The passive cone is how far a leg may
-    swing, at either end, from its direction at home.
+    A stroke is a leg's length between its joint centres: one range for all legs, or one for each.
+    The passive cone is how far a leg may swing, at either end, from its direction at home.
     """
 
-    stroke_range_mm: tuple[float, float] = quantity(
-        *SIZE_MM, "of every leg's length, between its joints"
+    stroke_range_mm: Range | SixRanges = quantity(
+        *SIZE_MM, "of every leg's length, between its joints, or of each"
     )
     passive_cone_deg: float = quantity(
         1e-3, 180, "a leg's swing from its direction at home, at either end"
@@ -167,14 +190,12 @@ class LinearLimits:
     characteristic_length_mm: float = quantity(*SIZE_MM, CHARACTERISTIC_LENGTH)
 
     def __post_init__(self) -> None:
-        """Raises ConfigError for a stroke that is empty."""
-        low, high = self.stroke_range_mm
-        if not low < high:
-            raise ConfigError([f'stroke_range_mm: [{low:g}, {high:g}] is no range'])
+        """Raises ConfigError for strokes that are empty."""
+        _check_ranges('stroke_range_mm', self.stroke_range_mm)
 
     def constraints(self, kinematics: LinearPlatform) -> Constraints:
         """The limits, cheapest first."""
-        low, high = (np.full(len(LEG_NAMES), 1e-3 * end) for end in self.stroke_range_mm)
+        low, high = 1e-3 * _of_legs(self.stroke_range_mm)
         cone = float(np.radians(self.passive_cone_deg))
         return Constraints(
             (

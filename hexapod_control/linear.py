@@ -63,4 +63,4 @@ class LinearPlatform(ParallelPlatform):
         """Cranks of length 0: the base points stand still, whatever the joints."""
         g, nothing = self.geometry, np.zeros(3 * LEGS)
         ends = (nothing, nothing, nothing, g.platform_points.T.ravel())
-        return np.concatenate([g.base_points.T.ravel(), *ends, np.zeros(2 * LEGS + 1)])
+        return np.concatenate([g.base_points.T.ravel(), *ends, np.zeros(3 * LEGS)])

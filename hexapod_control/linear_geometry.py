@@ -6,26 +6,40 @@ import numpy as np
 
 from hexapod_control.geometry import (
     HOME_HEIGHT,
+    HOME_RPY,
+    HOME_XY,
     LEGS,
+    LEVEL,
+    ORIGIN,
     PLATFORM_JOINTS,
+    AtHome,
+    Range,
     SixPoints,
+    Triple,
+    at_home,
     check_architecture,
 )
 from manipulator.arrays import Array, frozen
-from manipulator.config import PLACE_MM, SIZE_MM, quantity
+from manipulator.config import PLACE_MM, SIZE_MM, TURN_DEG, quantity
 from manipulator.errors import InvalidInput
+from manipulator.pose import Pose
 
 
 @dataclass(frozen=True, eq=False)
-class LinearGeometry:
+class LinearGeometry(AtHome):
     """Joint centres (6, 3) in metres: base_points in the base frame, platform_points in its own.
 
-    home_height is the platform's height at home, where it is level.
+    home_height is the platform's height at home, see `AtHome`.
     """
 
     base_points: Array
     platform_points: Array
     home_height: float
+
+    @property
+    def home(self) -> Pose:
+        """T_base_platform at home."""
+        return self.home_at(self.home_height)
 
     def __post_init__(self) -> None:
         """Freezes the points; raises InvalidInput on any other shape."""
@@ -54,6 +68,8 @@ class PlatesConfig:
         0, PLACE_MM[1], 'h_mp: joints below the platform plate'
     )
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
 
     def geometry(self) -> LinearGeometry:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""
@@ -61,7 +77,8 @@ class PlatesConfig:
         platform = joint_circle(self.platform_radius_mm, np.radians(self.platform_angle_deg))
         base[:, 2] = self.base_joint_height_mm
         platform[:, 2] = -self.platform_joint_height_mm
-        return _checked(base, platform, self.home_height_mm)
+        home = at_home(self.home_xy_mm, self.home_rpy_deg)
+        return _checked(base, platform, self.home_height_mm, home)
 
 
 @dataclass(frozen=True)
@@ -71,11 +88,14 @@ class PointsConfig:
     base_joints_mm: SixPoints = quantity(*PLACE_MM, "the legs' joints on the base, base frame")
     platform_joints_mm: SixPoints = quantity(*PLACE_MM, PLATFORM_JOINTS)
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
+    home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
+    home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
 
     def geometry(self) -> LinearGeometry:
         """The joints in metres; ConfigError where no leg lengths fix a pose."""
         base, platform = np.array(self.base_joints_mm), np.array(self.platform_joints_mm)
-        return _checked(base, platform, self.home_height_mm)
+        home = at_home(self.home_xy_mm, self.home_rpy_deg)
+        return _checked(base, platform, self.home_height_mm, home)
 
 
 def joint_circle(radius: float, first_angle: float) -> Array:
@@ -86,7 +106,10 @@ def joint_circle(radius: float, first_angle: float) -> Array:
     return radius * np.column_stack([np.cos(angles), np.sin(angles), np.zeros(LEGS)])
 
 
-def _checked(base_mm: Array, platform_mm: Array, home_height_mm: float) -> LinearGeometry:
-    geometry = LinearGeometry(base_mm * 1e-3, platform_mm * 1e-3, home_height_mm * 1e-3)
+def _checked(
+    base_mm: Array, platform_mm: Array, home_height_mm: float, home: dict[str, Array]
+) -> LinearGeometry:
+    height = home_height_mm * 1e-3
+    geometry = LinearGeometry(base_mm * 1e-3, platform_mm * 1e-3, height, **home)
     check_architecture(geometry.base_points, geometry.platform_points)
     return geometry

@@ -47,9 +47,9 @@ def rotary_hexapod(geometry: JointsConfig | HexagonConfig, limits: RotaryLimits)
         joints,
         limits.characteristic_length_mm * 1e-3,
         limits.singularity_margin,
-        limits.crank_centre,
+        limits.crank_middles,
     )
-    cranks = np.random.default_rng(1).uniform(*limits.crank_range, (CRANK_SETTINGS, LEGS))
+    cranks = np.random.default_rng(1).uniform(*limits.crank_ranges, (CRANK_SETTINGS, LEGS))
     check_architecture(kinematics.crank_tips(cranks), joints.platform_points)
     return kinematics, limits.constraints(kinematics)
 

@@ -29,10 +29,7 @@ SAME = 0.02
 
 
 class LegGeometry(Protocol):
-    """Where the legs end on the platform (6, 3), platform frame, and how high it stands at home.
-
-    Metres; at home the platform is level, above the base frame's origin.
-    """
+    """Where the legs end on the platform, and where that is at home; metres."""
 
     @property
     def platform_points(self) -> Array:
@@ -40,8 +37,8 @@ class LegGeometry(Protocol):
         ...
 
     @property
-    def home_height(self) -> float:
-        """The platform's z at home."""
+    def home(self) -> Pose:
+        """T_base_platform at home."""
         ...
 
 
@@ -74,7 +71,7 @@ class ParallelPlatform(ABC):
         legs and parameters are the machine as the kernel takes it: crank_legs and platform of
         kernel/crank.h and platform.h.
         """
-        home = Pose(np.array([0.0, 0.0, self.geometry.home_height]), np.eye(3))
+        home = self.geometry.home
         self._put('home', home)
         self._lay_out(np.zeros((LEGS, 3)), np.zeros(LEGS))
         try:
@@ -94,7 +91,8 @@ class ParallelPlatform(ABC):
 
     def _lay_out(self, home_rods: Array, home_gains: Array) -> None:
         legs, length = self._legs(), [self.characteristic_length]
-        parameters = frozen(np.concatenate([legs, length, home_rods.T.ravel(), home_gains]))
+        at_home = (home_rods.T.ravel(), home_gains, self.home.rotation.ravel())
+        parameters = frozen(np.concatenate([legs, length, *at_home]))
         self._put('parameters', parameters)
         self._put('legs', parameters[: len(legs)])
         self._put('limits', PlatformLimits(parameters))

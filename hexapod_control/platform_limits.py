@@ -12,8 +12,8 @@ from manipulator.limits.limit import Bounds, BrakingPaths, Search
 from manipulator.pose import Pose
 
 SHORTFALL, SURPLUS, JOINT, TILT, SWING, LEANING = (slice(6 * k, 6 * k + 6) for k in range(6))
-HEIGHT, SIGMA = slice(36, 37), slice(37, 38)
-VALUES, RANGES = 38, 39
+OF_POSE, HEIGHT, SIGMA = slice(36, 41), slice(38, 39), slice(41, 42)
+VALUES, RANGES = 42, 46
 """Where values stand in `limited`, and the numbers in `limit_ranges`: kernel/limits.h."""
 
 PATH = 20
@@ -27,8 +27,13 @@ class PlatformLimits:
 
     parameters: Array
 
+    @property
+    def of_pose(self) -> slice:
+        """See `LimitGroup`."""
+        return OF_POSE
+
     def limited_values(self, pose: Pose, joints: Array) -> Array:
-        """See `LimitGroup`: all limited values (..., 38), in the order of kernel/limits.h."""
+        """See `LimitGroup`: all limited values (..., 42), in the order of kernel/limits.h."""
         position, rotation, given = _together(pose, joints)
         values = np.empty((*position.shape[:-1], VALUES))
         _kernel.limited_values(self.parameters, position, rotation, given, values)
@@ -69,7 +74,7 @@ class PlatformLimits:
 
 
 def _lowest_and_highest(bounds: Sequence[Bounds]) -> tuple[Array, Array]:
-    """The strictest of all limited values (38,), ±∞ where there is none."""
+    """The strictest of all limited values (42,), ±∞ where there is none."""
     low, high = np.full(VALUES, -np.inf), np.full(VALUES, np.inf)
     for columns, least, most in bounds:
         low[columns] = np.maximum(low[columns], least)

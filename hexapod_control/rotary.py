@@ -9,7 +9,7 @@ from hexapod_control.geometry import LEGS, RotaryGeometry
 from hexapod_control.parallel_platform import ParallelPlatform
 from hexapod_control.platform_limits import SHORTFALL, SURPLUS, VALUES
 from manipulator._kernel import crank_elbows, crank_gains, crank_inverse
-from manipulator.arrays import Array, stretched
+from manipulator.arrays import Array, frozen, stretched
 from manipulator.errors import InvalidInput, Unreachable
 from manipulator.formatting import length
 from manipulator.links import Stroke, outline
@@ -20,12 +20,17 @@ from manipulator.pose import Pose
 class RotaryHexapod(ParallelPlatform):
     """Kinematics of a crank platform; angles in radians from each leg's tangent towards up.
 
-    Crank angles are given within half a turn of crank_centre. Construction as of
-    `ParallelPlatform`.
+    Crank angles are given within half a turn of crank_middles: (6,), or one for all legs.
+    Construction as of `ParallelPlatform`.
     """
 
     geometry: RotaryGeometry
-    crank_centre: float
+    crank_middles: Array
+
+    def __post_init__(self) -> None:
+        """One middle for each leg; then as `ParallelPlatform`."""
+        self._put('crank_middles', frozen(np.broadcast_to(self.crank_middles, (LEGS,))))
+        super().__post_init__()
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -59,7 +64,7 @@ class RotaryHexapod(ParallelPlatform):
     def inverse_all(self, pose: Pose) -> Array:
         """Every way to bend the legs (64, 6) for one pose, each elbow out or in; elbows out first.
 
-        Within half a turn of crank_centre. Raises Unreachable where a leg does not close.
+        Within half a turn of crank_middles. Raises Unreachable where a leg does not close.
         """
         out, inside = self.inverse(pose), np.empty(LEGS)
         crank_elbows(self.legs, pose.position, pose.rotation, out, inside)
@@ -99,7 +104,7 @@ class RotaryHexapod(ParallelPlatform):
     def _legs(self) -> Array:
         g = self.geometry
         points = (g.crank_centres, g.normals, g.tangents, g.ups, g.platform_points)
-        lengths = (g.crank_lengths, g.rod_lengths, [self.crank_centre])
+        lengths = (g.crank_lengths, g.rod_lengths, self.crank_middles)
         return np.concatenate([*(p.T.ravel() for p in points), *lengths])
 
     def _explain(self, pose: Pose, joints: Array, near: Array | None) -> None:

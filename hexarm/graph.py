@@ -2,6 +2,7 @@
 
 import ctypes
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -13,6 +14,7 @@ from pathlib import Path
 
 from bridge.fake.servo import SERVO
 from hexarm.board.build import chip_command
+from hexarm.machines import read
 from manipulator.errors import Refused
 
 PATIENCE = 5.0
@@ -62,7 +64,11 @@ def board_process(machine: str, port: str, link: Path, plant: str = SERVO) -> li
     """The fake board for port 'fake', the firmware on a simulated chip for 'simavr', or none.
 
     plant: what its pulses move, 'servo' or 'mujoco'. Refused for a device, which moves its own.
+    A machine that other software drives has no board: see `check_topic`.
     """
+    if read(machine).driver == 'topic':
+        check_topic(machine, port, plant)
+        return []
     parameters = {'machine': machine, 'link': str(link), 'plant': plant}
     if port == 'fake':
         return [Executable('fake_hardware', parameters)]
@@ -71,6 +77,20 @@ def board_process(machine: str, port: str, link: Path, plant: str = SERVO) -> li
     if plant != SERVO:
         raise Refused(f'--plant {plant}: for port fake or simavr; {port} moves a real machine')
     return []
+
+
+def check_topic(machine: str, port: str, plant: str = SERVO) -> None:
+    """Refused for what is neither 'fake' nor the topic where a driver reports its joints."""
+    if plant != SERVO:
+        raise Refused(f'--plant {plant}: {machine} has driver: topic, and no board to simulate')
+    if port.startswith('/dev/') or TOPIC.fullmatch(port) is None or port == 'simavr':
+        raise Refused(
+            f'port {port}: {machine} has driver: topic, and no board; it needs the topic of its '
+            "driver's joint states, as in --port /joint_states, or 'fake' for a simulated one"
+        )
+
+
+TOPIC = re.compile(r'/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*')
 
 
 class Graph:

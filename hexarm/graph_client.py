@@ -43,6 +43,7 @@ class GraphClient:
         if self._owns_context:
             rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         self.node = Node('hexarm', namespace=namespace, start_parameter_services=False)
+        self._joined_at = time.monotonic()
         self.machine_state = DiagnosticStatus(message=UNKNOWN)
         self.motion_status = DiagnosticStatus()
         self.diagnostics: dict[str, DiagnosticStatus] = {}
@@ -138,8 +139,11 @@ class GraphClient:
             raise NoMachine(no_machine_in(space, self.topics, self.domain)) from error
 
     def refuse_second(self) -> None:
-        """Raises Refused where a graph runs in this namespace: both would receive every call."""
-        self.spin(LOOKS)
+        """Raises Refused where a graph runs in this namespace: both would receive every call.
+
+        It takes LOOKS from when this node joined the graph: what is done in between costs nothing.
+        """
+        self.spin(self._joined_at + LOOKS - time.monotonic())
         found = self.node.get_node_names_and_namespaces()
         if any(name in NODES and space == self.node.get_namespace() for name, space in found):
             raise Refused(

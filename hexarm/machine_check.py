@@ -16,6 +16,7 @@ from hexapod_control.home import home_problems
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
 from hexarm.machine_warnings import warnings_of
 from hexarm.machines import frames_of, loader
+from manipulator.arrays import Array
 from manipulator.config import build, forms_of, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError, NoSolution
 from manipulator.formatting import shown
@@ -79,6 +80,9 @@ def report_of(content: Mapping[str, Any]) -> Report:
     if other:
         found.problems.append(f'kind: {shown(kind)}, but geometry has the keys of a {other}')
     schemas = sections_of(kind) if kind in KINDS and not other else BRIDGE
+    unfit = _unfit(kind, content)
+    if unfit:
+        return Report(unfit)
     sections = {
         name: found.of(partial(build, schema, content[name], name))
         for name, schema in schemas.items()
@@ -90,6 +94,7 @@ def report_of(content: Mapping[str, Any]) -> Report:
         machine = found.of(lambda: _machine(kind, content, whole))
     if machine is not None and whole is not None:
         found.of(partial(frames_of, whole, machine.kinematics))
+        machine = found.of(partial(machine.within, whole.task_space)) or machine
     calibration = _calibration(found, sections.get('servos'))
     if machine is not None:
         home = _home_problems(machine, content)
@@ -98,6 +103,18 @@ def report_of(content: Mapping[str, Any]) -> Report:
             found.problems += _between(machine, calibration, is_home_good=not home)
     doubts = () if machine is None else warnings_of(machine, calibration)
     return Report(_merged(found.problems), tuple(doubts), machine)
+
+
+def _unfit(kind: str, content: Mapping[str, Any]) -> tuple[str, ...]:
+    """Why a file of this kind need not be looked at any further."""
+    geometry, limits = (content.get(name) for name in ROOM)
+    if kind not in KINDS or not isinstance(geometry, Mapping) or not isinstance(limits, Mapping):
+        return ()
+    try:
+        KINDS[kind].screen(geometry, limits)
+    except ConfigError as error:
+        return error.problems
+    return ()
 
 
 def _kind_by_keys(content: Mapping[str, Any]) -> str:
@@ -142,7 +159,7 @@ def _machine(kind: str, content: Mapping[str, Any], whole: MachineFile | None) -
     geometry, limits = (content.get(name, {}) for name in ROOM)
     motion = STAND_IN if whole is None else whole.motion
     make = hexapods.platform if kind in hexapods.KINDS else loader(kind)
-    return make(MachineFile(kind, geometry, limits, motion, servos={}, link={}))
+    return make(MachineFile(kind, geometry, limits, motion, driver='topic'))
 
 
 def _between(machine: Machine, calibration: Calibration, is_home_good: bool) -> Iterator[str]:
@@ -168,14 +185,25 @@ def _narrow_servos(machine: Machine, calibration: Calibration, order: list[int])
     narrow: dict[tuple[str, str], list[str]] = {}
     for i, low, high in zip(order, *machine.joint_ranges, strict=True):
         lowest, highest = calibration.range_of(i)
-        if lowest > low + 1e-6 or highest < high - 1e-6:
-            reach = f'[{lowest * factor:.4g}, {highest * factor:.4g}] {unit}'
-            span = f'[{low * factor:.4g}, {high * factor:.4g}] {unit}'
-            narrow.setdefault((reach, span), []).append(calibration.names[i])
+        count = 1.0 / abs(float(calibration.scale[i]))
+        if lowest > low + count or highest < high - count:
+            ends = np.array([lowest, highest, low, high]) * factor
+            narrow.setdefault(_told_apart(ends, unit), []).append(calibration.names[i])
     for (reach, span), some in narrow.items():
         reaches, whose = ('reach', 'their') if len(some) > 1 else ('reaches', 'its')
         names = ', '.join(some)
         yield f'servos.joints: {names} {reaches} {reach}, {whose} range in limits is {span}'
+
+
+def _told_apart(ends: Array, unit: str) -> tuple[str, str]:
+    """Two intervals, with as many digits as tell them apart."""
+    for digits in range(4, 13):
+        reach, span = (
+            f'[{low:.{digits}g}, {high:.{digits}g}] {unit}' for low, high in (ends[:2], ends[2:])
+        )
+        if reach != span:
+            break
+    return reach, span
 
 
 def _park_problems(machine: Machine, calibration: Calibration, order: list[int]) -> Iterator[str]:

@@ -20,6 +20,7 @@ from hexapod_control import load as hexapods
 from hexarm.simulation.dynamics_config import SCHEMAS
 from manipulator.config import forms_of, is_required
 from manipulator.frames import FramesConfig
+from manipulator.limits.task_space import TaskSpaceConfig
 from manipulator.machine import Kind, MachineFile
 from manipulator.motion_limits import MotionConfig
 
@@ -114,7 +115,8 @@ def tables() -> str:
             schema = sections_of(kind)[name]
             for form in forms_of(schema):
                 lines += [f'### `{name}` of a `{kind}`{_form(form, schema)}', '', *_table(form)]
-    for name, schema in {'motion': MotionConfig, **BRIDGE, 'frames': FramesConfig}.items():
+    others = {'frames': FramesConfig, 'task_space': TaskSpaceConfig}
+    for name, schema in {'motion': MotionConfig, **BRIDGE, **others}.items():
         lines += [f'### `{name}`', '', *_table(schema)]
     return '\n'.join(lines).rstrip('\n') + '\n'
 
@@ -174,7 +176,8 @@ def _words(kind: Any) -> str:
 
 
 def _plural(words: str) -> str:
-    return re.sub(r'^(3 numbers)$', 'points', f'{words}s' if not words[0].isdigit() else words)
+    plurals = {'3 numbers': 'points', '2 numbers': 'pairs'}
+    return plurals.get(words, words if words[0].isdigit() else f'{words}s')
 
 
 def _schema(kind: Any, bounds: Any = None) -> dict[str, Any]:

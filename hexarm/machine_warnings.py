@@ -58,9 +58,10 @@ def _other_bend(machine: Machine) -> Iterator[str]:
     home, other = bends[0], bends[-1]
     legs = np.flatnonzero(_is_doubtful(home, other, limit))
     if legs.size:
+        middles = np.unique((limit.low + limit.high)[legs] / 2)
         yield (
             f'home has {_names(kinematics.joint_names, legs.tolist())} at {_degrees(home[legs])}, '
-            f'in a range with its middle at {_degrees((limit.low + limit.high)[:1] / 2)}; '
+            f'in a range with its middle at {_degrees(middles)}; '
             f'on the other branch: {_degrees(other[legs])}. '
             'Is a crank tangent, or the whole, mirrored?'
         )

@@ -134,6 +134,7 @@ def load(name_or_path: str) -> Machine:
     machine_file = read(name_or_path)
     try:
         machine = loader(machine_file.kind)(machine_file)
+        machine = machine.within(machine_file.task_space)
         machine = replace(machine, deflection=_deflection(machine_file, machine.kinematics))
         machine = replace(machine, frames=frames_of(machine_file, machine.kinematics))
     except ConfigError as error:

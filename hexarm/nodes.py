@@ -8,10 +8,11 @@ functions.
 import signal
 import sys
 from functools import cache, partial
+from importlib import import_module
 
 from rclpy.node import Node
 
-from hexarm.machines import described, load, saved_poses_file
+from hexarm.machines import described, load, read, saved_poses_file
 from manipulator.errors import InvalidInput
 from manipulator.nodes.intra_process import IntraProcess
 from manipulator.nodes.run import Makers, run_nodes
@@ -39,10 +40,26 @@ def _pose(machine: str, process: IntraProcess) -> Node:
 
 
 def _serial_bridge(process: IntraProcess) -> Node:
+    """The node with a board, or without one: the machine file says which."""
+    if read(_parameter('serial_bridge', 'machine', HEXAPOD)).driver == 'topic':
+        from bridge.nodes.topic_bridge_node import TopicBridge
+
+        return TopicBridge(_loaded, HEXAPOD, process)
     from bridge.nodes.serial_bridge_node import SerialBridge
     from hexarm.machines import board_config
 
     return SerialBridge(board_config, process)
+
+
+def _parameter(node: str, name: str, default: str) -> str:
+    """A parameter that a node of this process will have; rclpy tells it to a node alone."""
+    from manipulator.nodes.parameters import declare
+
+    reader = Node(node, enable_rosout=False, start_parameter_services=False)
+    try:
+        return str(declare(reader, name, default, ''))
+    finally:
+        reader.destroy_node()
 
 
 _loaded = cache(load)
@@ -54,6 +71,13 @@ def machine_nodes() -> Makers:
     process = IntraProcess()
     parts = (partial(part, HEXAPOD, process) for part in (_trajectory, _ik, _pose))
     return [*parts, partial(_serial_bridge, process)]
+
+
+def import_machine_nodes() -> None:
+    """Imports what the four nodes of a machine consist of, so that making them takes less."""
+    for name in ('trajectory', 'ik', 'pose'):
+        import_module(f'manipulator.nodes.{name}_node')
+    import_module('bridge.nodes.serial_bridge_node')
 
 
 def machine() -> int:

@@ -57,7 +57,8 @@ static int found_from(const struct arm *arm, const struct frame *pose, const rea
     return count + 1;
 }
 
-/* Start k of those that are spread over the ranges evenly: powers of the root of x^7 = x + 1. */
+/* Start k of those that are spread over the ranges evenly: powers of the root of x^7 = x + 1. Of
+   more than two turns, or no end, it is one: any other turn is the same place. */
 static void cold_start(const struct ranges *ranges, int k, real start[JOINTS])
 {
     static const real STEP[JOINTS] = {REAL(0.8986537126286992), REAL(0.8075784952213447),
@@ -66,7 +67,11 @@ static void cold_start(const struct ranges *ranges, int k, real start[JOINTS])
     for (int i = 0; i < JOINTS; i++) {
         real part = REAL(0.5) + STEP[i] * (real)k;
         part -= real_floor(part);
-        start[i] = ranges->low[i] + part * (ranges->high[i] - ranges->low[i]);
+        real width = ranges->high[i] - ranges->low[i];
+        if (width <= 2 * REAL_TURN * (1 + REAL(1e-9)))
+            start[i] = ranges->low[i] + part * width;
+        else
+            start[i] = (part - REAL(0.5)) * REAL_TURN;
     }
 }
 

@@ -48,12 +48,12 @@ int crank_elbows(const struct crank_legs *legs, const real position[3], const re
     for (int i = 0; i < LEGS; i++) {
         real h = real_sqrt(height[i]);
         real angle = angle_of(side[i] * z[i] + h * y[i], side[i] * y[i] - h * z[i]);
-        out[i] = within_half_a_turn(angle, legs->middle);
+        out[i] = within_half_a_turn(angle, legs->middle[i]);
     }
     for (int i = 0; in && i < LEGS; i++) {
         real h = real_sqrt(height[i]);
         real angle = angle_of(side[i] * z[i] - h * y[i], side[i] * y[i] + h * z[i]);
-        in[i] = within_half_a_turn(angle, legs->middle);
+        in[i] = within_half_a_turn(angle, legs->middle[i]);
     }
     return open;
 }

@@ -17,7 +17,7 @@ struct crank_legs {
     real end[3][LEGS];     /* of the rod, platform frame */
     real crank[LEGS];      /* length */
     real rod[LEGS];        /* length */
-    real middle;           /* angles are given within half a turn of it */
+    real middle[LEGS];     /* angles are given within half a turn of it */
 };
 
 /* From crank axes to platform joints, base axes. */

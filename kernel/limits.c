@@ -27,7 +27,12 @@ static struct products products_of(const struct platform *platform, const struct
 {
     struct products p;
     const real(*home)[LEGS] = platform->home_rod, (*normal)[LEGS] = platform->legs.normal;
-    const real *r = rotation;
+    const real *h = platform->home_rotation;
+    real r[9]; /* from home's orientation */
+    for (int i = 0; i < 9; i++) {
+        const real *row = rotation + i / 3 * 3, *of_home = h + i % 3 * 3;
+        r[i] = row[0] * of_home[0] + row[1] * of_home[1] + row[2] * of_home[2];
+    }
     for (int i = 0; i < LEGS; i++) {
         real x = rods->unit[0][i], y = rods->unit[1][i], z = rods->unit[2][i];
         real a = home[0][i], b = home[1][i], c = home[2][i];
@@ -75,6 +80,24 @@ static void put_misfits(const struct crank_legs *legs, const real position[3],
     }
 }
 
+/* The cosine of the platform's inclination: docs/motion.md, (1.3). */
+static real inclination_cosine(const struct platform *platform, const real rotation[9])
+{
+    const real *h = platform->home_rotation;
+    return h[2] * rotation[2] + h[5] * rotation[5] + h[8] * rotation[8];
+}
+
+static real rotation_from_home(const struct platform *platform, const real rotation[9])
+{
+    const real *h = platform->home_rotation, *r = rotation;
+    real sine = 0, cosine = 0;
+    for (int k = 0; k < 3; k++) {
+        sine += h[3 * k + 1] * r[3 * k] - h[3 * k] * r[3 * k + 1];
+        cosine += h[3 * k] * r[3 * k] + h[3 * k + 1] * r[3 * k + 1];
+    }
+    return angle_of(sine, cosine);
+}
+
 void limited_values(const struct platform *platform, const real position[3],
                     const real rotation[9], const real joints[LEGS], real values[VALUES])
 {
@@ -89,14 +112,27 @@ void limited_values(const struct platform *platform, const real position[3],
         values[LEANING + i] = real_acos(clipped(p.leaning_cosine[i]));
     }
     leg_columns(&rods, platform->length, columns);
-    values[HEIGHT] = position[2];
+    for (int k = 0; k < 3; k++)
+        values[POSITION + k] = position[k];
+    values[INCLINATION] = real_acos(clipped(inclination_cosine(platform, rotation)));
+    values[ROTATION] = rotation_from_home(platform, rotation);
     values[SIGMA] = smallest_singular_value(columns);
+}
+
+static real least_cosine(real most)
+{
+    return most >= REAL_PI ? -BEYOND_ANY_SINE : real_cos(most);
 }
 
 struct limit_ranges limit_ranges(const struct platform *platform, const real low[VALUES],
                                  const real high[VALUES])
 {
-    struct limit_ranges r = {.height = {low[HEIGHT], high[HEIGHT]}, .sigma = low[SIGMA]};
+    struct limit_ranges r = {.rotation = {low[ROTATION], high[ROTATION]}, .sigma = low[SIGMA]};
+    for (int k = 0; k < 3; k++) {
+        r.position[0][k] = low[POSITION + k];
+        r.position[1][k] = high[POSITION + k];
+    }
+    r.inclination_cosine = least_cosine(high[INCLINATION]);
     for (int i = 0; i < LEGS; i++) {
         real home = home_tilt(platform, i);
         real least = home + low[TILT + i], most = home + high[TILT + i];
@@ -104,20 +140,32 @@ struct limit_ranges limit_ranges(const struct platform *platform, const real low
         r.joint[1][i] = high[JOINT + i];
         r.tilt_sine[0][i] = least <= -REAL_PI / 2 ? -BEYOND_ANY_SINE : real_sin(least);
         r.tilt_sine[1][i] = most >= REAL_PI / 2 ? BEYOND_ANY_SINE : real_sin(most);
-        r.swing_cosine[i] =
-            high[SWING + i] >= REAL_PI ? -BEYOND_ANY_SINE : real_cos(high[SWING + i]);
-        r.leaning_cosine[i] =
-            high[LEANING + i] >= REAL_PI ? -BEYOND_ANY_SINE : real_cos(high[LEANING + i]);
+        r.swing_cosine[i] = least_cosine(high[SWING + i]);
+        r.leaning_cosine[i] = least_cosine(high[LEANING + i]);
     }
     return r;
 }
 
-static int keeps_ranges(const struct limit_ranges *r, real height, const real joints[LEGS])
+static int keeps_ranges(const struct limit_ranges *r, const real position[3],
+                        const real joints[LEGS])
 {
-    int kept = height >= r->height[0] && height <= r->height[1];
+    int kept = 1;
+    for (int k = 0; k < 3; k++)
+        kept &= position[k] >= r->position[0][k] && position[k] <= r->position[1][k];
     for (int i = 0; i < LEGS; i++)
         kept &= joints[i] >= r->joint[0][i] && joints[i] <= r->joint[1][i];
     return kept;
+}
+
+static int keeps_orientation(const struct platform *platform, const struct limit_ranges *r,
+                             const real rotation[9])
+{
+    if (inclination_cosine(platform, rotation) < r->inclination_cosine)
+        return 0;
+    if (r->rotation[0] == -INFINITY && r->rotation[1] == INFINITY)
+        return 1;
+    real angle = rotation_from_home(platform, rotation);
+    return angle >= r->rotation[0] && angle <= r->rotation[1];
 }
 
 static int keeps_margin(const struct platform *platform, const struct rods *rods, real least)
@@ -131,7 +179,7 @@ static int keeps_margin(const struct platform *platform, const struct rods *rods
 int keeps_limits(const struct platform *platform, const struct limit_ranges *ranges,
                  const real position[3], const real rotation[9], const real joints[LEGS])
 {
-    if (!keeps_ranges(ranges, position[2], joints))
+    if (!keeps_ranges(ranges, position, joints) || !keeps_orientation(platform, ranges, rotation))
         return 0;
     struct rods rods = rods_at(platform, position, rotation, joints);
     struct products p = products_of(platform, &rods, rotation);

@@ -12,8 +12,11 @@ enum limited {
     TILT = 3 * LEGS,    /* of crank joints */
     SWING = 4 * LEGS,   /* of platform joints */
     LEANING = 5 * LEGS, /* of base joints */
-    HEIGHT = 6 * LEGS,
-    SIGMA, /* (5.1) */
+    POSITION = 6 * LEGS, /* x, y, z of the platform */
+    HEIGHT = POSITION + 2,
+    INCLINATION, /* of its z axis, from where it points at home */
+    ROTATION,    /* about its z axis, from home: within half a turn */
+    SIGMA,       /* (5.1) */
     VALUES
 };
 
@@ -23,7 +26,9 @@ void limited_values(const struct platform *platform, const real position[3],
 /* Ranges of the values in the form in which they are compared: angles by sine and cosine. */
 struct limit_ranges {
     real joint[2][LEGS]; /* least, most */
-    real height[2];
+    real position[2][3];
+    real inclination_cosine; /* the least */
+    real rotation[2];
     real tilt_sine[2][LEGS];
     real swing_cosine[LEGS]; /* the least */
     real leaning_cosine[LEGS];

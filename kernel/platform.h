@@ -10,6 +10,7 @@ struct platform {
     real length;            /* L of (5.1), m */
     real home_rod[3][LEGS]; /* unit vectors along the rods at home, base axes */
     real home_gain[LEGS];   /* of the cranks at home, (4.1) */
+    real home_rotation[9];
 };
 
 /* The pose for joints (6), from a start, which becomes the pose. Cold (the rules name a side), a

@@ -9,6 +9,7 @@ that a section may have; the one with most of the keys is meant.
 import dataclasses
 import difflib
 import math
+import re
 import types
 import typing
 from collections.abc import Mapping
@@ -25,8 +26,6 @@ U = TypeVar('U')
 MAX_CHARACTERS = 100_000
 MOST_OF_A_REASON = 200
 """Characters of an error of PyYAML, which may repeat the file."""
-
-IMPORTS = 'serial arms are described by dh or screws, see docs/arm-kinematics.md'
 
 
 SIZE_MM = (1e-3, 1e6)
@@ -97,6 +96,10 @@ def build_both(
     return typing.cast(tuple[T, U], results)
 
 
+NUMBER = re.compile(r'[-+]?(\.\d+|\d+(\.\d*)?)([eE][-+]?\d+)?$')
+"""As in YAML 1.2; for PyYAML, which knows 1.1, 3e6 is a text."""
+
+
 def _content(text: str) -> object:
     """What the text holds: read quickly, or else slowly, for an error that shows the line."""
     try:
@@ -130,6 +133,9 @@ class _StrictLoader(_Strict, yaml.SafeLoader):
     """In Python, which gives the best error messages."""
 
 
+_StrictLoader.add_implicit_resolver('tag:yaml.org,2002:float', NUMBER, list('-+.0123456789'))
+
+
 _Events: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 
 
@@ -139,6 +145,9 @@ class _QuickLoader(_Strict, _Events):  # type: ignore[misc]
     def __init__(self, stream: str) -> None:
         _Events.__init__(self, stream)
         Composer.__init__(self)
+
+
+_QuickLoader.add_implicit_resolver('tag:yaml.org,2002:float', NUMBER, list('-+.0123456789'))
 
 
 def _convert(expected: Any, value: object, where: str, problems: list[str]) -> Any:
@@ -152,9 +161,7 @@ def _convert(expected: Any, value: object, where: str, problems: list[str]) -> A
         kinds = [a for a in arguments if a is not type(None)]
         if isinstance(value, Mapping) and all(map(dataclasses.is_dataclass, kinds)):
             return _convert_form(kinds, value, where, problems)
-        fitting = (a for a in kinds if (typing.get_origin(a) is tuple) == isinstance(value, list))
-        inner = next(fitting, kinds[0])
-        return _convert(inner, value, where, problems)
+        return _convert(_fitting(kinds, value), value, where, problems)
     if origin is typing.Literal:
         if value not in arguments:
             hint = _did_you_mean(nearest(str(value), [str(a) for a in arguments]))
@@ -169,6 +176,15 @@ def _convert(expected: Any, value: object, where: str, problems: list[str]) -> A
             problems.append(f'{where}: holds {_kind(value)}, needs a mapping of keys')
         return value
     return _convert_scalar(expected, value, where, problems)
+
+
+def _fitting(kinds: list[Any], value: object) -> Any:
+    """Of the kinds of a union the one that `value` looks like: a list of as many, or no list."""
+    if not isinstance(value, list):
+        return next((kind for kind in kinds if typing.get_origin(kind) is not tuple), kinds[0])
+    lists = [kind for kind in kinds if typing.get_origin(kind) is tuple]
+    as_long = (kind for kind in lists if len(typing.get_args(kind)) == len(value))
+    return next(as_long, lists[0] if lists else kinds[0])
 
 
 def _convert_form(
@@ -294,7 +310,7 @@ def _short(error: Exception) -> str:
 def _markup(text: str) -> str:
     """What a file that begins with < is."""
     if '<robot' in text:
-        return f'is a URDF, which cannot be imported yet: {IMPORTS}'
+        return 'is a URDF: hexarm import FILE makes a machine file of it'
     return 'is XML or HTML, needs YAML'
 
 

@@ -1,5 +1,7 @@
 """How messages write lengths, counts and the reasons of the operating system."""
 
+import math
+
 MOST_SHOWN = 80
 """Characters of an input that a message repeats."""
 
@@ -12,6 +14,13 @@ def length(metres: float, digits: int = 4) -> str:
     value, unit = (metres, 'm') if abs(metres) > METRES_FROM else (1e3 * metres, 'mm')
     written = f'{float(f"{value:.{digits}g}"):.10f}'.rstrip('0').rstrip('.')
     return f'{written} {unit}'
+
+
+def decimals(largest: float, digits: int = 4, fewest: int = 4) -> int:
+    """After the point, so that the largest of some numbers has so many digits that count."""
+    if not 0.0 < largest < math.inf:
+        return fewest
+    return max(fewest, digits - 1 - math.floor(math.log10(largest)))
 
 
 def counted(count: int, one: str, many: str = '') -> str:

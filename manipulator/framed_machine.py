@@ -118,6 +118,11 @@ class FramedGroup:
     inner: LimitGroup
     frames: Frames
 
+    @property
+    def of_pose(self) -> slice:
+        """See `LimitGroup`: the platform's own."""
+        return self.inner.of_pose
+
     def limited_values(self, pose: Pose, joints: Array) -> Array:
         """See `LimitGroup`."""
         return self.inner.limited_values(self.frames.platform(pose), joints)

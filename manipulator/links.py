@@ -22,11 +22,13 @@ class Link:
 class Stroke:
     """A line through points (n, 3), base frame, metres.
 
-    part is what it is of: body, crank, rod, platform or link.
+    part is what it is of: body, crank, rod, platform or link. owners (n), where there are any,
+    are whose limits each point shows: see `Limit`.
     """
 
     part: str
     points: Array
+    owners: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Freezes the points."""

@@ -1,8 +1,8 @@
 """A machine as the nodes use it: its kinematics, its limits, its jogger."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any, Generic, TypeVar
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Generic, Literal, TypeVar
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import LimitOf
 from manipulator.limits.machine_limits import JointRange
+from manipulator.limits.task_space import TaskSpaceConfig
+from manipulator.limits.wording import in_words
 from manipulator.motion_limits import MotionConfig, MotionLimits
 from manipulator.static_deflection import StaticDeflection
 from manipulator.teleop.jogger import Jogger
@@ -28,36 +30,65 @@ class MachineFile:
     """The sections of a machine file; each room checks its own against its own schema.
 
     geometry and limits belong to the kind of machine, servos, link and simulation to the bridge,
-    dynamics to hexarm/simulation/.
+    dynamics to hexarm/simulation/. driver: what moves the joints, a board on a serial line
+    (sections servos and link) or other software, by topics (neither).
     """
 
     kind: str = key('of machine')
     geometry: dict[str, Any] = key('where the joints are')
     limits: dict[str, Any] = key('what the machine may not exceed')
     motion: MotionConfig = key('how fast it may move (docs/motion.md)')
-    servos: dict[str, Any] = key('its servos, and the pulses for their positions')
-    link: dict[str, Any] = key('the serial line to the board')
+    driver: Literal['serial', 'topic'] = key(
+        'what moves the joints: a board on a serial line, or other software (docs/your-arm.md)',
+        default='serial',
+    )
+    servos: dict[str, Any] = key(
+        'its servos, and the pulses for their positions; only with driver: serial',
+        default_factory=dict,
+    )
+    link: dict[str, Any] = key(
+        'the serial line to the board; only with driver: serial', default_factory=dict
+    )
     description: str = key('one line, for lists', default='')
     simulation: dict[str, Any] | None = key(
         "what the fake board's servos and battery do", default=None
     )
     dynamics: dict[str, Any] | None = key('masses and drives (docs/physics.md)', default=None)
     frames: FramesConfig = key("the user's frames", default_factory=FramesConfig)
+    task_space: TaskSpaceConfig = key(
+        'limits on position, orientation and speed of platform or tool',
+        default_factory=TaskSpaceConfig,
+    )
+
+    def __post_init__(self) -> None:
+        """Raises ConfigError for sections of the bridge that are missing, or without a use."""
+        parts = {'servos': self.servos, 'link': self.link}
+        if self.driver == 'serial':
+            problems = [f'{name}: missing' for name, part in parts.items() if not part]
+        else:
+            parts['simulation'] = self.simulation or {}
+            unused = [name for name, part in parts.items() if part]
+            problems = [f'{name}: without a use, driver: topic has no board' for name in unused]
+        if problems:
+            raise ConfigError(problems)
 
 
 @dataclass(frozen=True)
 class Kind(Generic[T]):
     """A kind of machine: the schemas of its sections geometry and limits, and what makes it.
 
-    geometry may be a union of forms; make takes both sections as built by the schemas.
+    geometry may be a union of forms; make takes both sections as built by the schemas. screen
+    raises ConfigError for sections of which no schema has to tell more.
     """
 
     geometry: Any
     limits: type
     make: Callable[[Any, Any], T]
+    screen: Callable[[Mapping[str, Any], Mapping[str, Any]], None] = lambda geometry, limits: None
 
     def build(self, machine_file: MachineFile) -> T:
         """What a file of this kind makes; ConfigError with all problems of both sections."""
+        self.screen(machine_file.geometry, machine_file.limits)
         sections: tuple[Any, Any] = build_both(
             (self.geometry, machine_file.geometry, 'geometry'),
             (self.limits, machine_file.limits, 'limits'),
@@ -95,6 +126,24 @@ class Machine:
         if self.jog_singularity not in JOG_SINGULARITIES:
             known = ' or '.join(map(repr, JOG_SINGULARITIES))
             raise InvalidInput(f'jog_singularity is {self.jog_singularity!r}, needs {known}')
+
+    def within(self, task_space: TaskSpaceConfig) -> 'Machine':
+        """With limits in task space as well; ConfigError names each beyond which home is."""
+        kinematics, constraints = self.kinematics, self.constraints
+        group = constraints.checks[0][0] if constraints.is_one_group else None
+        try:
+            added = task_space.limits(kinematics.home, group)
+        except ConfigError as error:
+            raise ConfigError([f'task_space.{problem}' for problem in error.problems]) from error
+        at_home = kinematics.home, kinematics.inverse(kinematics.home)
+        beyond = in_words(Constraints(added).violations(*at_home) if added else [])
+        if beyond:
+            raise ConfigError([f'task_space: home has {words}' for words in beyond])
+        return replace(
+            self,
+            constraints=Constraints((*constraints.limits, *added)),
+            motion=replace(self.motion, axis_speeds=task_space.speeds),
+        )
 
     @property
     def joint_ranges(self) -> tuple[Array, Array]:

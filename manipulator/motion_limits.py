@@ -1,7 +1,8 @@
 """How fast a machine may move: its platform or tool, and each of its joints."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,9 +14,19 @@ BRAKING_SHARE = 0.3
 """The part of each acceleration limit that plans leave for braking along their path."""
 
 
+SixNumbers: TypeAlias = tuple[float, float, float, float, float, float]
+
+
+SPEED_NAMES = (
+    *('platform speed', 'turning speed'),
+    *(f'{kind} {axis} speed' for kind in ('platform', 'turning') for axis in 'xyz'),
+)
+"""Of all of the platform or tool, then along and about each axis."""
+
+
 @dataclass(frozen=True)
 class MotionConfig:
-    """The `motion` section of a machine file."""
+    """The `motion` section of a machine file; a joint limit is one for all joints, or six."""
 
     linear_speed_mm_s: float = quantity(*RATE, 'of the platform or the tool')
     linear_acceleration_mm_s2: float = quantity(*RATE, 'likewise')
@@ -23,12 +34,16 @@ class MotionConfig:
     angular_speed_deg_s: float = quantity(*RATE, 'of the platform or the tool, about any axis')
     angular_acceleration_deg_s2: float = quantity(*RATE, 'likewise')
     angular_jerk_deg_s3: float = quantity(*RATE, 'likewise')
-    joint_speed_deg_s: float | None = quantity(*RATE, 'of every joint that turns', default=None)
-    joint_acceleration_deg_s2: float | None = quantity(*RATE, 'likewise', default=None)
-    joint_speed_mm_s: float | None = quantity(
-        *RATE, 'of every leg that changes its length', default=None
+    joint_speed_deg_s: float | SixNumbers | None = quantity(
+        *RATE, 'of every joint that turns, or of each', default=None
     )
-    joint_acceleration_mm_s2: float | None = quantity(*RATE, 'likewise', default=None)
+    joint_acceleration_deg_s2: float | SixNumbers | None = quantity(
+        *RATE, 'likewise', default=None
+    )
+    joint_speed_mm_s: float | SixNumbers | None = quantity(
+        *RATE, 'of every leg that changes its length, or of each', default=None
+    )
+    joint_acceleration_mm_s2: float | SixNumbers | None = quantity(*RATE, 'likewise', default=None)
 
 
 @dataclass(frozen=True)
@@ -61,11 +76,15 @@ class JointDerivatives:
 
 @dataclass(frozen=True)
 class MotionLimits:
-    """Norm of linear velocity, norm of angular velocity, and every single joint."""
+    """Norm of linear velocity, norm of angular velocity, and every single joint.
+
+    axis_speeds (6,) are along and about the axes of the frame in which poses are, m/s and rad/s.
+    """
 
     linear: Derivatives
     angular: Derivatives
     joint: JointDerivatives
+    axis_speeds: Array = field(default_factory=lambda: frozen(np.full(6, np.inf)), compare=False)
 
     @property
     def for_plans(self) -> 'MotionLimits':
@@ -77,7 +96,13 @@ class MotionLimits:
         joint = JointDerivatives.of(
             self.joint.speed, (1.0 - BRAKING_SHARE) * self.joint.acceleration
         )
-        return MotionLimits(share(self.linear), share(self.angular), joint)
+        return replace(self, linear=share(self.linear), angular=share(self.angular), joint=joint)
+
+    def speed_shares(self, twist: Array) -> Array:
+        """The part of each limit in SPEED_NAMES that twists (..., 6) use: (..., 8)."""
+        norms = np.sqrt((twist.reshape(*twist.shape[:-1], 2, 3) ** 2).sum(axis=-1))
+        limits = np.array((self.linear.speed, self.angular.speed))
+        return np.concatenate([norms / limits, np.abs(twist) / self.axis_speeds], axis=-1)
 
     @property
     def braking_rate(self) -> float:
@@ -97,13 +122,13 @@ class MotionLimits:
         degree, millimetre = math.radians(1), 1e-3
         if config.joint_speed_mm_s is not None:
             joint = JointDerivatives.of(
-                config.joint_speed_mm_s * millimetre,
-                (config.joint_acceleration_mm_s2 or math.inf) * millimetre,
+                _scaled(config.joint_speed_mm_s, millimetre),
+                _scaled(config.joint_acceleration_mm_s2, millimetre),
             )
         else:
             joint = JointDerivatives.of(
-                (config.joint_speed_deg_s or math.inf) * degree,
-                (config.joint_acceleration_deg_s2 or math.inf) * degree,
+                _scaled(config.joint_speed_deg_s, degree),
+                _scaled(config.joint_acceleration_deg_s2, degree),
             )
         return cls(
             Derivatives(
@@ -118,3 +143,9 @@ class MotionLimits:
             ),
             joint,
         )
+
+
+def _scaled(limit: float | SixNumbers | None, unit: float) -> Array:
+    """In SI units; ∞ where there is none."""
+    scaled: Array = unit * np.asarray(math.inf if limit is None else limit, dtype=np.float64)
+    return scaled

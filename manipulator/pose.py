@@ -103,7 +103,7 @@ class Pose:
     def moved(self, twist: ArrayLike) -> 'Pose':
         """After a unit of time at `twist`, origin and orientation advanced each on its own."""
         step = np.asarray(twist, dtype=np.float64)
-        leading = np.broadcast_shapes(self.position.shape[:-1], step.shape[:-1])
+        leading = _common(self.position.shape[:-1], step.shape[:-1])
         position, rotation = np.empty((*leading, 3)), np.empty((*leading, 3, 3))
         start = self._stretched(leading)
         if _kernel.moved(*start, stretched(step, (*leading, 6)), position, rotation):
@@ -112,13 +112,18 @@ class Pose:
 
     def twist_to(self, target: 'Pose') -> Array:
         """The twist with which `moved` arrives at `target`; (..., 6)."""
-        leading = np.broadcast_shapes(self.position.shape[:-1], target.position.shape[:-1])
+        leading = _common(self.position.shape[:-1], target.position.shape[:-1])
         twist = np.empty((*leading, 6))
         _kernel.twist_between(*self._stretched(leading), *target._stretched(leading), twist)
         return twist
 
     def _stretched(self, leading: tuple[int, ...]) -> tuple[Array, Array]:
         return stretched(self.position, (*leading, 3)), stretched(self.rotation, (*leading, 3, 3))
+
+
+def _common(one: tuple[int, ...], other: tuple[int, ...]) -> tuple[int, ...]:
+    """The shape that both broadcast to; at once where it is the same."""
+    return one if one == other else np.broadcast_shapes(one, other)
 
 
 def _stretched(position: Array, rotation: Array) -> tuple[Array, Array]:

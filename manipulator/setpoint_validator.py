@@ -16,6 +16,9 @@ A process that stalls receives one message late and the next right after it: the
 the time that the first left unused.
 """
 
+REQUEST_MEMORY = 0.1
+"""Seconds that requested joints wait for their setpoint, the next one."""
+
 STANDING = 1e-9
 """rad or m a command below which joints are at rest: a step of rounding is not repeated."""
 IN_STEP = 2.0
@@ -38,6 +41,13 @@ class SetpointValidator:
         self._last_age = self._unused = 0.0
         self._commanded_at = float('-inf')
         self._measured: Array | None = None
+        self._pose: Pose | None = None
+        self._requested: Array | None = None
+        self._requested_at = float('-inf')
+
+    def note_requested(self, joints: Array, now: float) -> None:
+        """The joints (n,) of a motion of joints: of a pose that fixes none, these are chosen."""
+        self._requested, self._requested_at = joints, now
 
     def note_joints(self, joints: Array | None) -> None:
         """The reported joints (n,), in rad or m; None when not all are known."""
@@ -57,7 +67,11 @@ class SetpointValidator:
         near = self._commanded if is_fresh else self._measured
         if not is_fresh:
             self._unused = 0.0
-        joints = self._machine.kinematics.inverse(T_base_platform, self._ahead(near, age))
+        ahead = near if self._is_same(T_base_platform) else self._ahead(near, age)
+        if self._requested is not None and now - self._requested_at < REQUEST_MEMORY:
+            ahead = self._requested
+        self._requested = None
+        joints = self._machine.kinematics.inverse(T_base_platform, ahead)
         self._check_limits(T_base_platform, joints, near)
         if near is not None:
             self._check_step(joints, near, age if is_fresh else 0.0)
@@ -65,7 +79,15 @@ class SetpointValidator:
         self._last_step = joints - near if is_fresh and near is not None else 0.0
         self._last_age = age
         self._commanded, self._commanded_at = joints, now
+        self._pose = T_base_platform
         return joints
+
+    def _is_same(self, pose: Pose) -> bool:
+        """Whether the machine is to stand still: where a pose fixes no joints, these stay too."""
+        last = self._pose
+        return last is not None and bool(
+            (pose.position == last.position).all() and (pose.rotation == last.rotation).all()
+        )
 
     def _ahead(self, near: Array | None, age: float) -> Array | None:
         """Where the joints go on to if they keep their speed.

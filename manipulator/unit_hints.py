@@ -19,7 +19,7 @@ FAR = 20.0
 A_TURN = 2 * pi + 1e-3
 TURNS = ('roll', 'pitch', 'yaw')
 
-FACTOR = 100.0
+FACTOR = 200.0
 """Between a length and the machine's size: beyond it, one of both is more likely in metres."""
 SIZES_MM = (2.0, 1e5)
 """Of machines: below they are more likely in metres, above in micrometres."""
@@ -50,25 +50,24 @@ def check_turns(angles: Sequence[float], names: Sequence[str] = TURNS) -> None:
 def out_of_proportion(geometry: Any, limits: Any) -> list[str]:
     """Lengths in these sections, as built, that contradict the machine's own size.
 
-    The size is the median of the geometry's lengths, but for offsets, which may be 0: these may be
-    as small as they like.
+    The size is the median of all of them, but for offsets, which may be 0: these may be as small
+    as they like.
     """
-    lengths = dict(_lengths('geometry', geometry))
-    told = [value for value, is_size in lengths.values() if is_size]
+    lengths = [*_lengths('geometry', geometry), *_lengths('limits', limits)]
+    told = [value for _, value, is_size in lengths if is_size]
     if not told:
         return []
     size = float(np.median(told))
     if not SIZES_MM[0] <= size <= SIZES_MM[1]:
         return [f'geometry: its lengths are about {size:.3g} mm: is it in another unit?']
-    lengths |= _lengths('limits', limits)
     return [
         f'{place}: {value:.5g} in a machine of about {size:.3g} mm: is it in another unit?'
-        for place, (value, is_size) in lengths.items()
+        for place, value, is_size in lengths
         if value > FACTOR * size or (is_size and value * FACTOR < size)
     ]
 
 
-def _lengths(place: str, section: Any) -> Iterable[tuple[str, tuple[float, bool]]]:
+def _lengths(place: str, section: Any) -> Iterable[tuple[str, float, bool]]:
     """The largest length of each key in mm, and whether it is no mere offset."""
     for field in dataclasses.fields(section):
         value = getattr(section, field.name)
@@ -76,7 +75,7 @@ def _lengths(place: str, section: Any) -> Iterable[tuple[str, tuple[float, bool]
             are_points = np.ndim(value) == 2
             points = np.asarray(value) if are_points else np.reshape(value, (-1, 1))
             is_size = are_points or field.metadata['range'][0] > 0.0
-            yield f'{place}.{field.name}', (float(np.linalg.norm(points, axis=1).max()), is_size)
+            yield f'{place}.{field.name}', float(np.linalg.norm(points, axis=1).max()), is_size
 
 
 def check_pivot(kinematics: Kinematics, pivot: Pose) -> None:

@@ -1,5 +1,6 @@
 """What tests of every folder may ask for, and what keeps those of several workers apart."""
 
+import gc
 import importlib.util
 import os
 import random
@@ -10,13 +11,14 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from hexarm.board import build as firmware_build
-from sampling import IS_THOROUGH
+from sampling import IS_THOROUGH, enough
 
 # How long a computer takes is no verdict. A run tries the same as the last one, but for thorough
 # runs, which look for what no run has tried yet.
 settings.register_profile(
     'patient',
     deadline=None,
+    max_examples=enough(40, 200),
     derandomize=not IS_THOROUGH,
     suppress_health_check=[HealthCheck.too_slow],
 )
@@ -60,6 +62,11 @@ def pytest_collection_modifyitems(items):
             item.add_marker('processes')
         elif 'chip_tools' in item.fixturenames:
             item.add_marker('long')
+
+
+def pytest_collection_finish():
+    """What is there by now stays: every garbage collection of every test would search it again."""
+    gc.freeze()
 
 
 @pytest.hookimpl(optionalhook=True)

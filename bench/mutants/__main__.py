@@ -154,9 +154,13 @@ def main(arguments: list[str]) -> None:
         '--seconds', type=float, default=30.0, help='of tests for a mutant, at most'
     )
     parser.add_argument('--jobs', type=int, default=2, help='mutants at a time')
+    parser.add_argument('--only', type=Path, metavar='FILE', help='those that a report names')
     parser.add_argument('--coverage', type=Path, metavar='DIR', help='where coverage is kept')
     options = parser.parse_args(arguments)
     mutants = sampled(options.modules, options.count, options.seed)
+    if options.only:
+        named = options.only.read_text()
+        mutants = [mutant for mutant in mutants if str(mutant) in named]
     with tempfile.TemporaryDirectory(prefix='hexarm_mutants_') as scratch:
         trees = [copy_tree(Path(scratch) / f'tree_{k}') for k in range(options.jobs)]
         folder = options.coverage or Path(scratch) / 'coverage'

@@ -83,8 +83,15 @@ class Tests:
         return {context.split('|')[0] for context in at}
 
     def _on_c_line(self, mutant: Mutant) -> set[str]:
-        """Of a line within a block, those on the block's first; of a file's first lines, all."""
+        """Of a line within a block, those on the block's first; of a file's first lines, all.
+
+        Of a header that only declares: all of its library.
+        """
         by_line = {int(line): at for line, at in self._c_lines.get(mutant.module, {}).items()}
+        if not by_line and mutant.module.endswith('.h'):
+            folder = mutant.module.rpartition('/')[0]
+            lines_of = (lines for file, lines in self._c_lines.items() if file.startswith(folder))
+            return {name for lines in lines_of for at in lines.values() for name in at}
         begun = [line for line in by_line if line <= mutant.mutation.line]
         lines = [max(begun)] if begun else list(by_line)
         return {name for line in lines for name in by_line[line]}
@@ -92,11 +99,16 @@ class Tests:
     def portions(
         self, mutant: Mutant, count: int, seconds: float
     ) -> list[tuple[list[str], float]]:
-        """The first `count` and the others, each with its seconds: not above `seconds` in all."""
+        """The first `count` and the others, each with its seconds: not above `seconds` in all.
+
+        Those of a test file with the module's name come first, and of each test one of its runs.
+        """
         seen: Counter[str] = Counter()
-        turns: list[tuple[int, float, str]] = []
+        own = f'/test_{Path(mutant.module).stem}'
+        turns: list[tuple[tuple[bool, int], float, str]] = []
         for name in self.covering(mutant):
-            turns.append((seen[name.split('[')[0]], self._seconds[name], name))
+            order = own not in name, seen[name.split('[')[0]]
+            turns.append((order, self._seconds[name], name))
             seen[name.split('[')[0]] += 1
         turns.sort()
         portions = []

@@ -131,7 +131,7 @@ class BoardThread(threading.Thread):
         """The thread's work, until `close`."""
         last = due = time.monotonic()
         while not self._is_stopping:
-            has_input = self._wait(last + self._machine.board.rest)
+            has_input = self._wait(last + min(self._machine.board.rest, POSITIONS_PERIOD))
             while self._requests:
                 self._requests.popleft()()
             now = time.monotonic()

@@ -28,7 +28,7 @@ class CrankLegs(ctypes.Structure):
         ('end', Vectors),
         ('crank', ctypes.c_float * LEGS),
         ('rod', ctypes.c_float * LEGS),
-        ('middle', ctypes.c_float),
+        ('middle', ctypes.c_float * LEGS),
     )
 
 
@@ -48,10 +48,11 @@ class CrankHexapod(ctypes.Structure):
 
     _fields_ = (
         ('is_known', ctypes.c_bool),
-        ('home_height', ctypes.c_float),
+        ('home_position', ctypes.c_float * 3),
+        ('home_rotation', ctypes.c_float * 9),
         ('minimum_height', ctypes.c_float),
-        ('crank_lowest', ctypes.c_float),
-        ('crank_highest', ctypes.c_float),
+        ('crank_lowest', ctypes.c_float * LEGS),
+        ('crank_highest', ctypes.c_float * LEGS),
         ('legs', CrankLegs),
         ('servos', CrankServo * LEGS),
     )

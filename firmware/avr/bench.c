@@ -18,7 +18,7 @@ static volatile float anything;
 
 static void inverse(float x, float angle)
 {
-    const float position[3] = {x, 0.002f, MACHINE.hexapod.home_height};
+    const float position[3] = {x, 0.002f, MACHINE.hexapod.home_position[2]};
     const float rpy[3] = {angle, -angle, 0.05f};
     float rotation[9], cranks[LEGS];
     MARK(INVERSE);

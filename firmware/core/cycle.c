@@ -137,9 +137,11 @@ bool cycle_at(float time, float part, float *counts)
         float angle = TURN * (turns - floorf(turns)) + kept.axes[i].phase;
         offset[i] = part * kept.axes[i].amplitude * sinf(angle);
     }
-    const float position[3] = {offset[0], offset[1], offset[2] + MACHINE.hexapod.home_height};
-    float rotation[9], cranks[LEGS];
-    kinematics_rotation(offset + 3, rotation);
+    const CrankHexapod *hexapod = &MACHINE.hexapod;
+    float position[3], rotation[9], cranks[LEGS];
+    for (uint8_t k = 0; k < 3; k++)
+        position[k] = hexapod->home_position[k] + offset[k];
+    kinematics_turned(offset + 3, hexapod->home_rotation, rotation);
     if (!kinematics_cranks(&MACHINE.hexapod, position, rotation, cranks))
         return false;
     kinematics_counts(&MACHINE.hexapod, cranks, counts);

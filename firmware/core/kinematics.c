@@ -18,6 +18,16 @@ void kinematics_rotation(const float rpy[3], float rotation[9])
     rotation[8] = cp * cr;
 }
 
+void kinematics_turned(const float rpy[3], const float start[9], float rotation[9])
+{
+    float turn[9];
+    kinematics_rotation(rpy, turn);
+    for (uint8_t i = 0; i < 9; i++) {
+        const float *row = turn + i / 3 * 3, *column = start + i % 3;
+        rotation[i] = row[0] * column[0] + row[1] * column[3] + row[2] * column[6];
+    }
+}
+
 bool kinematics_cranks(const CrankHexapod *hexapod, const float position[3],
                        const float rotation[9], float cranks[LEGS])
 {
@@ -30,7 +40,7 @@ bool kinematics_is_within_limits(const CrankHexapod *hexapod, const float positi
     if (!(position[2] >= hexapod->minimum_height))
         return false;
     for (uint8_t i = 0; i < LEGS; i++)
-        if (!(cranks[i] >= hexapod->crank_lowest && cranks[i] <= hexapod->crank_highest))
+        if (!(cranks[i] >= hexapod->crank_lowest[i] && cranks[i] <= hexapod->crank_highest[i]))
             return false;
     return true;
 }

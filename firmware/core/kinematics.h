@@ -11,6 +11,9 @@
 /* Rz(yaw)·Ry(pitch)·Rx(roll), row by row. */
 void kinematics_rotation(const float rpy[3], float rotation[9]);
 
+/* The same, times an orientation. */
+void kinematics_turned(const float rpy[3], const float start[9], float rotation[9]);
+
 /* Crank angles of a pose, elbow out; false where a leg does not close. */
 bool kinematics_cranks(const CrankHexapod *hexapod, const float position[3],
                        const float rotation[9], float cranks[LEGS]);

@@ -19,10 +19,10 @@ typedef struct {
 
 typedef struct {
     bool is_known; /* false: another kind of machine, and the rest means nothing */
-    float home_height;
+    float home_position[3], home_rotation[9];
     float minimum_height;
-    float crank_lowest; /* rad */
-    float crank_highest;
+    float crank_lowest[LEGS]; /* rad */
+    float crank_highest[LEGS];
     struct crank_legs legs;
     CrankServo servos[LEGS];
 } CrankHexapod;

@@ -32,17 +32,22 @@ from manipulator.yaml_edit import flow_list
 
 def geometry_lines(geometry: RotaryGeometry | LinearGeometry) -> list[str]:
     """The `geometry` section by coordinates, to 0.1 µm."""
-    height = f'  home_height_mm: {1e3 * geometry.home_height:g}'
+    home = [f'  home_height_mm: {1e3 * geometry.home_height:g}']
+    for key, values in (
+        ('home_xy_mm', 1e3 * geometry.home_xy),
+        ('home_rpy_deg', np.degrees(geometry.home_rpy)),
+    ):
+        home += [f'  {key}: {flow_list(values)}'] if values.any() else []
     joints = _points('platform_joints_mm', 1e3 * geometry.platform_points)
     if isinstance(geometry, LinearGeometry):
-        return [*_points('base_joints_mm', 1e3 * geometry.base_points), *joints, height]
+        return [*_points('base_joints_mm', 1e3 * geometry.base_points), *joints, *home]
     return [
         *_points('crank_centres_mm', 1e3 * geometry.crank_centres),
         *_points('crank_tangents', geometry.tangents, 6),
         *joints,
         f'  crank_length_mm: {flow_list(1e3 * geometry.crank_lengths)}',
         f'  rod_length_mm: {flow_list(1e3 * geometry.rod_lengths)}',
-        height,
+        *home,
     ]
 
 
@@ -174,10 +179,10 @@ class LinearModel(LegModel):
     def identified(self, values: Array) -> LinearGeometry:
         """The geometry with these values."""
         g = self.geometry
-        return LinearGeometry(
-            g.base_points + values[:POINTS].reshape(6, 3),
-            g.platform_points + values[POINTS : 2 * POINTS].reshape(6, 3),
-            g.home_height,
+        return dataclasses.replace(
+            g,
+            base_points=g.base_points + values[:POINTS].reshape(6, 3),
+            platform_points=g.platform_points + values[POINTS : 2 * POINTS].reshape(6, 3),
         )
 
     def joint_offsets(self, values: Array) -> Array:

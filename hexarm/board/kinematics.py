@@ -24,10 +24,11 @@ def crank_hexapod(machine: Machine, calibration: Calibration) -> CrankHexapod | 
     order = [calibration.names.index(name) for name in kinematics.joint_names]
     return CrankHexapod(
         is_known=True,
-        home_height=kinematics.geometry.home_height,
+        home_position=tuple(kinematics.home.position.tolist()),
+        home_rotation=tuple(kinematics.home.rotation.ravel().tolist()),
         minimum_height=lowest,
-        crank_lowest=cranks.low.max(),
-        crank_highest=cranks.high.min(),
+        crank_lowest=tuple(cranks.low.tolist()),
+        crank_highest=tuple(cranks.high.tolist()),
         legs=_legs(kinematics),
         servos=tuple(_servo(calibration, i) for i in order),
     )
@@ -37,8 +38,8 @@ def _legs(kinematics: RotaryHexapod) -> CrankLegs:
     g = kinematics.geometry
     vectors = (g.crank_centres, g.normals, g.tangents, g.ups, g.platform_points)
     by_coordinate = (tuple(map(tuple, np.asarray(v).T.tolist())) for v in vectors)
-    lengths = (tuple(np.asarray(v).tolist()) for v in (g.crank_lengths, g.rod_lengths))
-    return CrankLegs(*by_coordinate, *lengths, kinematics.crank_centre)
+    numbers = (g.crank_lengths, g.rod_lengths, kinematics.crank_middles)
+    return CrankLegs(*by_coordinate, *(tuple(v.tolist()) for v in numbers))
 
 
 def _servo(calibration: Calibration, i: int) -> CrankServo:

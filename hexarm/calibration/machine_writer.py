@@ -65,7 +65,7 @@ def random_poses(
     if not isinstance(kinematics, SerialArm):
         poses = sample(machine, count, generator, kinematics.characteristic_length)
         return kinematics.inverse(poses), poses
-    low, high = kinematics.limits.low, kinematics.limits.high
+    low, high = kinematics.limits.sampled
     middle, half = (low + high) / 2, SHARE_OF_RANGE * (high - low) / 2
     joints = middle + half * generator.uniform(-1.0, 1.0, (4 * count, len(low)))
     poses = kinematics.chain.forward(joints)

@@ -18,6 +18,7 @@ from manipulator.analysis.free_paths import admits
 from manipulator.analysis.volume import bounding_box, with_orientation
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
+from manipulator.formatting import decimals
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
 from manipulator.pose import Pose
@@ -104,8 +105,10 @@ def answer(arguments: argparse.Namespace) -> Answer:
 
 def servo_errors(kinematics: Kinematics, file: MachineFile, noise: float) -> JointErrors:
     """The requested noise, dead band and play of the machine file's simulated servos."""
-    config = BoardConfig.from_machine(file)
     count = len(kinematics.joint_names)
+    if file.driver != 'serial':
+        return JointErrors(np.full(count, noise), np.zeros(count), np.zeros(count))
+    config = BoardConfig.from_machine(file)
     servos = config.servos.joints[:count]  # an arm's gripper comes after its joints
     per_unit = [servo.us_per_mm or servo.us_per_deg or math.inf for servo in servos]
     unit = 1e-3 if kinematics.joint_unit == 'm' else math.radians(1.0)
@@ -118,6 +121,8 @@ def servo_errors(kinematics: Kinematics, file: MachineFile, noise: float) -> Joi
 
 def common_error(file: MachineFile, noise: float, joints: int) -> JointErrors:
     """One signal within ±noise on all servos, in the direction that each servo turns."""
+    if file.driver != 'serial':
+        return JointErrors.common(np.full(joints, noise))
     servos = BoardConfig.from_machine(file).servos.joints[:joints]
     return JointErrors.common(noise * np.array([float(servo.sign) for servo in servos]))
 
@@ -202,14 +207,17 @@ def _in_words(found: list[Row]) -> list[str]:
     line = '{:<27} {:>10} {:>16} {:>10} {:>14}'
     head = ('rms at home', 'position', 'drawn', 'angle', 'drawn')
     lines = [line.format(*head) + ('   paper' if found[0].paper else '')]
+    some, more = (
+        decimals(float(max(rms(row.linear) for row in found))) for rms in (_millimetres, _degrees)
+    )
     for row in found:
         share = row.drawn.relative_error
-        place, turn = 1e3 * row.drawn.position_rms, np.degrees(row.drawn.angle_rms)
+        place, turn = _millimetres(row.drawn), _degrees(row.drawn)
         numbers = (
-            f'{1e3 * row.linear.position_rms:.4f} mm',
-            f'{place:.4f} ± {share * place:.4f}',
-            f'{np.degrees(row.linear.angle_rms):.4f}°',
-            f'{turn:.4f} ± {share * turn:.4f}',
+            f'{_millimetres(row.linear):.{some}f} mm',
+            f'{place:.{some}f} ± {share * place:.{some}f}',
+            f'{_degrees(row.linear):.{more}f}°',
+            f'{turn:.{more}f} ± {share * turn:.{more}f}',
         )
         paper = f'   {1e3 * row.paper:.4f} mm' if row.paper else ''
         lines.append(line.format(row.cause, *numbers) + paper)
@@ -222,11 +230,24 @@ def _in_words(found: list[Row]) -> list[str]:
     return lines
 
 
+def _millimetres(spread: Spread) -> float:
+    return 1e3 * float(spread.position_rms)
+
+
+def _degrees(spread: Spread) -> float:
+    return math.degrees(float(spread.angle_rms))
+
+
 def _map_in_words(everywhere: dict[str, Array]) -> list[str]:
-    place = {k: 1e3 * v for k, v in _summary(everywhere['position']).items()}
-    turn = {k: math.degrees(v) for k, v in _summary(everywhere['angle']).items()}
+    place, turn = 1e3 * everywhere['position'], np.degrees(everywhere['angle'])
     return [
         'all of the servos, over the positions reached unturned: '
-        f'{place["least"]:.3f} … {place["largest"]:.3f} mm (median {place["median"]:.3f}), '
-        f'{turn["least"]:.3f} … {turn["largest"]:.3f}° (median {turn["median"]:.3f})'
+        f'{_summary_in_words(place, " mm")}, {_summary_in_words(turn, "°")}'
     ]
+
+
+def _summary_in_words(values: Array, unit: str) -> str:
+    found = _summary(values)
+    digits = decimals(found['largest'], fewest=3)
+    least, median, largest = (f'{found[k]:.{digits}f}' for k in ('least', 'median', 'largest'))
+    return f'{least} … {largest}{unit} (median {median})'

@@ -8,7 +8,8 @@ from hexarm.cli.answers import Answer, Units, add_units, answering, units_of
 from hexarm.cli.statuses import REFUSED
 from hexarm.machine_check import Report, report_of
 from hexarm.machines import find, read, shipped, text_of
-from manipulator.analysis.home_reach import reach_from_home, smallest_margins
+from manipulator.analysis.inside import AXES, ranges
+from manipulator.analysis.reach import smallest_margins
 from manipulator.analysis.readings import LimitReading
 from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError
@@ -76,14 +77,20 @@ def _home_in_words(machine: Machine, units: Units) -> list[str]:
     kinematics = machine.kinematics
     joints = kinematics.inverse(kinematics.home)
     lines = [f'joints at home: {units.quantities(joints, kinematics.joint_unit)}']
-    reaches, margins = reach_from_home(machine), smallest_margins(machine)
-    for unit in ('m', 'rad') if reaches else ():
-        ends = (f'{r.axis} {units.number(r.low, unit)} … {units.number(r.high, unit)}'
-                for r in reaches if r.unit == unit)  # fmt: skip
+    margins, reach = smallest_margins(machine), _reach(machine)
+    for unit, axes in {'m': AXES[:3], 'rad': AXES[3:]}.items() if reach else ():
+        ends = (f'{a} {" … ".join(units.number(end, unit) for end in reach[a])}' for a in axes)
         lines.append(f'reach from home: {"  ".join(ends)} {units.name(unit)}')
     if margins:
         lines.append(f'smallest margins at home: {", ".join(_margin(r, units) for r in margins)}')
     return lines
+
+
+def _reach(machine: Machine) -> dict[str, tuple[float, float]]:
+    """See `ranges`; empty where home itself is beyond a limit."""
+    home = machine.kinematics.home
+    is_good = bool(machine.constraints.admits(home, machine.kinematics.inverse(home)))
+    return ranges(machine) if is_good else {}
 
 
 def _margin(reading: LimitReading, units: Units) -> str:
@@ -103,7 +110,7 @@ def _for_programs(report: Report) -> dict[str, Any]:
         positions = kinematics.inverse(kinematics.home).tolist()
         names = list(kinematics.joint_names)
         found['joints_at_home'] = {'names': names, 'positions': positions}
-        found['reach'] = {r.axis: [r.low, r.high] for r in reach_from_home(machine)}
+        found['reach'] = {axis: list(ends) for axis, ends in _reach(machine).items()}
         found['smallest_margins'] = [
             {'quantity': r.quantity, 'owner': r.owner, 'unit': r.unit, 'margin': r.margin}
             for r in smallest_margins(machine)

@@ -62,6 +62,8 @@ COMMANDS = (
             'ik robocake --xyz 0 0 0.045 --rpy 0 0 0.1'),
     Command('fk', 'hexarm.cli.fk',
             'print the pose of joint positions', 'fk robocake 2.1 2.1 2.1 2.1 2.1 2.1'),
+    Command('import', 'hexarm.cli.import_arm',
+            "make a machine file of an arm's URDF", 'import ur3e.urdf --tip tool0'),
     Command('mjcf', 'hexarm.cli.export',
             'write a machine as a MuJoCo model', 'mjcf robocake --output robocake.xml'),
     Command('urdf', 'hexarm.cli.export',

@@ -134,8 +134,9 @@ def joints(robot: 'Robot', arguments: argparse.Namespace) -> Answer:
     """The measured joints."""
     units, measured = units_of(arguments), robot.joints
     kinds = robot.limits.units
+    width = max(12, *map(len, measured))
     lines = [
-        f'{name:<12} {units.quantities([position], kind):>16}'
+        f'{name:<{width}} {units.quantities([position], kind):>16}'
         for name, position in measured.items()
         for kind in [kinds.get(name, '')]
     ]

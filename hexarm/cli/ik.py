@@ -51,8 +51,9 @@ def answer(arguments: argparse.Namespace) -> Answer:
             return every_branch(machine, pose, units_of(arguments))
         machine.constraints.check(pose, joints)
     names, positions, units = list(kinematics.joint_names), joints.tolist(), units_of(arguments)
+    width = max(12, *map(len, names))
     lines = [
-        f'{name:<12} {units.quantities([position], kinematics.joint_unit):>16}'
+        f'{name:<{width}} {units.quantities([position], kinematics.joint_unit):>16}'
         for name, position in zip(names, positions, strict=True)
     ]
     return {'joints': {'names': names, 'positions': positions}}, lines
@@ -74,10 +75,12 @@ def every_branch(machine: Machine, pose: Pose, units: Units) -> Answer:
     unit = kinematics.joint_unit
     headers = [f'{name} ({units.name(unit)})' for name in names]
     numbers = [[units.number(value, unit) for value in q] for q in closed]
+    width = max(14, *map(len, headers))
     lines = [
-        '  '.join(f'{header:>14}' for header in headers),
+        '  '.join(f'{header:>{width}}' for header in headers),
         *(
-            '  '.join(f'{number:>14}' for number in row) + (f'  {broken[0]}' if broken else '')
+            '  '.join(f'{number:>{width}}' for number in row)
+            + (f'  {broken[0]}' if broken else '')
             for row, broken in zip(numbers, violations, strict=True)
         ),
     ]

@@ -15,6 +15,7 @@ from hexarm.graph import (
     Executable,
     Graph,
     board_process,
+    check_topic,
     link_folder,
     node_processes,
     ros_arguments,
@@ -37,11 +38,16 @@ SERVOS_OFF = (
     MachineState.BOOTING,
     MachineState.DISARMED,
 )
+AT_REST = (MotionMode.HOLD, MotionMode.DISABLED)
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
 BOARDS = ('fake', 'simavr')
 """In place of a port."""
 NAME = 'a shipped name or the path of a machine file'
 PLANT = 'what a simulated board moves: servos, or rigid bodies with loads (mujoco)'
+PORT = (
+    "a device, 'fake' (default) or 'simavr'; with driver: topic the topic of its driver's joint "
+    "states, or 'fake'"
+)
 SHORT = ', '.join(f'{kind} is short for {name}' for kind, name in MACHINES.items())
 
 
@@ -58,7 +64,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser = commands.add_parser('up')
     parser.add_argument('name', metavar='MACHINE', help=f'{NAME}; {SHORT}')
     parser.add_argument('--machine', help=f'{NAME}, after hexapod or arm')
-    parser.add_argument('--port', default='fake', help="a device, 'fake' (default) or 'simavr'")
+    parser.add_argument('--port', default='fake', help=PORT)
     parser.add_argument('--plant', choices=PLANTS, default=SERVO, help=PLANT)
     parser.add_argument('--namespace', help='default: hexapod or arm, as the machine is')
     parser.add_argument('--separate', action='store_true', help='one process for each node')
@@ -69,10 +75,11 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 def run(arguments: argparse.Namespace) -> int:
     """Runs the graph; status 0 after Ctrl-C, 1 when a part of it ended or did not get ready."""
     from hexarm.client import Client  # noqa: PLC0415 (needs ROS, which `hexarm ik` does not)
+    from hexarm.nodes import import_machine_nodes  # noqa: PLC0415 (as above)
 
     machine = arguments.machine or MACHINES.get(arguments.name, arguments.name)
     check(arguments.name, machine, arguments.namespace)
-    check_port(arguments.port)
+    check_port(arguments.port, machine, arguments.plant)
     namespace = arguments.namespace or family(machine)
     pages = [panel_process(machine)] if arguments.panel else []
     stop = StopSignal()
@@ -84,6 +91,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     with parts, Client(namespace, interrupt) as client:
         parts.start_processes([*parts.board, *pages])
+        if not arguments.separate:
+            import_machine_nodes()  # while this node finds the others
         client.refuse_second()
         print(described(machine), flush=True)
         parts.start_nodes(arguments.separate)
@@ -95,7 +104,7 @@ def run(arguments: argparse.Namespace) -> int:
             _watch(client)
         except Interrupted:
             stop.is_set = False
-            park(client, stop)
+            leave(client, stop, machine)
     return 0
 
 
@@ -167,8 +176,11 @@ def check(name: str, machine: str, namespace: str | None) -> None:
         raise Refused(f'{machine} is a {read(machine).kind}: hexarm up {machine}')
 
 
-def check_port(port: str) -> None:
+def check_port(port: str, machine: str, plant: str) -> None:
     """Raises Refused for a port that does not exist, or that this user may not open."""
+    if read(machine).driver == 'topic':
+        check_topic(machine, port, plant)
+        return
     if port in BOARDS:
         return
     if not os.path.exists(port):
@@ -209,7 +221,7 @@ def enable(client: 'Client', namespace: str) -> None:
     """Energises the servos; a machine that is stopped waits until it is cleared."""
     space = namespace.strip('/')
     while True:
-        print('energising the servos, one by one', flush=True)
+        print('enabling; servos are energised one by one', flush=True)
         try:
             client.enable()
             return
@@ -225,6 +237,18 @@ def enable(client: 'Client', namespace: str) -> None:
         )
         while client.machine_state.message == MachineState.STOPPED:
             client.spin(0.2)
+
+
+def leave(client: 'Client', stop: StopSignal, machine: str) -> None:
+    """Parks; a machine whose driver keeps the joints where they are is left there."""
+    if read(machine).driver == 'topic':
+        with contextlib.suppress(ManipulatorError):
+            client.trigger('trajectory/stop')
+            client.wait('rest', lambda: client.motion('mode') in AT_REST, SETTLES)
+        client.disable()
+        print('no more joint commands: the driver keeps the joints where they are', flush=True)
+    else:
+        park(client, stop)
 
 
 def park(client: 'Client', stop: StopSignal) -> None:
@@ -288,8 +312,9 @@ def _watch(client: 'Client') -> None:
 
 
 def _welcome(namespace: str, machine: str, port: str) -> str:
+    end = 'leaves it where it is' if read(machine).driver == 'topic' else 'parks it'
     return (
-        f'{machine} is up on {port} and enabled, in namespace /{namespace}. Ctrl-C parks it.\n'
+        f'{machine} is up on {port} and enabled, in namespace /{namespace}. Ctrl-C {end}.\n'
         f'Publish geometry_msgs/PoseStamped on /{namespace}/goal_pose and watch '
         f'/{namespace}/pose and /{namespace}/motion_status.'
     )

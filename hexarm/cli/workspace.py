@@ -11,7 +11,7 @@ from arm_control.arm import SerialArm
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.cli.progress import progress
 from hexarm.machines import load
-from manipulator.analysis.free_paths import is_joint_box
+from manipulator.analysis.free_paths import is_by_joints
 from manipulator.analysis.inside import conditions
 from manipulator.analysis.survey import Survey, survey
 from manipulator.analysis.volume import Box, Volume
@@ -77,7 +77,7 @@ def default_points(machine: Machine) -> int:
     arm = machine.kinematics
     if isinstance(arm, SerialArm) and not arm.is_explicit:
         return SLOW_POINTS
-    return FEWER_POINTS if is_joint_box(machine) else POINTS
+    return FEWER_POINTS if is_by_joints(machine) else POINTS
 
 
 def _for_programs(found: Survey) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bridge.calibration import Calibration
-from hexarm.machines import board_config
+from hexarm.machines import board_config, read
 from manipulator.arrays import Array
 from manipulator.links import Stroke
 from manipulator.pose import Pose
@@ -33,6 +33,8 @@ class GripperJoint:
 
 def gripper_of(name_or_path: str) -> GripperJoint | None:
     """The joint that a machine file marks as its gripper; ConfigError with all problems."""
+    if read(name_or_path).driver != 'serial':
+        return None
     servos = board_config(name_or_path).servos
     calibration = Calibration.from_config(servos)
     for joint in servos.joints:

@@ -185,11 +185,8 @@ def _owners(strokes: tuple[Stroke, ...]) -> list[str]:
 
 
 def _ball_owners(stroke: Stroke, owner: str) -> list[str]:
-    """A serial arm's line goes from its base through six joints to the tool."""
-    last = len(stroke.points) - 1
-    if stroke.part != 'link':
-        return [owner] * (last + 1)
-    return ['', *(f'joint {k}' for k in range(1, last)), '']
+    """A serial arm's line goes through its joints, each with limits of its own."""
+    return list(stroke.owners) or [owner] * len(stroke.points)
 
 
 def _radii(stroke: Stroke) -> Array:

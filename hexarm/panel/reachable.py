@@ -7,7 +7,7 @@ base frame. Changing one alone is a twist about a fixed axis, so `travel` answer
 import numpy as np
 
 from manipulator import rotation as so3
-from manipulator.analysis.free_paths import is_joint_box
+from manipulator.analysis.free_paths import is_by_joints
 from manipulator.analysis.travel import travel
 from manipulator.arrays import Array
 from manipulator.machine import Machine
@@ -46,7 +46,7 @@ def reachable_ranges(machine: Machine, pose: Pose, near: Array | None = None) ->
 def bounds(machine: Machine) -> Array:
     """(6, 2): between which values sliders go, a little more than the machine reaches."""
     home = coordinates(machine.kinematics.home)
-    if is_joint_box(machine):
+    if is_by_joints(machine):
         ends = machine.kinematics.characteristic_length * 2.5 * np.array([-1.0, 1.0])
         turn = home[3:, None] + np.array([[-np.pi, np.pi]] * 3)
         turn[1] = -np.pi / 2, np.pi / 2

@@ -51,15 +51,20 @@ class Drives:
         return replace(self, effort=np.broadcast_to(effort, self.effort.shape))
 
 
-def turning(configs: tuple[TurningDriveConfig, ...], servos: dict[str, Any]) -> Drives:
-    """Servos that turn; their free speed is that of the section `servos`."""
+def turning(configs: tuple[TurningDriveConfig, ...], speeds: Array) -> Drives:
+    """Drives that turn, and their free speeds (n,), rad/s."""
     return Drives(
         np.array([c.torque_n_m for c in configs]),
-        np.full(len(configs), math.radians(_speed(servos, 'speed_deg_s'))),
+        speeds,
         np.radians([c.proportional_band_deg for c in configs]),
         np.array([c.backdrive_n_m for c in configs]),
         np.array([1e-9 * c.rotor_inertia_g_mm2 for c in configs]),
     )
+
+
+def servo_speeds(servos: dict[str, Any], count: int) -> Array:
+    """Of `count` equal servos that turn, by the section `servos`: (n,) in rad/s."""
+    return np.full(count, math.radians(_speed(servos, 'speed_deg_s')))
 
 
 def pushing(config: PushingDriveConfig, count: int, servos: dict[str, Any]) -> Drives:

@@ -6,6 +6,9 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from manipulator.arrays import Array
 from manipulator.config import PLACE_MM, SIZE_MM, key, quantity
 from manipulator.errors import ConfigError
 
@@ -19,11 +22,20 @@ EFFORT = (1e-6, 1e8)
 
 LARGEST_GYRATION_MM = 2e4
 SMALLEST_GYRATION_MM = 0.01
+NONE: Three = (0.0, 0.0, 0.0)
 
 
-def check_inertia(mass_g: float, inertia_g_mm2: Three) -> None:
-    """Raises ConfigError for moments that no body of this mass has."""
+def tensor(moments: Three, products: Three) -> Array:
+    """The inertia tensor (3, 3) of its moments, and of its products xy, xz, yz."""
+    (xx, yy, zz), (xy, xz, yz) = moments, products
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def check_inertia(mass_g: float, inertia_g_mm2: Three, products_g_mm2: Three = NONE) -> None:
+    """Raises ConfigError for moments, and products xy, xz, yz, that no body of this mass has."""
     problems = []
+    if products_g_mm2 != NONE:
+        inertia_g_mm2 = np.linalg.eigvalsh(tensor(inertia_g_mm2, products_g_mm2)).tolist()
     a, b, c = sorted(inertia_g_mm2)
     if c > (a + b) * (1 + 1e-9):
         problems.append(
@@ -149,7 +161,8 @@ class LinearDynamicsConfig:
 class LinkConfig:
     """A link and the drive that turns it: a round rod from its joint to the next, unless told.
 
-    centre_mm and inertia_g_mm2 (principal, about the centre) in base axes at zero angles.
+    centre_mm, inertia_g_mm2 (moments about the centre) and products_g_mm2 (xy, xz, yz) in base
+    axes at zero angles.
     """
 
     source: str = key(SOURCE)
@@ -159,12 +172,17 @@ class LinkConfig:
     centre_mm: Three | None = quantity(
         *PLACE_MM, 'of mass, base axes at zero angles', default=None
     )
-    inertia_g_mm2: Three | None = quantity(0, 1e18, INERTIA, default=None)
+    inertia_g_mm2: Three | None = quantity(
+        0, 1e18, 'moments about the centre of mass, base axes at zero angles', default=None
+    )
+    products_g_mm2: Three = quantity(-1e18, 1e18, 'products of inertia xy, xz, yz', default=NONE)
 
     def __post_init__(self) -> None:
         """Raises ConfigError for impossible moments."""
         if self.inertia_g_mm2 is not None:
-            check_inertia(self.mass_g, self.inertia_g_mm2)
+            check_inertia(self.mass_g, self.inertia_g_mm2, self.products_g_mm2)
+        elif self.products_g_mm2 != NONE:
+            raise ConfigError(['products_g_mm2: without inertia_g_mm2'])
 
 
 @dataclass(frozen=True)

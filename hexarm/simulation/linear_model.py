@@ -50,9 +50,7 @@ def linear_model(
     base = add(child(root, 'worldbody'), 'body', name='body')
     low = float(geometry.base_points[:, 2].min())
     add_hexagon(root, base, 'body', inradius(geometry.base_points), (low - 0.012, low), METAL)
-    add_platform(
-        root, config.platform, config.payload, geometry.platform_points, geometry.home_height
-    )
+    add_platform(root, config.platform, config.payload, geometry.platform_points, geometry.home)
     rods = kinematics.unit_rods(kinematics.home, kinematics.inverse(kinematics.home))
     universals = tuple(UniversalJoint.across(u) for u in rods)
     closures = {}

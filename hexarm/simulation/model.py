@@ -4,9 +4,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from arm_control.geometry import ArmLimits
 from hexapod_control.geometry import LEGS
 from hexarm.simulation.arm_model import arm_model
-from hexarm.simulation.drives import Drives, pushing, turning
+from hexarm.simulation.drives import Drives, pushing, servo_speeds, turning
 from hexarm.simulation.dynamics_config import (
     SCHEMAS,
     ArmDynamicsConfig,
@@ -40,13 +41,21 @@ def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dy
 
 
 def drives_of(dynamics: Dynamics, machine_file: MachineFile) -> Drives:
-    """The servos of a machine, in the order of its joints."""
+    """The drives of a machine, in the order of its joints.
+
+    An arm without servos of ours has drives as fast as its joints may turn.
+    """
     servos = machine_file.servos
     if isinstance(dynamics, LinearDynamicsConfig):
         return pushing(dynamics.drive, LEGS, servos)
     if isinstance(dynamics, RotaryDynamicsConfig):
-        return turning((dynamics.drive,) * LEGS, servos)
-    return turning(tuple(link.drive for link in dynamics.links), servos)
+        return turning((dynamics.drive,) * LEGS, servo_speeds(servos, LEGS))
+    drives = tuple(link.drive for link in dynamics.links)
+    if machine_file.driver == 'topic':
+        return turning(
+            drives, build(ArmLimits, machine_file.limits, 'limits').joint_limits().speed
+        )
+    return turning(drives, servo_speeds(servos, len(drives)))
 
 
 def mechanism(

@@ -22,6 +22,7 @@ from hexarm.simulation.rigid_body import (
     plate,
 )
 from manipulator.arrays import Array, frozen
+from manipulator.pose import Pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,10 +82,12 @@ def moving_bodies(
 
 
 def add_platform(
-    root: ET.Element, plate_config: PlateConfig, load: PayloadConfig, points: Array, height: float
+    root: ET.Element, plate_config: PlateConfig, load: PayloadConfig, points: Array, home: Pose
 ) -> None:
-    """The free body with the platform's frame, a site a joint, and the payload fixed to it."""
-    body = add(child(root, 'worldbody'), 'body', name=PLATFORM, pos=(0.0, 0.0, height))
+    """The free body at home with the platform's frame, a site a joint; the payload fixed to it."""
+    x, y, z, w = home.quaternion
+    world = child(root, 'worldbody')
+    body = add(world, 'body', name=PLATFORM, pos=home.position, quat=(w, x, y, z))
     add(body, 'freejoint', name=PLATFORM)
     own, *carried = moving_bodies(plate_config, load, points)
     inertial(body, own, np.zeros(3))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hexarm.simulation.drives import Drives
-from hexarm.simulation.dynamics_config import LinkConfig, PayloadConfig, PlateConfig
+from hexarm.simulation.dynamics_config import LinkConfig, PayloadConfig, PlateConfig, tensor
 from manipulator.arrays import Array, frozen
 from manipulator.pose import Pose
 
@@ -105,7 +105,7 @@ def link(config: LinkConfig, begin: Array, end: Array) -> RigidBody:
     if config.centre_mm is not None:
         centre = 1e-3 * np.array(config.centre_mm)
     if config.inertia_g_mm2 is not None:
-        inertia = np.diag(1e-9 * np.array(config.inertia_g_mm2))
+        inertia = 1e-9 * tensor(config.inertia_g_mm2, config.products_g_mm2)
     return RigidBody(body.mass, centre, inertia)
 
 

@@ -57,9 +57,7 @@ def rotary_model(
     root = document(name)
     lid = minimum_height - 0.5e-3 * config.platform.thickness_mm
     _add_body(root, kinematics, config, lid)
-    add_platform(
-        root, config.platform, config.payload, geometry.platform_points, geometry.home_height
-    )
+    add_platform(root, config.platform, config.payload, geometry.platform_points, geometry.home)
     universals = _universals(kinematics)
     closures = {}
     for leg in range(LEGS):

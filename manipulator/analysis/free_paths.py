@@ -5,6 +5,7 @@ import numpy as np
 from manipulator.analysis.readings import CHECKS_PER_LENGTH, displaced, distance, offset
 from manipulator.analysis.slope import nearest_point, slopes
 from manipulator.arrays import Array, Mask
+from manipulator.limits.limit import Grouped
 from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -21,6 +22,15 @@ def is_joint_box(machine: Machine) -> bool:
     """
     limits = (_without_frames(limit) for limit in machine.constraints.limits)
     return all(isinstance(limit, JointRange) for limit in limits)
+
+
+def is_by_joints(machine: Machine) -> bool:
+    """Whether every set of joints in range is a pose, so that poses are best searched by joints.
+
+    So it is with serial arms, also where their task space is limited.
+    """
+    limits = [_without_frames(limit) for limit in machine.constraints.limits]
+    return not any(limit.group for limit in limits if isinstance(limit, Grouped))
 
 
 def _without_frames(part: object) -> object:
@@ -69,10 +79,25 @@ def is_connected(machine: Machine, pose: Pose) -> bool:
     if not admits(machine, pose[None])[0]:
         return False
     home = machine.kinematics.home
-    if are_linked(machine, home, pose):
+    if are_linked(machine, home, pose) or _is_joint_line_free(machine, pose):
         return True
     last = home.moved(free_share_from_home(machine, pose) * home.twist_to(pose))
     return are_linked(machine, last, pose)
+
+
+def _is_joint_line_free(machine: Machine, pose: Pose) -> bool:
+    """Whether joints that move in proportion from home to a pose keep all limits.
+
+    Asked of machines alone whose joints move each on its own: arms.
+    """
+    if not is_by_joints(machine):
+        return False
+    kinematics = machine.kinematics
+    ends = kinematics.inverse(kinematics.home), kinematics.inverse(pose)
+    count = int(np.abs(ends[1] - ends[0]).max() * CHECKS_PER_LENGTH) + 2
+    joints = np.linspace(*ends, count)
+    poses = kinematics.forward_along(joints, kinematics.home)
+    return bool(machine.constraints.admits(poses, joints).all())
 
 
 def are_linked(machine: Machine, start: Pose, end: Pose, bends: int = MOST_BENDS) -> bool:

@@ -11,6 +11,7 @@ from manipulator.analysis.free_paths import (
     admits,
     are_linked,
     free_share_from_home,
+    is_by_joints,
     is_connected,
     is_joint_box,
 )
@@ -20,9 +21,9 @@ from manipulator.limits.limit import Search
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
-SETTLED = 1e-12
+SETTLED, DIFFERENCE = 1e-12, 1e-7
 JOINT_CLEARANCE = 1e-9  # rad or m inside the ranges, so that the answer's inverse is in range, too
-RANDOM_STARTS = 12
+RANDOM_STARTS, FEWER_STARTS, MOST_ITERATIONS = 12, 3, 200
 
 
 def nearest_by_joints(machine: Machine, target: Pose) -> Pose:
@@ -32,16 +33,17 @@ def nearest_by_joints(machine: Machine, target: Pose) -> Pose:
     and a fixed set of others; the best local minimum. Every such pose is connected to home through
     the joints' ranges.
     """
-    kinematics = machine.kinematics
+    kinematics, is_box = machine.kinematics, is_joint_box(machine)
     low, high = joint_box(machine)
     generator = np.random.default_rng(6)
     bounds = np.clip(low, -2 * np.pi, None), np.clip(high, None, 2 * np.pi)
     starts = [kinematics.inverse(kinematics.home), *generator.uniform(*bounds, (RANDOM_STARTS, 6))]
     best, least = kinematics.home, float(distance(machine, kinematics.home, target))
-    for start in starts:
-        pose = _descended_by_joints(machine, target, start, low, high)
+    descended = _descended_by_joints if is_box else _descended_within
+    for start in starts if is_box else starts[: 1 + FEWER_STARTS]:
+        pose = descended(machine, target, start, low, high)
         metres = float(distance(machine, pose, target))
-        if metres < least:
+        if metres < least and (is_box or is_connected(machine, pose)):
             best, least = pose, metres
         if least < SETTLED:
             break
@@ -49,12 +51,49 @@ def nearest_by_joints(machine: Machine, target: Pose) -> Pose:
 
 
 def joint_box(machine: Machine) -> tuple[Array, Array]:
-    """The strictest bounds (n,) of a machine with joint ranges alone, a hair within."""
-    limits = machine.constraints.limits
-    return (
-        np.max([limit.low for limit in limits], axis=0) + JOINT_CLEARANCE,
-        np.min([limit.high for limit in limits], axis=0) - JOINT_CLEARANCE,
-    )
+    """The joints' ranges (n,) each, a hair within."""
+    low, high = machine.joint_ranges
+    return low + JOINT_CLEARANCE, high - JOINT_CLEARANCE
+
+
+def _descended_within(
+    machine: Machine, target: Pose, start: Array, low: Array, high: Array
+) -> Pose:
+    """As `_descended_by_joints`, within all limits: sequential quadratic programming of scipy."""
+    from scipy.optimize import minimize  # noqa: PLC0415 (50 MB: only needed here)
+
+    kinematics, limits = machine.kinematics, machine.constraints
+    ends = np.concatenate([limits.low, -limits.high])
+    is_end = np.isfinite(ends)
+    clearance = CLEARANCE * kinematics.characteristic_length
+
+    def pose_of(joints: Array) -> Pose:
+        return kinematics.forward(joints).pose
+
+    def margins(joints: Array) -> Array:
+        poses = kinematics.forward_along(joints, kinematics.home)
+        values = limits.values(poses, joints)
+        inside: Array = np.concatenate([values, -values], axis=-1)[..., is_end] - ends[is_end]
+        return inside - clearance
+
+    def slopes(joints: Array) -> Array:
+        rows = margins(joints + DIFFERENCE * np.eye(1 + len(joints), len(joints), -1))
+        return np.asarray((rows[1:] - rows[0]).T / DIFFERENCE)
+
+    def squared(joints: Array) -> tuple[float, Array]:
+        pose = pose_of(joints)
+        missed, weights = offset(machine, pose, target), scale(machine)[:, None]
+        return 0.5 * float(missed @ missed), -missed @ (
+            weights * kinematics.jacobian(pose, joints)
+        )
+
+    found = minimize(
+        squared, np.clip(start, low, high), jac=True, method='SLSQP',
+        bounds=np.stack([low, high], axis=1),
+        constraints={'type': 'ineq', 'fun': margins, 'jac': slopes},
+        options={'ftol': SETTLED, 'maxiter': MOST_ITERATIONS},
+    )  # fmt: skip
+    return pose_of(np.clip(found.x, low, high))
 
 
 def _descended_by_joints(
@@ -101,7 +140,7 @@ def nearest_reachable(machine: Machine, target: Pose) -> Nearest:
     that a random search about it could not better, the best of three that are found from the ends
     of lines: from home towards the target, its position alone, its orientation alone.
     """
-    if is_joint_box(machine):
+    if is_by_joints(machine):
         pose = nearest_by_joints(machine, target)
         return Nearest(pose, float(distance(machine, pose, target)))
     starts = _starts(machine, target)

@@ -82,6 +82,14 @@ def readings(machine: Machine, pose: Pose, near: Array | None = None) -> tuple[L
     )
 
 
+def smallest_margins(machine: Machine, count: int = 3) -> tuple[LimitReading, ...]:
+    """Of home: the nearest reading of each limited quantity, of the `count` nearest ones."""
+    nearest: dict[str, LimitReading] = {}
+    for reading in readings(machine, machine.kinematics.home):
+        nearest.setdefault(reading.quantity, reading)
+    return tuple(nearest.values())[:count]
+
+
 def explained(machine: Machine, pose: Pose, near: Array | None = None) -> str:
     """The reason and the nearest reachable pose; empty where the pose is reachable.
 

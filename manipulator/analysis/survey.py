@@ -3,8 +3,8 @@
 Among them the positions that it reaches with at least one orientation.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -21,46 +21,71 @@ from manipulator.pose import Pose
 STARTS = 40
 ORIENTATION_SEED = 7
 LAST_SPREAD = 0.03
+WIDE = 0.5
+"""rad: from how far the first search starts, at most; a further one starts from twice as far."""
+AROUND = 2.0
+"""Times its range at home, so far turns a machine elsewhere."""
+STILL, SHRINK = 1e-6, 0.8
+ADMITTED = 1e6
+"""More than any margin: an admitted orientation is the better, the less it turns."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SomeOrientation:
-    """The positions admitted with some roll, pitch and yaw, each within ±largest (rad).
+    """The positions admitted with some roll, pitch and yaw from home, each within ±largest (rad).
 
-    First a few orientations are tried on all positions, then, where none was admitted, `steps`
-    random changes of the best one so far, ever smaller. What is found is admitted for certain;
-    what is not found may be admitted all the same.
+    A search tries a few orientations of the size of own (3,), the machine's own ranges about each
+    axis (rad), then, at each position, `steps` random changes of the best one so far, ever
+    smaller: of the best margin, or of the smallest turn once one is admitted. It does not know
+    `largest`, which only ends it: so no position is lost as `largest` grows. What is found is
+    admitted for certain; what is not found may be admitted all the same.
     """
 
     machine: Machine
     largest: float
+    own: Array
     steps: int = 60
+
+    @classmethod
+    def of(cls, machine: Machine, largest: float, steps: int = 60) -> 'SomeOrientation':
+        """By the machine's ranges from home."""
+        return cls(machine, largest, own_turns(ranges(machine)), steps)
 
     def __call__(self, positions: Array) -> Mask:
         """Which positions (N, 3) in metres were found."""
         found = np.zeros(len(positions), dtype=np.bool_)
+        far, reach = WIDE, AROUND * np.maximum(self.own, STILL)
+        self._search(positions, np.minimum(reach, far), found)
+        while far < min(self.largest, reach.max()):
+            far *= 2.0
+            self._search(positions, np.minimum(reach, far), found)
+        return found
+
+    def _search(self, positions: Array, scale: Array, found: Mask) -> None:
+        """One search from orientations within ±scale (3,); notes in `found` what it finds."""
         best = np.full(len(positions), -np.inf)
         angles = np.zeros((len(positions), 3))
-        cube = Box(np.full(3, -self.largest), np.full(3, self.largest))
-        for start in np.vstack([np.zeros(3), cube.lattice(STARTS, np.zeros(3))]):
+        for start in np.vstack([np.zeros(3), Box(-scale, scale).lattice(STARTS, np.zeros(3))]):
             self._try(positions, np.tile(start, (len(positions), 1)), found, best, angles)
         generator = np.random.default_rng(ORIENTATION_SEED)
-        for spread in self.largest * np.geomspace(0.6, LAST_SPREAD, self.steps):
-            changed = angles + spread * generator.standard_normal(angles.shape)
-            self._try(positions, changed.clip(cube.low, cube.high), found, best, angles)
-        return found
+        for spread in np.geomspace(0.6, LAST_SPREAD, self.steps):
+            changes = spread * scale * generator.standard_normal(angles.shape)
+            kept = np.where(best > 0.0, SHRINK, 1.0)[:, None] * angles
+            self._try(positions, kept + changes, found, best, angles)
 
     def _try(
         self, positions: Array, trial: Array, found: Mask, best: Array, angles: Array
     ) -> None:
         """Notes in the last three what the trial angles (N, 3) better."""
         rest = np.flatnonzero(~found)
-        pose = Pose(positions[rest], so3.from_rpy(trial[rest]))
+        turned = so3.from_rpy(trial[rest]) @ self.machine.kinematics.home.rotation
+        pose = Pose(positions[rest], turned)
         joints = self.machine.kinematics.inverse_or_nan(pose)
         inside = keeps_limits(self.machine, pose, joints)
-        found[rest[inside]] = True
-        rest, pose = rest[~inside], pose[~inside]
-        score = self._score(pose, joints[~inside])
+        turned = np.abs(trial[rest]).max(axis=1)
+        found[rest[inside & (turned <= self.largest)]] = True
+        score = ADMITTED - turned
+        score[~inside] = self._score(pose[~inside], joints[~inside])
         better = score > best[rest]
         best[rest[better]] = score[better]
         angles[rest[better]] = trial[rest[better]]
@@ -73,6 +98,13 @@ class SomeOrientation:
         margins = readings.margins / np.tile(scales, 2)
         worst: Array = np.nan_to_num(margins, nan=np.inf).min(axis=-1)
         return worst
+
+
+def own_turns(found: Mapping[str, tuple[float, float]]) -> Array:
+    """(3,): the larger of a machine's ranges each way about x, y and z, of all `ranges`."""
+    return np.array(
+        [max(-low, high) for low, high in (found[a] for a in ('roll', 'pitch', 'yaw'))]
+    )
 
 
 SEED = 1
@@ -116,26 +148,31 @@ def survey(machine: Machine, points: int, tilt: float, on_progress: OnProgress) 
     generator = np.random.default_rng(SEED)
     constant = volume(straight, box, points, generator, partial(on_progress, 'volume'))
     share = _connected_share(machine, box)
+    turned = SomeOrientation(machine, tilt, own_turns(found))
     wide = bounding_box(
-        SomeOrientation(machine, tilt, PILOT_STEPS),
+        replace(turned, steps=PILOT_STEPS),
         home.position,
         length,
         min(PILOT_POSITIONS, max(points // 5, 400)),
         partial(on_progress, 'orientations box'),
     )
-    few = max(points // SEARCHED, FEWEST_SEARCHED)
-    steps = SomeOrientation(machine, tilt).steps
-    half, some = (
-        volume(
-            SomeOrientation(machine, tilt, n),
-            wide,
-            few,
-            np.random.default_rng(SEED),
-            partial(on_progress, f'orientations {stage}/2'),
-        )
-        for stage, n in ((1, steps // 2), (2, steps))
-    )
-    return Survey(found, constant, share, some, some.value - half.value, tilt, box)
+
+    def added(steps: int, stage: int) -> Volume:
+        """Of the positions that only a turned platform reaches."""
+        some = replace(turned, steps=steps)
+
+        def reached(positions: Array) -> Mask:
+            mask = ~straight(positions)
+            mask[mask] = some(positions[mask])
+            return mask
+
+        few, same = max(points // SEARCHED, FEWEST_SEARCHED), np.random.default_rng(SEED)
+        return volume(reached, wide, few, same, partial(on_progress, f'orientations {stage}/2'))
+
+    half, whole = added(turned.steps // 2, 1), added(turned.steps, 2)
+    error = float(np.hypot(constant.error, whole.error))
+    some = replace(whole, value=constant.value + whole.value, error=error)
+    return Survey(found, constant, share, some, whole.value - half.value, tilt, box)
 
 
 def _connected_share(machine: Machine, box: Box) -> float:

@@ -6,8 +6,8 @@ import numpy as np
 
 from manipulator.analysis.free_paths import (
     admits,
+    is_by_joints,
     is_connected,
-    is_joint_box,
     last_free,
     line_between,
 )
@@ -112,7 +112,7 @@ def path_report(machine: Machine, poses: Pose, near: Array | None = None) -> Pat
 
 def _followed(machine: Machine, pose: Pose, near: Array | None) -> Array | None:
     """The joints to follow from: home's branch is the only one of a platform, and needs none."""
-    if near is not None or not is_joint_box(machine):
+    if near is not None or not is_by_joints(machine):
         return near
     joints = machine.kinematics.inverse_or_nan(pose)
     return joints if np.isfinite(joints).all() else None

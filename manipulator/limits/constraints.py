@@ -134,13 +134,13 @@ class Constraints:
         if not found:  # by the last digit of an angle, which `admits` compares by its cosine
             return
         worst = found[0]
-        digits = ''.join(c for c in worst.owner if c.isdigit())
+        alike = [owner for quantity, owner, _ in self.names if quantity == worst.quantity]
         raise LimitViolated(
             '; '.join(str(v) for v in found),
             worst.quantity,
             worst.value,
             (worst.low, worst.high),
-            int(digits) if digits else None,
+            alike.index(worst.owner) + 1 if worst.owner else None,
         )
 
 

@@ -56,6 +56,11 @@ Bounds: TypeAlias = tuple[slice, Array, Array]
 class LimitGroup(Protocol):
     """A machine that computes the values of many limits at once, and judges them."""
 
+    @property
+    def of_pose(self) -> slice:
+        """Columns of x, y, z, tilt and turn: limits/task_space.py."""
+        ...
+
     def limited_values(self, pose: Pose, joints: Array) -> Array:
         """All values (..., K), NaN where there is none."""
         ...

@@ -10,6 +10,7 @@ from manipulator.errors import Refused, Unreachable
 from manipulator.kinematics import first_jump
 from manipulator.limits.constraints import Constraints
 from manipulator.machine import Machine
+from manipulator.motion_limits import SPEED_NAMES
 from manipulator.planning.plan import MotionState, Plan
 from manipulator.planning.worker import Effort
 from manipulator.pose import Pose
@@ -100,10 +101,8 @@ def limit_utilisation(part: Batch, machine: Machine, dt: float) -> LimitUtilisat
     speed = np.diff(part.joints, axis=0) / dt
     acceleration = np.diff(speed, axis=0) / dt
     limits, names = machine.motion.for_plans, machine.kinematics.joint_names
-    linear, angular = part.state.twist[:, :3], part.state.twist[:, 3:]
     readings = {
-        'platform speed': _norms(linear) / limits.linear.speed,
-        'turning speed': _norms(angular) / limits.angular.speed,
+        **dict(zip(SPEED_NAMES, limits.speed_shares(part.state.twist).T, strict=True)),
         **_of_joints('speed', names, speed, limits.joint.speed),
         'platform acceleration': np.sqrt(
             _norms(part.state.acceleration[:, :3]) / limits.linear.acceleration

@@ -116,8 +116,7 @@ def _bounds(limits: MotionLimits, change: Array, steps: Array) -> tuple[float, f
     moved = np.maximum(np.abs(change), TINY)
     speed = min(
         float((limits.joint.speed / moved).min()),
-        limits.linear.speed / longest,
-        limits.angular.speed / widest,
+        1.0 / max(float(limits.speed_shares(steps).max()), TINY),
     )
     acceleration = min(
         float((limits.joint.acceleration / moved).min()),

@@ -12,7 +12,7 @@ y. As in Pham, Pham 2018 (TOPP-RA, section VI), but no speed is allowed that cou
 (x = y): then one pass in each direction always succeeds. docs/motion.md, section 5.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,7 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused
 from manipulator.machine import Machine
-from manipulator.motion_limits import Derivatives, JointDerivatives
+from manipulator.motion_limits import SPEED_NAMES, Derivatives, JointDerivatives, MotionLimits
 from manipulator.planning.check import first_fault
 from manipulator.planning.path import Path
 
@@ -116,10 +116,11 @@ def path_limits(machine: Machine, path: Path, nodes: Array, near: Array) -> Path
     twist, limits = state.twist, machine.motion.for_plans
     rates = _joint_rates(machine, path, nodes, joints, twist)
     names = machine.kinematics.joint_names
-    bounded = (
+    bounded: tuple[_AxisLimit | _NormLimit, ...] = (
         _AxisLimit(rates, names, limits.joint),
         _NormLimit(twist[:, :3], 'platform', limits.linear),
         _NormLimit(twist[:, 3:], 'turning', limits.angular),
+        *_axis_limits(twist, limits),
     )
     steps = np.diff(nodes)
     rows = [row for limit in bounded for row in limit.rows(steps)]
@@ -143,6 +144,14 @@ def _joint_rates(machine: Machine, path: Path, nodes: Array, joints: Array, twis
     except (np.linalg.LinAlgError, NoSolution):
         worst = int(np.argmin(machine.kinematics.sigma_min(pose, joints)))
         raise Refused(f'{path.where(nodes[worst])}: the machine is singular there') from None
+
+
+def _axis_limits(twist: Array, limits: MotionLimits) -> Iterator['_AxisLimit']:
+    """Of the axes of platform or tool whose speed is limited."""
+    for k in np.flatnonzero(np.isfinite(limits.axis_speeds)).tolist():
+        name = SPEED_NAMES[2 + k].removesuffix(' speed')
+        limit = JointDerivatives.of(limits.axis_speeds[k], np.inf)
+        yield _AxisLimit(twist[:, k : k + 1], (name,), limit)
 
 
 @dataclass(frozen=True, eq=False)

@@ -140,6 +140,8 @@ def plan_line_move(
         )
         for name in ('speed', 'acceleration', 'jerk')
     ]
+    used = float(limits.speed_shares(displacement).max())
+    bounds[0] = min(bounds[0], 1.0 / max(used, 1.0 / FASTEST))
     return LineMove(start, displacement, profile_within(bounds, slowdown))
 
 
@@ -184,6 +186,8 @@ def plan_move_in_motion(
     for name, power in (('speed', 1), ('acceleration', 2), ('jerk', 3)):
         bounds = [getattr(limits.linear, name) / slowdown**power] * 3
         bounds += [getattr(limits.angular, name) / slowdown**power] * 3
+        if name == 'speed':
+            bounds = np.minimum(bounds, limits.axis_speeds / slowdown).tolist()
         ruckig_name = 'velocity' if name == 'speed' else name
         setattr(request, f'max_{ruckig_name}', bounds)
     trajectory = ruckig.Trajectory(6)

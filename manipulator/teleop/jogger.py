@@ -58,28 +58,27 @@ def within_speed(twist: Array, motion: MotionLimits) -> tuple[Array, float]:
     part = max(
         math.hypot(*parts[:3]) / motion.linear.speed,
         math.hypot(*parts[3:]) / motion.angular.speed,
+        *(abs(part) / most for part, most in zip(parts, motion.axis_speeds.tolist(), strict=True)),
         1.0,
     )
     return target / part, 1.0 / part
 
 
 def towards(twist: Array, target: Array, motion: MotionLimits, dt: float) -> Array:
-    """From `twist` (..., 6) as far to `target` as the accelerations allow in dt.
+    """From `twist` (6,) as far to `target` as the accelerations allow in dt.
 
     Velocity and angular velocity change in the same proportion.
     """
     change = target - twist
-    ticks = np.maximum(ticks_for(change, motion, dt), 1.0)
-    stepped: Array = twist + change / ticks[..., None]
-    return np.where(ticks[..., None] == 1.0, target, stepped)
+    ticks = ticks_for(change, motion, dt)
+    return target if ticks <= 1.0 else twist + change / ticks
 
 
-def ticks_for(change: Array, motion: MotionLimits, dt: float) -> Array:
-    """How many times dt a change of twist (..., 6) takes at full acceleration."""
-    linear = np.sqrt((change[..., :3] ** 2).sum(axis=-1)) / motion.linear.acceleration
-    angular = np.sqrt((change[..., 3:] ** 2).sum(axis=-1)) / motion.angular.acceleration
-    result: Array = np.maximum(linear, angular) / dt
-    return result
+def ticks_for(change: Array, motion: MotionLimits, dt: float) -> float:
+    """How many times dt a change of twist (6,) takes at full acceleration."""
+    parts = change.tolist()
+    linear = math.hypot(*parts[:3]) / motion.linear.acceleration
+    return max(linear, math.hypot(*parts[3:]) / motion.angular.acceleration) / dt
 
 
 STRAIGHT = frozen(np.zeros(6))

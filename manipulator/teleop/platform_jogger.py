@@ -6,6 +6,7 @@ remains available when no other twist is allowed. It ends at the edge, where eve
 led there is open for the way back.
 """
 
+import math
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ from manipulator.arrays import Array, frozen, stretched
 from manipulator.errors import InvalidInput
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import BrakingPaths
+from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
 from manipulator.teleop.jogger import JogMotion, ticks_for, towards
 
@@ -49,9 +51,9 @@ class PlatformJogger:
 
     def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
         """See `Jogger`; the largest of SCALES that can be driven and braked, else it brakes."""
-        constraints, held_by = self.machine.constraints, ''
+        constraints, limits, held_by = self.machine.constraints, self.machine.motion, ''
         for scales in (SCALES[:1], SCALES[1:]):
-            aims = towards(motion.twist, scales[:, None] * twist, self.machine.motion, dt)
+            aims = np.array([towards(motion.twist, s * twist, limits, dt) for s in scales])
             free, paths = self._paths(constraints, motion, aims, dt)
             if free == len(scales) == 1:
                 # Stretched limits let more through: they matter where a limit is broken.
@@ -62,7 +64,7 @@ class PlatformJogger:
             if free < len(scales):
                 return self._moved(motion, aims[free], dt, float(scales[free]), held_by)
             held_by = held_by or self._obstacle(constraints, paths[0])
-        ticks = _braking_ticks(motion.twist, self.machine, dt)
+        ticks = _braking_ticks(motion.twist, limits, dt)
         return self._moved(motion, motion.twist * (1.0 - 1.0 / ticks), dt, 0.0, held_by)
 
     def _moved(
@@ -101,10 +103,9 @@ class PlatformJogger:
         return f'{what} of {self.machine.kinematics.joint_names[joint]}'
 
 
-def _braking_ticks(twist: Array, machine: 'Machine', dt: float) -> Array:
-    """In how many ticks (...) a twist (..., 6) comes to rest, at least 1.
+def _braking_ticks(twist: Array, limits: MotionLimits, dt: float) -> int:
+    """In how many ticks a twist (6,) comes to rest, at least 1.
 
     One tick of braking from n takes to exactly n − 1, so that a path once checked stays the same.
     """
-    result: Array = np.ceil(np.maximum(ticks_for(twist, machine.motion, dt) - ROUNDING, 1.0))
-    return result
+    return max(math.ceil(ticks_for(twist, limits, dt) - ROUNDING), 1)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from manipulator.errors import Refused
 from manipulator.planning.cycle import Cycle
 from manipulator.planning.joint_move import JointMove
+from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
 from manipulator.planning.point_to_point import LineMove, MoveInMotion
@@ -20,7 +21,11 @@ MODES: dict[type, MotionMode] = {
     JointMove: MotionMode.MOVE,
     Cycle: MotionMode.CYCLE,
     TimedPath: MotionMode.PATH,
+    JointTrajectory: MotionMode.PATH,
 }
+
+
+TIMED = TimedPath, JointTrajectory
 
 
 @dataclass
@@ -58,8 +63,9 @@ class ActivePlan:
 
     @property
     def percent(self) -> int | None:
-        """How much of a path's time is over; None for other plans."""
-        return self.plan.percent(self.time) if isinstance(self.plan, TimedPath) else None
+        """How much of the time of a path or trajectory is over; None for other plans."""
+        plan = self.plan
+        return plan.percent(self.time) if isinstance(plan, TIMED) else None
 
 
 SPEEDING_UP_RATE = 2.0

@@ -6,7 +6,7 @@ machine lags behind a stream of goals that exceeds its limits.
 """
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import degrees
 
@@ -23,8 +23,9 @@ from manipulator.pose import Pose
 from manipulator.states import MotionResult
 from manipulator.trajectory.early_command import EarlyCommand
 from manipulator.trajectory.following_error import Tolerances
+from manipulator.trajectory.joint_goal import joint_goal
 from manipulator.trajectory.motion_status import STOPPED, MotionNews, MotionStatus
-from manipulator.trajectory.path_planning import PathGoal, PathPlanning
+from manipulator.trajectory.path_planning import PathGoal, PathPlanning, TrajectoryGoal
 from manipulator.trajectory.supervisor import MEASUREMENT_DELAY, MotionSupervisor
 from manipulator.trajectory.teleop import Teleop
 
@@ -144,6 +145,26 @@ class MotionController:
         self._check_order(path.stamp, now)
         self._early.take(lambda: self._paths.begin(path), refuse, now)
 
+    def follow_joints(self, trajectory: TrajectoryGoal, refuse: Refuse, now: float) -> None:
+        """A joint trajectory: planned from rest, and begun by its stamp, which may be ahead."""
+        self._early.take(lambda: self._paths.begin(trajectory), refuse, now)
+
+    def move_joints(
+        self, named: Mapping[str, float], stamp: float, refuse: Refuse, now: float
+    ) -> None:
+        """A joint move to positions (rad, m) by name; the other joints stay as commanded.
+
+        Raises Unreachable where a limit would be broken there.
+        """
+        self._check_order(stamp, now)
+
+        def act() -> None:
+            supervisor = self.supervisor
+            goal = joint_goal(supervisor.machine, supervisor.executor, named)
+            supervisor.executor.pursue(replace(goal, stamp=stamp))
+
+        self._early.take(act, refuse, now)
+
     def orientation_rule(self, orientation: Orientation, is_of_platform: bool) -> OrientationRule:
         """For poses of the platform in the base frame, or of the pivot in the work frame."""
         frames = self.supervisor.machine.frames
@@ -208,7 +229,7 @@ class MotionController:
         self.supervisor.note_silence(now - self._pose_at)
         self.supervisor.note_bridge_silence(now - self._state_at)
         self.teleop.drive(now)
-        self._paths.step()
+        self._paths.step(now)
         self._early.poll(now)
         self._pose = self.supervisor.step()
 

@@ -5,6 +5,7 @@ and slowing change the rate alone, so the machine never leaves the path that was
 begins and ends at rest: it first brakes the plan, and drops it.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.planning.cycle import Cycle
 from manipulator.planning.goal import Goal
-from manipulator.planning.joint_move import JointMove
+from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
 from manipulator.planning.worker import InPlace, Worker
@@ -22,8 +23,14 @@ from manipulator.pose import Pose
 from manipulator.states import MotionMode, MotionResult
 from manipulator.trajectory.active_plan import ActivePlan, TimeScaling
 from manipulator.trajectory.goal_planning import Planned, Planning
-from manipulator.trajectory.jogging import JogCommand, Jogging
-from manipulator.trajectory.motion_status import OVERTAKEN, STOPPED, TAKEN_OVER, MotionStatus
+from manipulator.trajectory.jogging import AnyJogCommand, Jog
+from manipulator.trajectory.motion_status import (
+    OVERTAKEN,
+    REPLACED,
+    STOPPED,
+    TAKEN_OVER,
+    MotionStatus,
+)
 
 AHEAD, AHEAD_ROWS = 0.5, 26
 """Seconds in which the direction of a motion shows, and the poses that are looked at."""
@@ -46,8 +53,8 @@ class Executor:
         self._next: Goal | Cycle | TimedPath | None = None
         self.expected: float | None = None
         self.dropped = TAKEN_OVER
-        self._jog_command: JogCommand | None = None
-        self._jogging: Jogging | None = None
+        self._jog_command: AnyJogCommand | None = None
+        self._jogging: Jog | None = None
         self._measured: Pose | None = None
         self.awaits_arrival = False
         self.is_waiting = False
@@ -73,6 +80,18 @@ class Executor:
         if isinstance(waiting, Goal):
             return waiting.pose
         return self._active.end.pose if self._active.mode == MotionMode.MOVE else None
+
+    @property
+    def joints_to_come(self) -> Array:
+        """The joints (n,) at the end of the newest goal; without one, those of now."""
+        waiting = self._planning.goal or self._next
+        if isinstance(waiting, Goal) and waiting.joints is not None:
+            return waiting.joints
+        pose = self.pursued
+        if pose is None:
+            return self.joints
+        own = None if waiting is not None else self._active.plan.joints_at(math.inf)
+        return self._machine.kinematics.inverse(pose, self.joints) if own is None else own
 
     @property
     def is_at_rest(self) -> bool:
@@ -111,6 +130,14 @@ class Executor:
             rows = self._machine.kinematics.inverse_along(active.plan.at(times).pose, self.joints)
         return rows
 
+    @property
+    def own_joints(self) -> Array | None:
+        """The joints (n,) to command, where the motion is one of joints and not of poses."""
+        if self._jogging is not None:
+            return self.joints if self._jogging.is_of_joints else None
+        active = self._active
+        return None if active.is_hold else active.plan.joints_at(active.time)
+
     def begin_waiting(self) -> None:
         """Begins the path or cycle that waited for the machine's arrival at its first pose."""
         self.is_waiting = False
@@ -144,7 +171,17 @@ class Executor:
         self.expected = None
         self._report(MotionResult.REFUSED, stamp, reason)
 
-    def jog(self, command: JogCommand | None) -> None:
+    def begin(self, plan: JointTrajectory, stamp: float) -> None:
+        """Begins the expected trajectory, whose first joints are those of this machine at rest."""
+        self.expected = None
+        self._begin(plan, stamp)
+
+    def brake(self) -> None:
+        """Brakes along the path and drops the motion, to begin what is expected from rest."""
+        self._drop()
+        self._scaling.is_stopping = not self._active.is_hold
+
+    def jog(self, command: AnyJogCommand | None) -> None:
         """The jog command of the owning source from now on; None without an owner.
 
         The active plan brakes along its path and is dropped.
@@ -196,8 +233,11 @@ class Executor:
 
     def step(self) -> Pose:
         """Advances by one tick and returns the pose to command."""
-        if self._jogging is not None or (self._jog_command is not None and self._is_holding):
-            return self._step_jog()
+        command = self._jog_command
+        if self._jogging is None and command is not None and self._is_holding:
+            self._jogging = command.begin(self._machine, self.state.pose, self.joints, self._dt)
+        if self._jogging is not None:
+            return self._step_jog(self._jogging)
         if self._active.is_hold:
             self._scaling.jump()
         self._plan()
@@ -205,7 +245,10 @@ class Executor:
         self._advance()
         pose = self.state.pose
         try:
-            self.joints = self._machine.kinematics.inverse(pose, self._near)
+            own = self.own_joints
+            if own is None:
+                own = self._machine.kinematics.inverse(pose, self.joints)
+            self.joints = own
         except Unreachable as error:
             self._drop()
             held = before.state.pose
@@ -217,12 +260,6 @@ class Executor:
     @property
     def _is_holding(self) -> bool:
         return self._active.is_hold and self._planning.goal is None
-
-    @property
-    def _near(self) -> Array:
-        """The joints to stay near: those of the plan, where it has any."""
-        plan = self._active.plan
-        return plan.joints_at(self._active.time) if isinstance(plan, JointMove) else self.joints
 
     @property
     def _to_come(self) -> tuple[float, str]:
@@ -246,14 +283,14 @@ class Executor:
         if self._jog_command is not None:
             raise Refused(f'{self._jog_command.source} controls the machine')
 
-    def _step_jog(self) -> Pose:
-        if self._jogging is None:
-            self._jogging = Jogging(self._machine, self.state.pose, self.joints, self._dt)
-        jogging = self._jogging
-        jogging.step(self._jog_command, self._scaling.target, self._measured)
+    def _step_jog(self, jogging: Jog) -> Pose:
+        command = self._jog_command
+        if command is not None and not jogging.takes(command):
+            command = None
+        jogging.step(command, self._scaling.target, self._measured)
         self.joints = jogging.motion.joints
         is_stopping = self._scaling.is_stopping
-        if jogging.motion.is_at_rest and (self._jog_command is None or is_stopping):
+        if jogging.motion.is_at_rest and (command is None or is_stopping):
             result = MotionResult.STOPPED if is_stopping else MotionResult.IDLE
             self._jogging, self._scaling.is_stopping = None, False
             self._begin(Hold(jogging.motion.pose), 0.0)
@@ -312,7 +349,9 @@ class Executor:
     def _settle(self, result: MotionResult) -> None:
         """The plan has ended: hold its last pose, or begin the waiting goal."""
         waiting, self._next = self._next, None
-        stamp = self._active.stamp
+        stamp, own = self._active.stamp, self.own_joints
+        if own is not None:
+            self.joints = own
         self._begin(Hold(self.state.pose), stamp)
         self._scaling.is_stopping = False
         self._scaling.jump()
@@ -325,5 +364,11 @@ class Executor:
             if self._planning.goal is None:
                 self._planning.request(waiting)
         else:
-            command = self._jog_command if result == MotionResult.STOPPED else None
-            self._report(result, stamp, command.takeover if command else '')
+            self._report(result, stamp, self._reason if result == MotionResult.STOPPED else '')
+
+    @property
+    def _reason(self) -> str:
+        """Why a plan was braked, where that was not asked for."""
+        if self._jog_command is not None:
+            return self._jog_command.takeover
+        return REPLACED if self.expected is not None else ''

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from manipulator.states import MotionMode, MotionResult
 
 OVERTAKEN = 'replaced by a newer command while the path was planned'
+REPLACED = 'replaced by a newer trajectory'
 STOPPED = 'stopped before it began'
 TAKEN_OVER = 'the machine was taken over again while the path was planned'
 """Reasons of paths that are not executed."""

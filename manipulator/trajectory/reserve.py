@@ -52,20 +52,24 @@ class Reserve:
         return min(self._dt * _share(left, joints, twist), 1.0)
 
     def _left(self, motion: MotionLimits, kind: str, used: Array) -> Array:
-        """Of linear, angular and each joint's limit, (2 + n,)."""
-        norms = np.linalg.norm(used[:3]), np.linalg.norm(used[3:6])
+        """Of linear, angular, each axis's and each joint's limit, (8 + n,)."""
         limits = np.concatenate(
             [
                 [getattr(motion.linear, kind), getattr(motion.angular, kind)],
+                motion.axis_speeds if kind == 'speed' else np.full(6, np.inf),
                 np.broadcast_to(getattr(motion.joint, kind), len(used) - 6),
             ]
         )
-        left: Array = np.maximum(limits - np.concatenate([norms, np.abs(used[6:])]), 0.0)
+        left: Array = np.maximum(limits - _sizes(used[:6], used[6:]), 0.0)
         return left
 
 
 def _share(left: Array, joints: Array, twist: Array) -> float:
-    """The largest factor with which a change keeps what is left (2 + n,)."""
+    """The largest factor with which a change keeps what is left (8 + n,)."""
+    return float((left / np.maximum(_sizes(twist, joints), TINY)).min())
+
+
+def _sizes(twist: Array, joints: Array) -> Array:
+    """What each of the limits is on, (8 + n,)."""
     norms = np.linalg.norm(twist[:3]), np.linalg.norm(twist[3:])
-    sizes = np.concatenate([norms, np.abs(joints)])
-    return float((left / np.maximum(sizes, TINY)).min())
+    return np.concatenate([norms, np.abs(twist), np.abs(joints)])

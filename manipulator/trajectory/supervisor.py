@@ -119,6 +119,11 @@ class MotionSupervisor:
         return self._executor is not None
 
     @property
+    def requested_joints(self) -> Array | None:
+        """The joints (n,) of a motion of joints, None for motions of poses."""
+        return None if self._executor is None else self._executor.own_joints
+
+    @property
     def is_measured(self) -> bool:
         """Whether poses come from measured joints, not from commanded ones."""
         return self._is_measured

@@ -1,17 +1,19 @@
 """From the sources of twists to the executor: the owner, its jog mode and its jog commands."""
 
+from collections.abc import Mapping
 from typing import NoReturn
 
 import numpy as np
 
 from manipulator.arrays import Array, frozen
-from manipulator.errors import Refused
+from manipulator.errors import InvalidInput, Refused
 from manipulator.frames import Frames
+from manipulator.planning.joint_points import check_names
 from manipulator.teleop.arbiter import Arbiter
 from manipulator.teleop.jog_modes import Feedback, JogMode
 from manipulator.teleop.jogger import check_axes
 from manipulator.teleop.modes import check_name, jog_mode
-from manipulator.trajectory.jogging import JogCommand
+from manipulator.trajectory.jogging import JogCommand, JointJogCommand
 from manipulator.trajectory.supervisor import MotionSupervisor
 
 PLAIN = 'free'
@@ -28,7 +30,7 @@ class Teleop:
         self._supervisor = supervisor
         self._delay = delay
         self._arbiter = Arbiter()
-        self._twist: tuple[Array, str] = (np.zeros(6), '')
+        self._requested: tuple[Array, str] | Array = (np.zeros(6), '')
         self._name = PLAIN
         self._point: Array | None = None
         self._is_measured = supervisor.is_measured
@@ -46,12 +48,19 @@ class Teleop:
     def receive(self, source: str, twist: Array, frame: str, now: float) -> None:
         """A twist (6,) of the pivot in the axes of `frame`; Refused with the reason."""
         check_axes(frame)
-        try:
-            is_busy = self._supervisor.executor.is_busy
-        except Refused as refusal:
-            self._arbiter.reject(source, now, str(refusal))
-        self._arbiter.receive(source, now, is_busy)
-        self._twist = frozen(twist), frame
+        self._accept(source, now)
+        self._requested = frozen(twist), frame
+
+    def receive_joints(self, source: str, named: Mapping[str, float], now: float) -> None:
+        """Rates of some joints by name (rad/s or m/s); Refused or InvalidInput with the reason."""
+        names = self._supervisor.machine.kinematics.joint_names
+        check_names(tuple(named), names)
+        rates = np.array([named.get(name, 0.0) for name in names])
+        if not np.isfinite(rates).all():
+            name = names[int(np.argmin(np.isfinite(rates)))]
+            raise InvalidInput(f'rate of {name} is {named[name]}, needs a finite number')
+        self._accept(source, now)
+        self._requested = frozen(rates)
 
     def reject(self, source: str, now: float, reason: str) -> NoReturn:
         """Raises Refused with the reason; the source must release before it is accepted again."""
@@ -97,8 +106,18 @@ class Teleop:
         if self._supervisor.is_measured != self._is_measured:
             self._is_measured = self._supervisor.is_measured
             self._take(self._made_name)
-        twist, frame = self._twist
-        executor.jog(JogCommand(source, twist, frame, self._mode))
+        if isinstance(self._requested, tuple):
+            executor.jog(JogCommand(source, *self._requested, self._mode))
+        else:
+            executor.jog(JointJogCommand(source, self._requested))
+
+    def _accept(self, source: str, now: float) -> None:
+        """Refused with the reason unless the source's messages count."""
+        try:
+            is_busy = self._supervisor.executor.is_busy
+        except Refused as refusal:
+            self._arbiter.reject(source, now, str(refusal))
+        self._arbiter.receive(source, now, is_busy)
 
     def _take(self, name: str) -> None:
         self._mode = self._made(name)

@@ -108,7 +108,7 @@ def test_singular_values_and_vectors_make_the_jacobian_where_some_are_zero_too(a
 def test_jogged_tool_keeps_its_line_and_comes_back_on_it(machine_file, name):
     machine, rng = load_arm(machine_file(name)), np.random.default_rng(8)
     limits, stops = machine.kinematics.limits, 0
-    for twist in twists(machine, rng, enough(8, 16)):
+    for twist in twists(machine, rng, enough(5, 16)):
         joints = rng.uniform(np.maximum(limits.low, -3.0), np.minimum(limits.high, 3.0))
         out = drive(machine, joints, twist)
         motions = out
@@ -224,7 +224,7 @@ def test_arm_braking_before_a_stop_keeps_its_joints_accelerations(jog):
     """Towards stops near singular postures, where joints turn ever faster on a straight line."""
     limits, rng = jog.arm.limits, np.random.default_rng(12)
     acceleration = np.minimum(limits.acceleration, jog.motion.joint.acceleration)
-    for _ in range(enough(8, 25)):
+    for _ in range(enough(5, 25)):
         state = JogState.at_rest(rng.uniform(limits.low, limits.high))
         twist = rng.uniform(-1, 1, 6) * ([0.25] * 3 + [1.5] * 3)
         for _ in range(150):
@@ -241,7 +241,7 @@ def test_tool_keeps_its_accelerations_where_joints_cannot_follow(machine_file, n
     machine = in_frames(bare, Frames(work).with_pivot([0.03, -0.05, 0.06]))
     rng, motion, limits = np.random.default_rng(14), bare.motion, bare.kinematics.limits
     full = np.repeat([motion.linear.speed, motion.angular.speed], 3)
-    for _ in range(enough(8, 25)):
+    for _ in range(enough(5, 25)):
         motions = [rng.uniform(np.maximum(limits.low, -3.0), np.minimum(limits.high, 3.0))]
         for _ in range(8):
             target = within_speed(rng.uniform(-1, 1, 6) * full, motion)[0]
@@ -251,7 +251,8 @@ def test_tool_keeps_its_accelerations_where_joints_cannot_follow(machine_file, n
         changes = np.diff(np.array(steps) / DT, axis=0)
         away_from_stops = np.minimum(joints - limits.low, limits.high - joints).min(axis=1) > 0.05
         regular = bare.kinematics.sigma_min(motions[0].pose, joints) > 0.2
-        assert (ticks_for(changes, motion, DT) < 1.05)[(away_from_stops & regular)[1:-1]].all()
+        judged = changes[(away_from_stops & regular)[1:-1]]
+        assert all(ticks_for(change, motion, DT) < 1.05 for change in judged)
 
 
 def test_another_word_for_what_a_jog_does_at_a_singularity_is_refused(machine):

@@ -59,7 +59,7 @@ def test_a_geometry_of_no_form_or_two_is_refused(machine_file):
     dh = machine_file('ur5').geometry['dh']
     neither, both = {'home_deg': [0.0] * 6}, {**file.geometry, 'dh': dh}
     for geometry, said in (
-        (neither, r"one of \['L1_mm', 'dh', 'screws'\]"),
+        (neither, r"one of \['L1_mm', 'dh', 'modified_dh', 'screws'\]"),
         (both, 'dh: unknown'),
     ):
         with pytest.raises(ConfigError, match=said):
@@ -78,7 +78,7 @@ def test_every_fault_of_the_limits_is_named(machine_file):
 
 
 ENDS = {
-    'range_deg': (-720.0, 720.0),
+    'range_deg': (-360_000.0, 360_000.0),
     'speed_deg_s': (1e-6, 1e9),
     'acceleration_deg_s2': (1e-6, 1e9),
     'characteristic_length_mm': (1e-3, 1e6),
@@ -170,11 +170,14 @@ def test_calibrated_arm_whose_distances_along_axes_cancel_is_taken_whole(machine
             lambda i, a, d: (1e-3 * a, 1e-3 * d),
             'all links together are 1.*, 20 mm to 200 m fit',
         ),
-        (lambda i, a, d: (a, 1e3 * d if i == 0 else d), 'joint 2 is 89.16 m from joint 1'),
+        (
+            lambda i, a, d: (a, 1e3 * d if i == 0 else d),
+            'joint 2 is 89.16 m from joint 1, the next link is 425 mm',
+        ),
         (lambda i, a, d: (a, 133e3 if i == 1 else d), 'joint 5 is 133.1 m from joint 4'),
         (
             lambda i, a, d: (1e3 * a, d),
-            'joint 3 is 425 m from joint 2, the others are about .* mm',
+            'all links together are 81.* m, 20 mm to 200 m fit',
         ),
     ],
 )

@@ -161,8 +161,10 @@ def test_a_machine_files_sections_are_checked_at_once():
     assert 'simulation.hysteresis: unknown key' in str(caught.value)
 
 
-def test_every_shipped_machine_has_servos_that_fit_its_limits():
+def test_every_shipped_machine_with_a_board_has_servos_that_fit_its_limits():
     for path in machines.shipped().values():
+        if machines.read(str(path)).driver == 'topic':
+            continue
         config = BoardConfig.from_machine(machines.read(str(path)), str(path))
         assert isinstance(config.servos.joints[0], ServoConfig)
         Calibration.from_config(config.servos)

@@ -187,6 +187,14 @@ def test_services_answer_when_the_board_has_obeyed(rig):
     assert rig.answered(rig.driver.enable(False)) == (True, 'disarmed: no more pulses')
 
 
+def test_servos_that_are_on_already_do_not_go_to_park(enabled):
+    enabled.command(enabled.park)
+    enabled.run(0.3)
+    assert enabled.state.status.state == 'holding'
+    said = 'enabled: the servos are on already, nothing moves'
+    assert enabled.answered(enabled.driver.enable(True)) == (True, said)
+
+
 def test_what_is_so_already_is_not_asked_of_a_machine_that_may_be_moving(enabled):
     enabled.frames.clear()
     assert enabled.driver.answer(enabled.driver.enable(True)) == (True, 'enabled already')

@@ -66,6 +66,15 @@ def test_a_second_host_is_informed_that_the_port_is_in_use(line):
     SerialPort(str(line.path), 250_000).close()
 
 
+def test_a_second_reader_is_told_from_a_port_that_vanishes(line):
+    port = SerialPort(str(line.path), 250_000)
+    line.write(b'taken')
+    assert os.read(port.fileno(), 100) == b'taken'  # as by a process that had the port before
+    with pytest.raises(LinkError, match='is read by another program as well'):
+        port.read()
+    port.close()
+
+
 def test_a_port_that_vanishes_is_noticed_on_read_and_write(tmp_path):
     line = FakeLine(tmp_path / 'board')
     port = SerialPort(str(line.path), 250_000)

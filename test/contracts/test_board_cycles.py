@@ -1,5 +1,6 @@
 """What every board does with a cycle about home, which it solves by itself."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -8,7 +9,9 @@ import pytest
 from bridge.calibration import Calibration
 from bridge.protocol import CycleAxis, Fault, FaultCode, Finish, Mode, Play, Program, Result, State
 from bridge.servo_config import BoardConfig
+from hexapod_control.load import hexapod
 from hexarm import machines
+from hexarm.board.kinematics import crank_hexapod
 from manipulator import rotation
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.machine_limits import BodyHeight, JointRange
@@ -29,10 +32,10 @@ KNOWN_LIMITS = tuple(
 TURN = CycleAxis(5, 0.0625, 500, 0.0)  # yaw, with a period of 2 s
 
 
-def solve(offsets):
+def solve(offsets, machine=ROBOCAKE):
     """Counts of x, y, z, roll, pitch and yaw from home; None beyond what the board allows."""
-    kinematics = ROBOCAKE.kinematics
-    turn = rotation.from_rpy(np.array(offsets[3:]))
+    kinematics = machine.kinematics
+    turn = rotation.from_rpy(np.array(offsets[3:])) @ kinematics.home.rotation
     pose = Pose(kinematics.home.position + np.array(offsets[:3]), turn)
     cranks = kinematics.inverse_or_nan(pose)
     if not Constraints(KNOWN_LIMITS).admits(pose, cranks):
@@ -71,6 +74,24 @@ def test_a_cycle_once_is_one_period_and_home_again(make_driver):
     assert modes[-1] in ARMED
     assert 2.5 < 0.02 * modes.count(Mode.PLAYING) < 4.0
     assert counts[-1] == pytest.approx(solve([0] * 6), abs=0.51)
+
+
+def test_a_cycle_is_about_a_home_that_is_shifted_and_turned(make_driver):
+    file = machines.read('robocake')
+    home = {'home_xy_mm': [1.0, -0.5], 'home_rpy_deg': [1.0, 0.5, -1.0]}
+    machine = hexapod(dataclasses.replace(file, geometry=file.geometry | home))
+    driver = make_driver(hexapod=crank_hexapod(machine, SERVOS))
+    driver.arm(solve([0] * 6, machine))
+    assert driver.ask(TURN) is Result.OK
+    assert driver.ask(Play(Program.CYCLE, True)) is Result.OK
+    driver.run(3.0)
+    _, counts = driver.record(3.0)
+    for yaw in (-0.0625, 0.0625):
+        turned = solve([0, 0, 0, 0, 0, yaw], machine)
+        assert np.abs(counts - turned).max(axis=1).min() <= 2.0
+    driver.ask(Finish())
+    _, counts = driver.record(3.0)
+    assert counts[-1] == pytest.approx(solve([0] * 6, machine), abs=0.51)
 
 
 @pytest.mark.parametrize(

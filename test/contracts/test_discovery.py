@@ -34,7 +34,7 @@ def run(code, **variables):
     return done.stdout + done.stderr
 
 
-@pytest.mark.parametrize('profile', [EVERYWHERE, LOOPBACK])
+@pytest.mark.parametrize('profile', [EVERYWHERE, LOOPBACK], ids=['everywhere', 'loopback'])
 def test_the_profile_is_understood_and_what_is_wrong_in_one_would_be_said(tmp_path, profile):
     assert run(JOIN, **{PROFILE: profile}) == ''
     wrong = tmp_path / 'wrong.xml'

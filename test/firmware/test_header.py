@@ -2,15 +2,17 @@
 
 import dataclasses
 import re
+from pathlib import Path
 
 import pytest
 
-from bridge.calibration import Calibration
+from bridge.calibration import COUNTS_PER_US, Calibration
 from bridge.fake.board_settings import BoardSettings
+from bridge.protocol import MAX_JOINTS
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board import build as firmware_build
-from hexarm.board.header import header, header_of
+from hexarm.board.header import WIDEST_COUNT, header, header_of
 from hexarm.cli.main import main
 from manipulator.errors import ConfigError
 
@@ -73,3 +75,15 @@ def test_every_servo_machine_has_a_program_that_fits_a_quarter_of_the_chip(machi
     assert sections.flash <= 64 * 1024
     # What is left for the stack.
     assert sections.ram <= 8192 - 1024
+
+
+def test_the_page_of_actuators_tells_what_the_board_emits():
+    root = Path(__file__).parents[2]
+    page = (root / 'docs' / 'actuators.md').read_text()
+    assert (MAX_JOINTS, WIDEST_COUNT / COUNTS_PER_US, COUNTS_PER_US) == (8, 18_000, 2)
+    for words in ('eight outputs', 'at most 18 ms', 'steps of half a microsecond'):
+        assert words in page
+    for name in ('README.md', 'docs/wiring.md'):
+        assert 'actuators.md' in (root / name).read_text()
+    with pytest.raises(ConfigError, match='reach'):  # "its counts do not fit a pulse"
+        header_of('arm_6r_stepper')

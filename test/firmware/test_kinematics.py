@@ -1,6 +1,7 @@
 """kinematics.c on this computer against the Python kinematics, over the whole workspace."""
 
 import ctypes
+import dataclasses
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from bridge.calibration import Calibration
 from bridge.fake.program import program
 from bridge.servo_config import BoardConfig
+from hexapod_control.leg_limits import RotaryLimits
 from hexapod_control.workspace import sample
 from hexarm import machines
 from hexarm.board.kinematics import crank_hexapod
@@ -125,6 +127,18 @@ def test_limits_are_those_of_the_machine_file(board, machine):
             outside = inside.copy()
             outside[i] = angle
             assert not is_within(home, outside)
+
+
+def test_each_crank_has_its_own_range(machine):
+    limits = machines.read('robocake').limits
+    ranges = [[30.0 + leg, 210.0 - leg] for leg in range(6)]
+    own = RotaryLimits(**limits | {'crank_range_deg': ranges}).constraints(machine.kinematics)
+    config = BoardConfig.from_machine(machines.read('robocake'))
+    calibration = Calibration.from_config(config.servos)
+    hexapod = crank_hexapod(dataclasses.replace(machine, constraints=own), calibration)
+    for leg in range(6):
+        ends = hexapod.crank_lowest[leg], hexapod.crank_highest[leg]
+        assert np.degrees(ends) == pytest.approx(ranges[leg])
 
 
 def test_rotation_is_about_fixed_x_then_y_then_z(board):

@@ -88,7 +88,7 @@ def interfaces():
 
 
 class Interfaces:
-    """Topics and services of nodes in the namespace /hexapod: as written, and as they are."""
+    """Topics and services of nodes in a namespace: as written, and as they are."""
 
     EVERYWHERE = frozenset({'/diagnostics', '/rosout', '/parameter_events'})
     """Every node has these; the text above the tables says so."""
@@ -109,7 +109,7 @@ class Interfaces:
         found = re.findall(row, self.section(node), re.MULTILINE)
         return {(kind, name): (message, qos.strip()) for name, kind, message, qos in found}
 
-    def running(self, user, node):
+    def running(self, user, node, space='/hexapod'):
         """The same from the graph."""
         found = {}
         ask = user.node
@@ -121,14 +121,14 @@ class Interfaces:
             ),
             ('out', ask.get_publisher_names_and_types_by_node, ask.get_publishers_info_by_topic),
         ):
-            for topic, types in query(node, '/hexapod'):
+            for topic, types in query(node, space):
                 if topic in self.EVERYWHERE | self.OPTIONAL:
                     continue
                 (qos,) = {qos_text(e.qos_profile) for e in endpoints(topic) if e.node_name == node}
-                found[kind, topic.removeprefix('/hexapod/')] = (types[0], qos)
-        for service, types in ask.get_service_names_and_types_by_node(node, '/hexapod'):
+                found[kind, topic.removeprefix(f'{space}/')] = (types[0], qos)
+        for service, types in ask.get_service_names_and_types_by_node(node, space):
             if not any(word in service for word in self.ROS_OWN):
-                found['service', service.removeprefix('/hexapod/')] = (types[0], '')
+                found['service', service.removeprefix(f'{space}/')] = (types[0], '')
         return found
 
 

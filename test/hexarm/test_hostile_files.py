@@ -38,7 +38,7 @@ def damaged(text, chance):
 
 def test_damaged_machine_files_are_refused_in_words_and_soon():
     chance, slowest = random.Random(7), 0.0
-    for _ in range(enough(400, 5000)):
+    for _ in range(enough(200, 5000)):
         text = damaged(chance.choice(TEXTS), chance)
         begin = time.process_time()
         problems_of(text)

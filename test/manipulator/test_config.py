@@ -51,6 +51,14 @@ def test_files_hold_the_same_with_libyaml_and_without(path, monkeypatch):
     assert parse_yaml(path.read_text()) == found
 
 
+def test_numbers_may_have_powers_of_ten_without_a_point(monkeypatch):
+    text = 'a: [3e6, -1E-3, +2e+5, 3000000, 1.5e3, 12, 0x10, 1e, e5, 1_000, "3e6"]'
+    found = {'a': [3e6, -1e-3, 2e5, 3000000, 1500.0, 12, 16, '1e', 'e5', 1000, '3e6']}
+    assert parse_yaml(text) == found
+    monkeypatch.setattr(config, '_QuickLoader', config._StrictLoader)
+    assert parse_yaml(text) == found
+
+
 def test_good_file_becomes_frozen_values():
     machine = build(Machine, parse_yaml(GOOD))
     assert machine == Machine(58.0, (30.0, 210.0), (Servo('a', 1, 1500.0),), None)

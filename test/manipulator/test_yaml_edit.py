@@ -84,10 +84,10 @@ def test_a_section_is_exchanged_and_what_is_around_it_stays():
 @pytest.mark.parametrize('name', sorted(shipped()))
 def test_shipped_files_keep_all_but_the_value(name):
     text = shipped()[name].read_text()
-    after = with_values(text, {('servos', 'joints', 3, 'centre_us'): '1512.5'})
+    after = with_values(text, {('motion', 'angular_speed_deg_s'): '12.5'})
     assert len([line for line in changed_lines(text, after) if line[0] == '+']) == 1
     wanted = yaml.safe_load(text)
-    wanted['servos']['joints'][3]['centre_us'] = 1512.5
+    wanted['motion']['angular_speed_deg_s'] = 12.5
     assert yaml.safe_load(after) == wanted
     exchanged = with_section(text, 'geometry', ['  new: 1'])
     wanted = yaml.safe_load(text) | {'geometry': {'new': 1}}

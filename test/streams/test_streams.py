@@ -190,7 +190,7 @@ def norms(vectors):
 
 @pytest.mark.parametrize('name', ['robocake', 'stewart_6_6', 'puma560'])
 @settings(
-    max_examples=enough(8, 40),
+    max_examples=enough(5, 40),
     deadline=None,
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],

@@ -1,8 +1,10 @@
 import json
+import re
 
 import pytest
 
 from hexarm.cli.main import main
+from hexarm.machines import find
 
 
 def test_json_has_law_drawing_and_the_papers_figures(capsys):
@@ -41,3 +43,17 @@ def test_people_read_a_table_and_get_a_map(capsys, tmp_path, machine):
 def test_what_makes_no_sense_is_refused(capsys, words):
     assert main(['accuracy', 'robocake', *words]) == 2
     assert words[0] in capsys.readouterr().err
+
+
+def test_machines_of_micrometres_have_digits_that_count(capsys, tmp_path):
+    text = find('stewart_6_3').read_text()
+    for key in ('hysteresis_mm', 'dead_band_us'):
+        text = re.sub(f'{key}: [0-9.]+', f'{key}: 0.0', text)
+    path = tmp_path / 'precise.yaml'
+    path.write_text(text)
+    words = ['--noise', '1e-9', '--tolerance', '1e-9', '--draws', '100']
+    assert main(['accuracy', str(path), *words]) == 0
+    row = capsys.readouterr().out.splitlines()[1]
+    place, angle = (float(x) for x in re.findall(r'([0-9.]+)(?: mm|°)', row))
+    assert 1e-7 < place < 1e-4
+    assert 1e-8 < angle < 1e-5

@@ -16,6 +16,7 @@ from hexarm.machines import load
 from manipulator.config import build, parse_yaml
 
 CONFIG = Path(__file__).parents[3] / 'config'
+REAL = Path(__file__).parents[1] / 'machines'
 ROBOCAKE = (CONFIG / 'robocake.yaml').read_text()
 ARM = (CONFIG / 'arm_6r.yaml').read_text()
 STEWART = (CONFIG / 'stewart_6_3.yaml').read_text()
@@ -123,27 +124,10 @@ def test_speeds_that_contradict_each_other_are_a_warning(key, value):
     assert warning.endswith('is one of them in another unit?')
 
 
-def precise(text):
-    """The platform as slow as telescopes are turned."""
-    rates = {
-        'linear_speed_mm_s': 0.05, 'linear_acceleration_mm_s2': 0.5, 'linear_jerk_mm_s3': 5.0,
-        'angular_speed_deg_s': 0.01, 'angular_acceleration_deg_s2': 0.01,
-        'angular_jerk_deg_s3': 0.1, 'joint_speed_mm_s': 0.1, 'joint_acceleration_mm_s2': 0.5,
-        'speed_mm_s': 0.1, 'mass_g': 3e6, 'pivot_xyz_mm': '[0, 0, 275.8]',
-    }  # fmt: skip
-    text += 'frames: {pivot_xyz_mm: 0}\n'
-    for key, value in rates.items():
-        text = re.sub(rf'\b{key}: [\d.]+', f'{key}: {value}', text)
-    return text
-
-
-def test_slow_heavy_and_hanging_machines_are_asked_nothing():
-    hanging = changed(
-        STEWART, ('height_mm: 5.0', 'height_mm: 0.0'), ('mm: 183.286', 'mm: -173.286')
-    )
-    for text in (precise(STEWART), precise(hanging)):
-        report = report_of(parse_yaml(text))
-        assert (report.problems, report.warnings) == ((), ())
+@pytest.mark.parametrize('file', sorted(REAL.glob('*.yaml')), ids=lambda file: file.stem)
+def test_large_slow_heavy_and_hanging_machines_are_asked_nothing(file):
+    report = report_of(parse_yaml(file.read_text()))
+    assert (report.problems, report.warnings) == ((), ())
 
 
 def test_problems_of_all_sections_come_at_once():
@@ -228,6 +212,15 @@ def test_servos_that_are_too_narrow_alike_are_one_line():
     assert found.endswith('reach [43.81, 196.2] deg, their range in limits is [30, 210] deg')
 
 
+def test_ranges_that_differ_are_not_written_alike_and_less_than_a_count_is_no_difference():
+    lowest = ('centre_us: 1500.0', 'centre_us: 15000.0'), ('us_per_mm: 10.0', 'us_per_mm: 100.0')
+    narrow = changed(STEWART, *lowest, ('[1000.0, 2000.0]', '[10201.0, 19800.0]'))
+    (found,) = [p for p in problems_of(narrow) if ' reach ' in p]
+    assert found.endswith('reach [142.01, 238] mm, their range in limits is [142, 238] mm')
+    narrow = changed(STEWART, *lowest, ('[1000.0, 2000.0]', '[10200.4, 19800.0]'))
+    assert problems_of(narrow) == []
+
+
 def test_park_beyond_a_limit_or_a_pulse_range_is_named():
     park = 'park_deg: [120.0, 120.0, 120.0, 120.0, 120.0, 120.0]'
     low = problems_of(changed(ROBOCAKE, (park, f'park_deg: [{", ".join(["40.0"] * 6)}]')))
@@ -269,8 +262,8 @@ def test_command_answers_programs(tmp_path, capsys):
 def test_file_that_is_no_machine_file_is_one_line_with_its_name(tmp_path, capsys):
     urdf = '<?xml version="1.0"?>\n<robot name="arm">' + '<link name="l"/>' * 800 + '</robot>\n'
     files = {
-        'arm.urdf': (urdf.encode(), 'is a URDF, which cannot be imported yet'),
-        'huge.urdf': (urdf.encode() * 20, 'is a URDF, which cannot be imported yet'),
+        'arm.urdf': (urdf.encode(), 'is a URDF: hexarm import FILE makes'),
+        'huge.urdf': (urdf.encode() * 20, 'is a URDF: hexarm import FILE makes'),
         'page.yaml': (b'<html>' + b'x' * 20_000, 'is XML or HTML, needs YAML'),
         'mesh.yaml': (bytes(range(256)) * 100, 'cannot be read: it is no text'),
         'text.yaml': (b'just words ' * 2000, "holds str 'just words"),

@@ -54,7 +54,7 @@ def test_pictures_are_saved(tmp_path, capsys):
         (['--frequency', '1', '1', '1', '1', '1', '1.001'], 'common period'),
         (['--noise', '-1'], '--noise -1'),
         ([*QUICK, '--data', 'sensors.txt'], 'must end in .csv'),
-        ([*QUICK, '--data', '/does/not/exist.csv'], 'cannot write'),
+        ([*QUICK, '--frequency', '3', '--data', '/does/not/exist.csv'], 'cannot write'),
         (['--periods', '1e9'], 'not within'),
         (['--amplitude', '0', '0', '0', '0', '0', '0'], 'periods of 0 s'),
         (['--amplitude', 'nan', '0', '0', '0', '0', '0'], 'finite'),

@@ -37,7 +37,7 @@ def test_at_rest_the_sag_is_gone(example, name):
 
 
 def test_in_slow_motion_most_of_the_error_was_sag(capsys):
-    words = ['simulate', 'robocake', '--frequency', '0.1', '--periods', '1', '--json']
+    words = ['simulate', 'robocake', '--frequency', '0.2', '--periods', '0.5', '--json']
     errors = []
     for flag in ('--no-compensate', '--compensate'):
         assert main([*words, flag]) == 0

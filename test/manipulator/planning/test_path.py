@@ -41,7 +41,7 @@ def turn_to_polyline(rotations, corners):
 def test_contour_stays_within_the_tolerance_of_the_polyline(seed):
     poses = zigzag(seed)
     path = path_along(poses, TOLERANCE, TURN_LENGTH)
-    on = path.at(np.linspace(0.0, path.marks[-1], enough(800, 3000))).pose
+    on = path.at(np.linspace(0.0, path.marks[-1], enough(300, 3000))).pose
     distance = distance_to_polyline(on.position, poses.position)
     assert distance.max() <= TOLERANCE.distance
     assert distance.max() > TOLERANCE.distance / 10

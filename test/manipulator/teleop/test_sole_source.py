@@ -23,9 +23,12 @@ def after(source, messages, publishers):
 
 
 @pytest.mark.parametrize(('live', 'frozen'), PAIRS)
-@pytest.mark.parametrize('seed', range(10))
-def test_no_message_counts_while_two_send(live, frozen, seed):
-    dice = random.Random(seed)
+def test_no_message_counts_while_two_send(live, frozen):
+    for seed in range(5):
+        check_no_message_counts(live, frozen, random.Random(seed))
+
+
+def check_no_message_counts(live, frozen, dice):
     source = after(SoleSource(), sent(live, dice.randrange(1, 2000), 0.0, 2.0), 1)
     begin = 2.0 + dice.uniform(0.0, 1.0 / live)
     both = [(*message, 'live') for message in sent(live, source.sequence + 1, 2.0, 4.0)]

@@ -2,10 +2,13 @@
 
 import numpy as np
 
-from bridge.fake.board_thread import LONGEST_STEP, STEP
+from bridge.fake.board_thread import LONGEST_STEP
 from bridge.framing import FrameReader
 from bridge.protocol import ResetCause
 from world.timeline import Link, Process
+
+STEP = 0.01
+"""Seconds; the pulses are looked at so often, twice a period."""
 
 
 class Cable:

@@ -7,6 +7,7 @@ import numpy as np
 
 from bridge.driver import BoardDriver
 from bridge.framing import FrameReader
+from bridge.programs import Upload
 from manipulator.errors import ManipulatorError
 from world.timeline import Process
 
@@ -48,6 +49,16 @@ class Bridge(Process):
         self.handle(lambda: self._ask(question, answer))
         return answer
 
+    def send_all(self, commands):
+        """One after the other, as with a program; the answer, '' for obeyed, comes later."""
+        answer = Answer()
+        self.handle(lambda: self._begin(commands, answer))
+        return answer
+
+    def aim_gripper(self, opening):
+        """0 closed, 1 open; Refused says why not."""
+        self.driver.aim_gripper(opening)
+
     def on_command(self, stamp, joints):
         try:
             self.driver.command(self._names, joints.tolist(), stamp, self.now)
@@ -82,6 +93,13 @@ class Bridge(Process):
             answer.said = '' if is_obeyed else text
 
         asked.future.add_done_callback(settle)
+        self._wake()
+
+    def _begin(self, commands, answer):
+        def end(reason):
+            answer.said = reason
+
+        Upload(self._link.request, commands, end).begin()
         self._wake()
 
     def _say_again(self):

@@ -42,18 +42,23 @@ class Thread:
 class ControllerProcess(Process):
     """Goals, paths, twists, poses, joints and the bridge's word in; setpoints and statuses out.
 
-    statuses: as they were published, with their times. ages: of each setpoint when it went out, s.
+    statuses, requested: as they were published, with their times. ages: of each setpoint when it
+    went out, s.
     """
 
-    def __init__(self, timeline, machine, setpoints):
+    def __init__(self, timeline, machine, setpoints, requested):
         super().__init__(timeline)
         self.thread = Thread(timeline)
         self.core = MotionController(machine, DT, worker=self.thread)
         self.statuses, self.ages = [], []
         self.pause_in_next_tick = 0.0
-        self._setpoints = setpoints
+        self._setpoints, self._requested = setpoints, requested
+        self.requested = []
         self.on_goal = FilteredCallback(self, self._take_goal, self._refuse)
         self.on_path = FilteredCallback(self, self._take_path, self._refuse)
+        self.on_goal_joints = FilteredCallback(self, self._take_goal_joints, self._refuse)
+        self.on_trajectory = FilteredCallback(self, self._take_trajectory, self._refuse)
+        self.on_joint_rates = FilteredCallback(self, self._take_joint_rates)
         self.on_pose = FilteredCallback(
             self, lambda stamp, pose: self.core.note_pose(pose, self.now)
         )
@@ -82,6 +87,16 @@ class ControllerProcess(Process):
     def _take_path(self, stamp, path):
         self.core.follow(path, self._later(self.on_path, stamp), self.now)
 
+    def _take_goal_joints(self, stamp, named):
+        refuse = self._later(self.on_goal_joints, stamp)
+        self.core.move_joints(named, stamp, refuse, self.now)
+
+    def _take_trajectory(self, stamp, goal):
+        self.core.follow_joints(goal, self._later(self.on_trajectory, stamp), self.now)
+
+    def _take_joint_rates(self, stamp, source, rates):
+        self.teleop.receive_joints(source, rates, self.now)
+
     def _later(self, callback, stamp):
         return lambda error: callback.refuse(stamp, error)
 
@@ -104,6 +119,10 @@ class ControllerProcess(Process):
         pose = self.core.end_tick(self.now)
         if pose is not None:
             self.ages.append(self.stamp - stamp)
+            joints = self.supervisor.requested_joints
+            if joints is not None:
+                self.requested.append((self.now, joints))
+                self._requested.send(joints)
             self._setpoints.send(stamp, pose)
         self._publish_news()
 

@@ -1,8 +1,8 @@
 """A line and a board that fail at random, from a seed (bridge/fake/faults.py)."""
 
 from bridge.fake.board_faults import BoardFaults
-from bridge.fake.board_thread import STEP
 from bridge.fake.faults import Faults
+from world.board import STEP
 
 
 class FaultyLine:

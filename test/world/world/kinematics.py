@@ -22,6 +22,9 @@ class Inverse(Process):
             self, lambda stamp, joints: self.check.note_joints(joints)
         )
 
+    def on_requested(self, joints):
+        self.check.note_requested(joints, self.now)
+
     def _take(self, stamp, pose):
         joints = self.check.command(pose, self.now)
         self.published.append((self.now, joints))

@@ -8,9 +8,12 @@ from bridge.fake.board_thread import FakeMachine
 from bridge.protocol import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
+from hexarm.board.kinematics import crank_hexapod
+from manipulator.planning.joint_points import joint_points
 from manipulator.planning.path import Tolerance
 from manipulator.planning.path_timing import PathRequest
-from manipulator.trajectory.path_planning import PathGoal
+from manipulator.trajectory.following_error import Tolerances
+from manipulator.trajectory.path_planning import PathGoal, TrajectoryGoal
 from world.board import BoardProcess, Cable
 from world.bridge import Bridge
 from world.controller import ControllerProcess
@@ -38,11 +41,13 @@ class World:
         self.bridge = None
         self.user = Process(self.timeline)
         play = config.hysteresis if hysteresis is None else hysteresis
-        fake = FakeMachine.from_config(config, boot_s, hysteresis=play)
+        hexapod = crank_hexapod(self.machine, self.calibration)
+        fake = FakeMachine.from_config(config, boot_s, hysteresis=play, hexapod=hexapod)
         self.board = BoardProcess(self.timeline, fake)
         self.cable = self.board.cable = Cable(self.timeline, self.board)
         nobody = self.user
-        names = ('setpoint', 'commands', 'words', 'goals', 'paths', 'twists')
+        names = ('setpoint', 'requested', 'commands', 'words', 'goals', 'paths', 'twists')
+        names += ('goal_joints', 'trajectories', 'joint_rates')
         self.links = {name: Link(nobody, None) for name in names}
         deep = ('pose', 'joints_ik', 'joints_pose', 'joints')
         self.links |= {name: Link(nobody, None, depth=MEASUREMENTS) for name in deep}
@@ -53,13 +58,16 @@ class World:
     # Processes: each start takes the place of the one before, which is dead
 
     def start_controller(self):
-        setpoints = self.links['setpoint']
-        new = self.controller = ControllerProcess(self.timeline, self.machine, setpoints)
+        out = self.links['setpoint'], self.links['requested']
+        new = self.controller = ControllerProcess(self.timeline, self.machine, *out)
         for link, accept in (
             ('words', new.on_machine_state),
             ('goals', new.on_goal),
             ('paths', new.on_path),
             ('twists', new.on_twist),
+            ('goal_joints', new.on_goal_joints),
+            ('trajectories', new.on_trajectory),
+            ('joint_rates', new.on_joint_rates),
             ('pose', new.on_pose),
             ('joints', new.on_joints),
         ):
@@ -68,6 +76,7 @@ class World:
     def start_inverse(self):
         new = self.inverse = Inverse(self.timeline, self.machine, self.links['commands'])
         self.links['setpoint'].lead_to(new, new.on_setpoint)
+        self.links['requested'].lead_to(new, new.on_requested)
         self.links['joints_ik'].lead_to(new, new.on_joints)
 
     def start_forward(self):
@@ -109,6 +118,12 @@ class World:
     # What is known
 
     @property
+    def joints(self):
+        """Where the joints truly are (n,)."""
+        order = [self.calibration.names.index(n) for n in self.machine.kinematics.joint_names]
+        return self.board.machine.servos.positions[order]
+
+    @property
     def state(self):
         return self.bridge.monitor.status.state
 
@@ -124,13 +139,11 @@ class World:
     @property
     def pose(self):
         """Where the platform truly is."""
-        order = [self.calibration.names.index(n) for n in self.machine.kinematics.joint_names]
-        joints = self.board.machine.servos.positions[order]
         supervisor = self.controller.supervisor
         near = self.machine.kinematics.home
         if supervisor.is_driving:
             near = supervisor.machine.frames.platform(supervisor.executor.state.pose)
-        return self.machine.kinematics.forward(joints, near).pose
+        return self.machine.kinematics.forward(self.joints, near).pose
 
     def frames(self, kind=object, since=float('-inf')):
         """(time, message) of what the host put on the cable."""
@@ -185,6 +198,23 @@ class World:
         """Its stamp, by which the statuses know it."""
         stamp = self.user.stamp
         self.links['goals'].send(stamp, pose)
+        return stamp
+
+    def send_goal_joints(self, **named):
+        """As `send_goal`, to positions of joints."""
+        stamp = self.user.stamp
+        self.links['goal_joints'].send(stamp, named)
+        return stamp
+
+    def send_trajectory(self, names, points, starts_in=None):
+        """As `send_goal`; points are JointPoints, starts_in: seconds from now."""
+        stamp, known = self.user.stamp, self.machine.kinematics.joint_names
+        tolerance = Tolerances.of(self.machine).goal
+        starts_at = None if starts_in is None else self.now + starts_in
+        goal = TrajectoryGoal(
+            stamp, lambda: joint_points(names, points, known), tolerance, starts_at
+        )
+        self.links['trajectories'].send(stamp, goal)
         return stamp
 
     def send_path(self, poses, speed=0.02):

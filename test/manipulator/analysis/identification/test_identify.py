@@ -17,9 +17,10 @@ from manipulator.analysis.observability import (
 )
 from manipulator.errors import InvalidInput, NoSolution
 from manipulator.pose import Pose
+from sampling import enough
 
 MACHINES = 4
-UNSEEN = 300
+UNSEEN = enough(100, 300)
 
 
 @functools.cache  # pytest would make it again for each set of runs

@@ -69,7 +69,7 @@ def test_a_section_lies_in_its_plane(robocake):
 def test_a_survey_agrees_with_the_volume_under_the_surface(robocake):
     """Cones from home to the surface, integrated over all directions, fill the same volume."""
     stages = []
-    positions = enough(20_000, 100_000)
+    positions = enough(8000, 100_000)
     found = survey(robocake, positions, 0.3, lambda stage, share: stages.append((stage, share)))
     cosines, turns = np.polynomial.legendre.leggauss(60)
     angles = np.linspace(0, 2 * np.pi, 120, endpoint=False)

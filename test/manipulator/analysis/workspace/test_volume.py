@@ -1,7 +1,11 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from manipulator.analysis.survey import SomeOrientation
+from hexarm.machines import load
+from manipulator.analysis.inside import ranges
+from manipulator.analysis.survey import SomeOrientation, survey
 from manipulator.analysis.volume import Box, bounding_box, volume, with_orientation
 from sampling import enough
 
@@ -56,11 +60,14 @@ def test_unturned_volumes_above_the_crank_plane(above_the_cranks, cranks, litres
     assert found.error < 0.01 * found.value
 
 
+@pytest.mark.long
 def test_with_tilts_the_free_cranks_reach_about_three_times_as_much(above_the_cranks):
     machine = above_the_cranks()
-    box = bounding_box(SomeOrientation(machine, 0.5, 15), machine.kinematics.home.position, 0.04)
+    box = bounding_box(
+        SomeOrientation.of(machine, 0.5, 15), machine.kinematics.home.position, 0.04
+    )
     found = volume(
-        SomeOrientation(machine, 0.5, 100), box, enough(3000, 8000), np.random.default_rng(1)
+        SomeOrientation.of(machine, 0.5, 100), box, enough(3000, 8000), np.random.default_rng(1)
     )
     assert 0.066 < found.value / LITRE < 0.073
 
@@ -69,8 +76,34 @@ def test_some_orientation_finds_what_home_orientation_reaches_and_admits_what_it
     home, length = stewart.kinematics.home, stewart.kinematics.characteristic_length
     places = home.position + np.random.default_rng(2).uniform(-3, 3, (1500, 3)) * length
     straight = with_orientation(stewart, home.rotation)(places)
-    tilted = SomeOrientation(stewart, 0.4, 20)(places)
+    tilted = SomeOrientation.of(stewart, 0.4, 20)(places)
     assert (tilted >= straight).all()
     assert straight.sum() < tilted.sum() < len(places)
-    untilted = SomeOrientation(stewart, 1e-9, 5)(places)
+    untilted = SomeOrientation.of(stewart, 1e-9, 5)(places)
     np.testing.assert_array_equal(untilted, straight)
+
+
+@pytest.fixture(scope='module')
+def precise():
+    """A telescope's mirror: it turns by half a degree."""
+    return load(str(Path(__file__).parents[3] / 'hexarm' / 'machines' / 'lsst_m2.yaml'))
+
+
+@pytest.mark.parametrize('name', ['precise', 'robocake'])
+def test_no_position_is_lost_as_larger_turns_are_allowed(name, request):
+    machine = request.getfixturevalue(name)
+    home, ends = machine.kinematics.home, ranges(machine)
+    box = np.array([ends[axis] for axis in 'xyz']) * 1.5
+    places = home.position + np.random.default_rng(3).uniform(*box.T, (500, 3))
+    found = with_orientation(machine, home.rotation)(places)
+    first = found.sum()
+    for turn in (0.002, 0.01, 0.03, 0.2, 0.5, 2.0):
+        more = SomeOrientation.of(machine, turn, 20)(places)
+        assert (more >= found).all()
+        found = more
+    assert found.sum() > 1.2 * first
+
+
+def test_with_hardly_a_turn_the_volume_is_no_smaller_than_without(robocake):
+    found = survey(robocake, 2000, 1e-6, lambda stage, share: None)
+    assert found.some_orientation.value >= found.constant_orientation.value

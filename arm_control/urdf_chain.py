@@ -1,0 +1,174 @@
+"""The six axes from base to tip of a URDF, fixed joints folded in: in base axes at zero."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from arm_control.chain import JOINTS, Chain
+from arm_control.geometry import other_axes
+from arm_control.urdf_file import Inertial, UrdfJoint, UrdfRobot
+from manipulator.errors import ConfigError
+from manipulator.formatting import shown
+from manipulator.pose import Pose
+
+TURNING = ('revolute', 'continuous')
+TOOL = 'tool0'
+"""The tip where several links could be it: what ROS-Industrial calls the mounting face."""
+MOST_NAMED = 12
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfArm:
+    """base and tip are links; joints, base first, have limits of their own.
+
+    bodies are what each joint carries up to the next, in base axes at zero; None where the file
+    has no mass for any of it.
+    """
+
+    base: str
+    tip: str
+    joints: tuple[UrdfJoint, ...]
+    chain: Chain
+    bodies: tuple[Inertial | None, ...]
+
+
+def arm_of(robot: UrdfRobot, base: str | None = None, tip: str | None = None) -> UrdfArm:
+    """The arm between two links; by default from the root to the one link that six axes move.
+
+    ConfigError names loops, joints that do not turn by themselves, and the candidates where the
+    base or the tip is not clear.
+    """
+    tree = _Tree(robot)
+    base = tree.root() if base is None else tree.link('base', base)
+    if tip is None:
+        tip = tree.only_tip(base)
+    path = tree.path(base, tree.link('tip', tip))
+    tree.check(base, tip)
+    joints = tuple(joint for joint in path if joint.kind in TURNING)
+    poses = tree.poses(base)
+    frames = [poses[joint.child] for joint in joints]
+    axes = [frame.rotation @ joint.axis for frame, joint in zip(frames, joints, strict=True)]
+    chain = Chain(np.array(axes), np.array([frame.position for frame in frames]), poses[tip])
+    return UrdfArm(base, tip, joints, chain, tree.bodies(base, joints))
+
+
+class _Tree:
+    """The links of a robot, by the joint above each."""
+
+    def __init__(self, robot: UrdfRobot) -> None:
+        """ConfigError for a link under two joints, and for links in a circle."""
+        self.robot = robot
+        self.above: dict[str, UrdfJoint] = {}
+        for joint in robot.joints:
+            other = self.above.setdefault(joint.child, joint)
+            if other is not joint:
+                both = f'{shown(other.name)} and {shown(joint.name)}'
+                raise ConfigError(
+                    [f'link {shown(joint.child)} is below two joints, {both}: a loop']
+                )
+        self.below: dict[str, list[UrdfJoint]] = {}
+        for joint in robot.joints:
+            self.below.setdefault(joint.parent, []).append(joint)
+        roots = [link for link in robot.bodies if link not in self.above]
+        reached = {link for root in roots for link in self.order(root)}
+        circle = next((link for link in robot.bodies if link not in reached), None)
+        if circle is not None:
+            raise ConfigError([f'link {shown(circle)} is below itself: a loop'])
+        self.roots = roots
+
+    def order(self, base: str) -> list[str]:
+        """Every link from base on, parents before children."""
+        found = [base]
+        for link in found:
+            found += [joint.child for joint in self.below.get(link, [])]
+        return found
+
+    def root(self) -> str:
+        """The base; ConfigError names the roots where there is not one."""
+        if len(self.roots) != 1:
+            raise ConfigError([f'the base is not clear, --base: {_listed(self.roots)}'])
+        return self.roots[0]
+
+    def link(self, role: str, name: str) -> str:
+        """The name; ConfigError for no link of the file."""
+        if name not in self.robot.bodies:
+            known = _listed(list(self.robot.bodies))
+            raise ConfigError([f'{role} {shown(name)} is no link of the file, which has {known}'])
+        return name
+
+    def path(self, base: str, tip: str) -> list[UrdfJoint]:
+        """The joints from base to tip; ConfigError where the tip is not below the base."""
+        path, link = list[UrdfJoint](), tip
+        while link != base:
+            if link not in self.above:
+                raise ConfigError([f'tip {shown(tip)} is not below base {shown(base)}'])
+            path.append(self.above[link])
+            link = path[-1].parent
+        return path[::-1]
+
+    def check(self, base: str, tip: str) -> None:
+        """ConfigError unless six joints turn between them, each by itself, and nothing slides."""
+        path = self.path(base, tip)
+        for joint in path:
+            if joint.kind not in (*TURNING, 'fixed'):
+                raise ConfigError(
+                    [f'joint {shown(joint.name)} is {joint.kind}, an arm has joints that turn']
+                )
+            if joint.mimics:
+                mimicked = f'mimics {shown(joint.mimics)}, an arm has a drive for each joint'
+                raise ConfigError([f'joint {shown(joint.name)} {mimicked}'])
+        axes = sum(joint.kind in TURNING for joint in path)
+        if axes != JOINTS:
+            place = f'from base {shown(base)} to tip {shown(tip)}'
+            raise ConfigError([f'{place}: {other_axes(axes)}'])
+
+    def only_tip(self, base: str) -> str:
+        """The last link that six axes move; ConfigError names the links where it is not clear."""
+        fitting = [link for link in self.order(base) if self._is_arm(base, link)]
+        followed = {
+            self.above[link].parent for link in fitting if self.above[link].kind == 'fixed'
+        }
+        last = [link for link in fitting if link not in followed]
+        if len(last) == 1:
+            return last[0]
+        named = [link for link in last if link == TOOL or link.endswith(f'_{TOOL}')]
+        if len(named) == 1:
+            return named[0]
+        if last:
+            raise ConfigError([f'the tip is not clear, --tip: {_listed(last)}'])
+        leaves = [link for link in self.order(base) if link not in self.below]
+        longest = max(leaves, key=lambda link: len(self.path(base, link)))
+        self.check(base, longest)
+        raise ConfigError([f'no tip is moved by six joints of base {shown(base)}'])
+
+    def _is_arm(self, base: str, tip: str) -> bool:
+        try:
+            self.check(base, tip)
+        except ConfigError:
+            return False
+        return True
+
+    def poses(self, base: str) -> dict[str, Pose]:
+        """T_base_link of every link below the base, at zero."""
+        poses = {base: Pose.identity()}
+        for link in self.order(base)[1:]:
+            poses[link] = poses[self.above[link].parent] @ self.above[link].origin
+        return poses
+
+    def bodies(self, base: str, joints: Sequence[UrdfJoint]) -> tuple[Inertial | None, ...]:
+        """What each joint carries up to the next, with all that hangs on it, at zero."""
+        poses, moving = self.poses(base), {joint.child: i for i, joint in enumerate(joints)}
+        owners, found = {base: -1}, list[Inertial | None]([None] * len(joints))
+        for link in self.order(base)[1:]:
+            owner = owners[link] = moving.get(link, owners[self.above[link].parent])
+            body = self.robot.bodies[link]
+            if owner >= 0 and body is not None:
+                placed, before = body.moved(poses[link]), found[owner]
+                found[owner] = placed if before is None else before.joined(placed)
+        return tuple(found)
+
+
+def _listed(links: Sequence[str]) -> str:
+    more = ', …' if len(links) > MOST_NAMED else ''
+    return ', '.join(link[:80] for link in links[:MOST_NAMED]) + more

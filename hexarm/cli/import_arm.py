@@ -1,0 +1,73 @@
+"""`hexarm import FILE.urdf`: an arm's URDF as a machine file."""
+
+import argparse
+import re
+from pathlib import Path
+
+from arm_control.urdf_chain import arm_of
+from arm_control.urdf_file import MAX_CHARACTERS, read_urdf
+from hexarm.arm_import import Wishes, machine_text
+from hexarm.cli.answers import Answer, answering, with_negatives
+from manipulator.errors import ConfigError, InvalidInput
+from manipulator.formatting import counted, reason
+
+
+def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+    """Declares the subcommand."""
+    parser = commands.add_parser('import')
+    parser.add_argument('file', type=Path, metavar='FILE', help='plain URDF, as xacro writes it')
+    parser.add_argument('--base', metavar='LINK', help='default: the root')
+    parser.add_argument(
+        '--tip', metavar='LINK', help='default: the last link that six axes move, or tool0'
+    )
+    parser.add_argument(
+        '--home', nargs=6, type=float, metavar='DEG', help='the joints at home; default: chosen'
+    )
+    parser.add_argument(
+        '--acceleration', type=float, metavar='DEG_S2', help='of each joint; default: assumed'
+    )
+    parser.add_argument(
+        '--output', type=Path, metavar='FILE', help='default: NAME.yaml, beside nothing else'
+    )
+    parser.add_argument('--json', action='store_true', help='answer for programs')
+    with_negatives(parser)
+    parser.set_defaults(run=answering(answer))
+
+
+def answer(arguments: argparse.Namespace) -> Answer:
+    """Where the machine file is, and what it assumes; an existing file is not written over."""
+    source: Path = arguments.file
+    try:
+        robot = read_urdf(_text_of(source))
+        arm = arm_of(robot, arguments.base, arguments.tip)
+        wishes = Wishes(arguments.home, arguments.acceleration)
+        imported = machine_text(arm, robot.name or source.stem, source.name, wishes)
+    except ConfigError as error:
+        raise ConfigError(error.problems, str(source)) from error
+    stem = re.sub(r'\W+', '_', robot.name or source.stem).strip('_') or 'arm'
+    output: Path = arguments.output or Path(f'{stem}.yaml')
+    try:
+        with output.open('x', encoding='utf-8') as file:
+            file.write(imported.text)
+    except FileExistsError:
+        raise InvalidInput(f'{output} exists: another name with --output') from None
+    except OSError as error:
+        raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
+    lines = [
+        f'{output}: {arm.base} to {arm.tip}, {", ".join(joint.name for joint in arm.joints)}',
+        f'{counted(len(imported.assumed), "line")} with assumed values: look for "assumed"',
+        *(['visual meshes are not imported'] if robot.has_meshes else []),
+        f'next: hexarm check {output}; hexarm up {output} --panel',
+    ]
+    names = [joint.name for joint in arm.joints]
+    answer = {'output': str(output), 'base': arm.base, 'tip': arm.tip, 'joints': names}
+    return answer | {'assumed': list(imported.assumed)}, lines
+
+
+def _text_of(path: Path) -> str:
+    """ConfigError for what cannot be read as text, or is huge."""
+    try:
+        with path.open(encoding='utf-8') as file:
+            return file.read(MAX_CHARACTERS + 1)
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError([f'cannot be read: {reason(error)}']) from error
