@@ -34,6 +34,7 @@ class Scene:
     """What a viser server shows in three dimensions."""
 
     def __init__(self, server: Any, machine: Machine, has_gripper: bool) -> None:
+        server.gui.configure_theme(dark_mode=True)
         self._scene = server.scene
         self._machine = machine
         kinematics = machine.kinematics

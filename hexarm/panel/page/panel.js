@@ -159,7 +159,7 @@ function begin(words) {
 $('scene').addEventListener('load', () => {
   // Of viser's page only the canvas: its own panel is replaced by this one.
   const style = $('scene').contentDocument.createElement('style');
-  style.textContent = 'body * { visibility: hidden } canvas { visibility: visible !important }';
+  style.textContent = 'body { background: #0d1117 } body * { visibility: hidden } canvas { visibility: visible !important }';
   $('scene').contentDocument.head.append(style);
 });
 
@@ -172,6 +172,8 @@ function show(words) {
   $('state').className = words.state;
   document.title = machine ? `${machine.label}: ${$('state').textContent}` : 'hexarm';
   showReason([words.reason, words.notice, words.motion].filter(Boolean).join(' · '));
+  $('step').hidden = !words.step.text;
+  $('measured').hidden = Boolean(words.step.text);
   $('step').firstElementChild.textContent = words.step.text;
   $('next').hidden = !words.step.action;
   $('next').textContent = words.step.action ? document.querySelector(`[data-do=${words.step.action}]`).textContent : '';
@@ -201,12 +203,11 @@ function showReason(text) {
 }
 
 function showMeasured(words) {
-  const cells = AXES.map((name, k) => [name, words.pose ? (words.pose[k] * FACTORS[k]).toFixed(2) : '–']);
-  const text = JSON.stringify(cells);
-  if ($('measured').dataset.text === text) return;
-  $('measured').dataset.text = text;
-  const row = (some) => make('tr', {}, ...some.flatMap(([name, value]) => [make('th', { textContent: name }), make('td', { textContent: value })]));
-  $('measured').replaceChildren(make('caption', { textContent: 'measured' }), row(cells.slice(0, 3)), row(cells.slice(3)));
+  const number = (k) => (words.pose[k] * FACTORS[k]).toFixed(2).padStart(8);
+  const text = words.pose
+    ? `x${number(0)}   y${number(1)}   z${number(2)} mm\nr${number(3)}   p${number(4)}   y${number(5)} °`
+    : 'The pose is not known: not all joints are.';
+  if ($('measured').textContent !== text) $('measured').textContent = text;
 }
 
 function showSaved(names, can) {
