@@ -42,7 +42,7 @@ def parsed(text: str | bytes) -> str | Request:
     do = message.get('do')
     if do in PLAIN:
         return Request(str(do))
-    if do not in NEEDS:
+    if not isinstance(do, str) or do not in NEEDS:
         raise InvalidInput(f'do: {shown(do)} is not known')
     return Request(do, **{key: READ[key](key, message.get(key)) for key in NEEDS[do]})
 
