@@ -6,8 +6,8 @@ import numpy as np
 
 from arm_control.chain import JOINTS, Chain, aligned, flat, in_parts
 from arm_control.closed_forms import BRANCHES
-from arm_control.geometry import JointLimits
 from arm_control.inverse_method import InverseMethod, fitting_method
+from arm_control.joint_limits import JointLimits
 from arm_control.numerical import arm_branches
 from manipulator import _kernel
 from manipulator.arrays import Array, frozen

@@ -4,7 +4,7 @@ from typing import Protocol
 
 from arm_control.chain import Chain
 from arm_control.closed_forms import ClosedForm, closed_form
-from arm_control.geometry import JointLimits
+from arm_control.joint_limits import JointLimits
 from arm_control.numerical import AlmostClosed, Numerical, idealised
 from manipulator.arrays import Array
 from manipulator.pose import Pose

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from arm_control.arm import SerialArm
-from arm_control.geometry import ArmGeometry, ArmLimits, check_axes, placed
+from arm_control.geometry import ArmGeometry, check_axes, placed
+from arm_control.joint_limits import ArmLimits
 from arm_control.rate_scaling import AT_ONCE
 from arm_control.resolved_rate import STRAIGHT, JogState, ResolvedRate
 from manipulator.arrays import Array, frozen
@@ -94,7 +95,8 @@ class ArmJogger:
         line = motion.off_line, motion.is_leaving, motion.is_under_way
         before = JogState(motion.joints, motion.rates, *line)
         step = self.jog.step(before, self._of_tool(wanted, motion.pose), dt, slowing)
-        state = step.state
+        state, along = step.state, step.driven * wanted
+        along.setflags(write=False)
         return JogMotion(
             self.frames.pivot(self.jog.arm.chain.forward(state.joints)),
             state.joints,
@@ -105,7 +107,7 @@ class ArmJogger:
             state.off_line,
             state.is_leaving,
             state.is_under_way,
-            frozen(step.driven * wanted),
+            along,
         )
 
     def _of_tool(self, twist: Array, T_work_pivot: Pose) -> Array:

@@ -1,5 +1,6 @@
 """One jog tick: from a twist to the next joint angles (docs/arm-kinematics.md, 7 to 9)."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -137,7 +138,8 @@ class ResolvedRate:
         Raises InvalidInput for a twist or dt that is not finite or not positive.
         """
         wanted = np.asarray(twist, dtype=np.float64)
-        if wanted.shape != (6,) or not np.isfinite(wanted).all() or not 0 < dt < np.inf:
+        is_finite = wanted.shape == (6,) and math.isfinite(math.hypot(*wanted.tolist()))
+        if not is_finite or not 0 < dt < math.inf:
             raise InvalidInput(f'twist {wanted.tolist()} over {dt} s, needs six finite, positive')
         tick = _Tick(self, state, wanted * self._unit, dt, slowing)
         drive = tick.damped() if self.slides else tick.on_line()
@@ -149,13 +151,14 @@ class ResolvedRate:
         if drive.is_sliding:
             off_line, moving = STRAIGHT, driven * wanted
         is_leaving = drive.is_leaving or (state.is_leaving and tick.is_singular)
-        is_on_line = bool(rates.any()) and not (drive.is_sliding or is_leaving)
-        is_asked = bool(wanted.any() or rates.any())
+        is_moving = bool(rates.any())
+        is_on_line = is_moving and not (drive.is_sliding or is_leaving)
+        is_asked = is_moving or bool(wanted.any())
         is_under_way = is_on_line or (state.is_under_way and is_asked)
         for array in (joints, rates, off_line, moving):
             array.setflags(write=False)
         after = JogState(joints, rates, off_line, is_leaving, is_under_way)
-        held = drive.scale, drive.held_by, tick.posture.sigma_min
+        held = drive.scale, drive.held_by, tick.sigma_min
         return JogStep(after, *held, driven, moving)
 
     def posture(self, joints: Array) -> Posture:
@@ -171,20 +174,21 @@ class _Tick:
     ) -> None:
         self.room: Room = jog.scaling.room(state.joints)
         self.posture = jog.posture(state.joints + 0.5 * dt * state.rates)
+        self.sigma_min = self.posture.sigma_min
         self._jog, self._state, self._twist = jog, state, twist
         self._dt, self._slowing = dt, slowing
 
     @property
     def is_singular(self) -> bool:
         """Whether a singular posture has not been left yet."""
-        return self.posture.sigma_min < LEFT * self._jog.onset
+        return self.sigma_min < LEFT * self._jog.onset
 
     def on_line(self) -> _Drive:
         """The twist with its direction kept, as far as the joints allow."""
         off_line = self._state.off_line * self._jog._unit
         line = line_rates(self.posture, self._twist, self._jog._onset, off_line)
         drive = self._scaled(line)
-        if drive.scale > 0.0 or self.posture.sigma_min >= self._jog.onset:
+        if drive.scale > 0.0 or self.sigma_min >= self._jog.onset:
             return drive
         # Nothing but the twist: where it is stopped, its opposite is not.
         exact = self._scaled(self._exact(self._twist))
@@ -194,13 +198,13 @@ class _Tick:
         """The twist with its lost directions damped."""
         rates = self.posture.damped_rates(self._twist, self._jog._onset)
         scale = self._scale(rates, STRAIGHT)
-        if self.posture.sigma_min >= self._jog.onset:
+        if self.sigma_min >= self._jog.onset:
             return _Drive(rates, scale.part, self._words(scale))
         return _Drive(rates, scale.part, SLIDING + self._place(), is_sliding=True)
 
     def way_out(self) -> _Drive | None:
         """Motion off the line where nothing else is left; None where there is a better twist."""
-        sigma = self.posture.sigma_min
+        sigma = self.sigma_min
         if self._jog.slides and sigma < self._jog.onset:
             return self._sliding(self._place())
         found = self._folding() if sigma < LOST else None
@@ -225,7 +229,7 @@ class _Tick:
 
     def _scaled(self, line: LineRates) -> _Drive:
         scale = self._scale(line.rates, line.bend)
-        if self.posture.sigma_min >= self._jog.onset:
+        if self.sigma_min >= self._jog.onset:
             return _Drive(line.rates, scale.part, self._words(scale))
         if line.is_lost or (scale.limit != 'stop' and self._is_too_near(scale.part, line.growth)):
             return _Drive(line.rates, 0.0, self._place(line.direction))
@@ -282,7 +286,7 @@ class _Tick:
         near_stops = self.room.to_low <= CORNER, self.room.to_high <= CORNER
         unit_rates = self.posture.damped_rates(np.eye(6), self._jog._onset).T
         free = np.flatnonzero(~blocked(unit_rates, *near_stops))
-        if self._jog.slides or self.posture.sigma_min >= self._jog.onset or free.size in (0, 12):
+        if self._jog.slides or self.sigma_min >= self._jog.onset or free.size in (0, 12):
             return free.size == 0
         size = float(np.sqrt(self._twist @ self._twist))
         units = size * np.concatenate([np.eye(6), -np.eye(6)])[free]

@@ -45,8 +45,9 @@ def urdf(name: str, arm: SerialArm, radii: Sequence[float], torques: Sequence[fl
             low, high = (_text([v[i]]) for v in (arm.limits.low, arm.limits.high))
             limit = {'lower': low, 'upper': high, **limit}
         ET.SubElement(joint, 'limit', limit)
+    rpy = so3.to_rpy(chain.home.rotation, so3.EXACTLY)
     tool = _joint(robot, 'tool', 'fixed', parts[-1], PLATFORM)
-    ET.SubElement(tool, 'origin', xyz=_text(places[-1] - places[-2]), rpy=_text(chain.home.rpy))
+    ET.SubElement(tool, 'origin', xyz=_text(places[-1] - places[-2]), rpy=_text(rpy))
     ET.indent(robot)
     return '<?xml version="1.0"?>\n' + ET.tostring(robot, encoding='unicode') + '\n'
 

@@ -15,6 +15,8 @@ from manipulator.pose import Pose
 TURNING = ('revolute', 'continuous')
 TOOL = 'tool0'
 """The tip where several links could be it: what ROS-Industrial calls the mounting face."""
+FEW = 3
+"""Axes before the joints branch, with fewer of which it is no arm: two arms, a torso, legs."""
 MOST_NAMED = 12
 
 
@@ -34,7 +36,7 @@ class UrdfArm:
 
 
 def arm_of(robot: UrdfRobot, base: str | None = None, tip: str | None = None) -> UrdfArm:
-    """The arm between two links; by default from the root to the one link that six axes move.
+    """The arm between two links; by default from the root to tool0, or to the end of the arm.
 
     ConfigError names loops, joints that do not turn by themselves, and the candidates where the
     base or the tip is not clear.
@@ -118,29 +120,56 @@ class _Tree:
             if joint.mimics:
                 mimicked = f'mimics {shown(joint.mimics)}, an arm has a drive for each joint'
                 raise ConfigError([f'joint {shown(joint.name)} {mimicked}'])
-        axes = sum(joint.kind in TURNING for joint in path)
+        axes = self._axes(base, tip)
         if axes != JOINTS:
             place = f'from base {shown(base)} to tip {shown(tip)}'
-            raise ConfigError([f'{place}: {other_axes(axes)}'])
+            hint = '; where a gripper follows, --tip LINK' if axes > JOINTS else ''
+            raise ConfigError([f'{place}: {other_axes(axes)}{hint}'])
 
     def only_tip(self, base: str) -> str:
-        """The last link that six axes move; ConfigError names the links where it is not clear."""
-        fitting = [link for link in self.order(base) if self._is_arm(base, link)]
-        followed = {
-            self.above[link].parent for link in fitting if self.above[link].kind == 'fixed'
-        }
-        last = [link for link in fitting if link not in followed]
-        if len(last) == 1:
-            return last[0]
-        named = [link for link in last if link == TOOL or link.endswith(f'_{TOOL}')]
+        """tool0, or else the end of the arm; ConfigError where that is not clear, or not six axes.
+
+        The arm goes on where one joint turns, and ends at what carries none or several: fingers.
+        """
+        links = self.order(base)
+        named = [link for link in links if link == TOOL or link.endswith((f'_{TOOL}', f'/{TOOL}'))]
         if len(named) == 1:
             return named[0]
-        if last:
+        body, axes = self.body(base), 0
+        while len(after := self.carried(body)) == 1 and after[0].kind in TURNING:
+            body, axes = self.body(after[0].child), axes + 1
+        if axes == JOINTS:
+            last = [link for link in body if not self._goes_on(link, body)]
+            if len(last) == 1:
+                return last[0]
             raise ConfigError([f'the tip is not clear, --tip: {_listed(last)}'])
-        leaves = [link for link in self.order(base) if link not in self.below]
-        longest = max(leaves, key=lambda link: len(self.path(base, link)))
-        self.check(base, longest)
-        raise ConfigError([f'no tip is moved by six joints of base {shown(base)}'])
+        fitting = [link for link in links if self._is_arm(base, link)]
+        if fitting and axes < FEW:
+            raise ConfigError([f'the tip is not clear, --tip: {_listed(fitting)}'])
+        if axes < FEW:
+            end = max(links, key=lambda link: (self._axes(base, link), len(self.path(base, link))))
+        else:
+            end = after[0].child if len(after) == 1 else body[0]
+        self.check(base, end)
+        raise ConfigError([f'the tip is not clear, --tip: {_listed(fitting)}'])
+
+    def body(self, link: str) -> list[str]:
+        """The link and those on fixed joints below it."""
+        found = [link]
+        for one in found:
+            found += [j.child for j in self.below.get(one, []) if j.kind == 'fixed']
+        return found
+
+    def carried(self, body: Sequence[str]) -> list[UrdfJoint]:
+        """The joints of a body that move by themselves."""
+        below = (joint for link in body for joint in self.below.get(link, []))
+        return [joint for joint in below if joint.kind != 'fixed' and not joint.mimics]
+
+    def _goes_on(self, link: str, body: Sequence[str]) -> bool:
+        return any(joint.child in body for joint in self.below.get(link, []))
+
+    def _axes(self, base: str, tip: str) -> int:
+        return sum(joint.kind in TURNING for joint in self.path(base, tip))
 
     def _is_arm(self, base: str, tip: str) -> bool:
         try:

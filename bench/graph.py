@@ -17,6 +17,7 @@ from hexarm.client import Client
 SPACE = 'bench'
 SECONDS = 8.0
 MEMORY_MB, CPU_RATIO, LATENCY_RATIO, START_RATIO = 200.0, 0.75, 0.85, 0.5
+CORE_SHARE, BARE_RATIO = 18.0, 1.2
 PAGE = os.sysconf('SC_PAGE_SIZE')
 TICKS = os.sysconf('SC_CLK_TCK')
 
@@ -44,6 +45,10 @@ def rows():
         Row('bare rclpy chain of three processes, p50', f'{bare:.2f} ms'),
         *described('one process', together),
         *described('separate processes', separate),
+        Row('of one core, during a cycle at 100 Hz, one process', f'{together.share:.0f} %',
+            f'≤ {CORE_SHARE:g} %', together.share <= CORE_SHARE),
+        ratio('setpoint to frame p50, one process / bare chain', together.latency / bare,
+              BARE_RATIO),
         ratio('CPU during a cycle, one process / separate', together.share / separate.share,
               CPU_RATIO),
         ratio('setpoint to frame p50, one process / separate',

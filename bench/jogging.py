@@ -11,7 +11,7 @@ from manipulator.teleop.modes import jog_mode
 from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.jogging import JogCommand
 
-TICK, ROUNDS, PERIOD = 0.01, 3000, 200
+TICK, ROUNDS, PERIOD, MOST_SOLVES = 0.01, 3000, 200, 8
 MACHINES = ('robocake', 'stewart_6_3', 'arm_6r')
 
 
@@ -42,7 +42,7 @@ def tick_rows(name: str) -> list[Row]:
 
 def tick_row(name: str, ratio: float) -> Row:
     shown = f'{name}: one jog tick of the executor', f'{ratio:.0f} × a 6×6 solve'
-    return Row(*shown, '≤ 25', ratio <= 25) if name.startswith('arm') else Row(*shown)
+    return Row(*shown, f'≤ {MOST_SOLVES}', ratio <= MOST_SOLVES)
 
 
 def jogged(name: str) -> tuple[Executor, list[JogCommand]]:

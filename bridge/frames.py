@@ -47,7 +47,7 @@ _HEAD = struct.Struct('<BH')
 _CRC = struct.Struct('<H')
 _U16 = struct.Struct('<H')
 _HELLO = struct.Struct('<BBBI')
-_STATE = struct.Struct('<HHBBBHHHHH')
+_STATE = struct.Struct('<HHBBBHHHH')
 _ACK = struct.Struct('<HB')
 _FAULT = struct.Struct('<BBH')
 _CYCLE_AXIS = struct.Struct('<BfHf')
@@ -128,6 +128,11 @@ def _unpack_setpoint(payload: bytes) -> Setpoint:
     return Setpoint(deadline_ms, _unpack_counts(payload[_U16.size :]))
 
 
+def _known_bytes(joints: int) -> int:
+    """Of the two bits a joint in a STATE: two for up to eight joints."""
+    return max(2, -(-joints // 4))
+
+
 def _pack_state(state: State) -> bytes:
     head = _STATE.pack(
         state.echo,
@@ -139,14 +144,18 @@ def _pack_state(state: State) -> bytes:
         state.bad_frames,
         state.overruns,
         state.refused,
-        sum(joint.known << 2 * i for i, joint in enumerate(state.joints)),
     )
+    known = sum(joint.known << 2 * i for i, joint in enumerate(state.joints))
+    head += known.to_bytes(_known_bytes(len(state.joints)), 'little')
     return head + _pack_counts(tuple(joint.count for joint in state.joints))
 
 
 def _unpack_state(payload: bytes) -> State:
-    echo, age, mode, flags, fault, battery, bad, over, refused, known = _STATE.unpack_from(payload)
-    counts = _unpack_counts(payload[_STATE.size :])
+    echo, age, mode, flags, fault, battery, bad, over, refused = _STATE.unpack_from(payload)
+    rest = payload[_STATE.size :]
+    count = next((n for n in range(1, MAX_JOINTS + 1) if len(rest) == _known_bytes(n) + 2 * n), 0)
+    known = int.from_bytes(rest[: _known_bytes(count)], 'little')
+    counts = _unpack_counts(rest[_known_bytes(count) :] if count else b'')
     joints = tuple(Joint(Known(known >> 2 * i & 3), count) for i, count in enumerate(counts))
     modes = Mode(mode), Flag(flags), FaultCode(fault)
     return State(echo, age, *modes, battery, bad, over, refused, joints)

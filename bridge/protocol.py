@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 PROTOCOL_VERSION = 1
-MAX_JOINTS = 8
+MAX_JOINTS = 18
+"""As many as a STATE of 63 bytes holds. The chip has fewer, as
+hexarm/board/header.py says."""
 MIN_DEADLINE_MS, MAX_DEADLINE_MS = 1, 2000
 
 

@@ -10,7 +10,7 @@ from typing import Literal
 from bridge.protocol import MAX_JOINTS
 from manipulator.config import PLACE_MM, RATE, build, key, quantity
 from manipulator.errors import ConfigError
-from manipulator.formatting import counted, shown
+from manipulator.formatting import counted, shown, told_apart
 from manipulator.machine import MachineFile
 
 PARK = 'positions at which the servos are switched on and off, in the order of joints'
@@ -50,7 +50,8 @@ class ServoConfig:
             problems.append(f'sign: {self.sign} is neither 1 nor -1')
         low, high = self.pulse_range_us
         if not low <= self.centre_us <= high:
-            problems.append(f'centre_us: {self.centre_us:g} outside [{low:g}, {high:g}]')
+            centre, *ends = told_apart([self.centre_us, low, high])
+            problems.append(f'centre_us: {centre} outside [{", ".join(ends)}]')
         if problems:
             raise ConfigError([f'{self.name}: {problem}' for problem in problems])
 
@@ -88,12 +89,21 @@ class ServosConfig:
             problems.append(f'joints: duplicate names in {names}')
         if sum(joint.is_gripper for joint in self.joints) > 1:
             problems.append('joints: more than one is the gripper')
-        channels = [joint.channel for joint in self.joints]
-        if sorted(channels) != list(range(len(channels))):
-            problems.append(f'joints: channels {channels} are not 0 to {len(channels) - 1}')
+        problems += self._channel_problems()
         problems += self._unit_problems()
         if problems:
             raise ConfigError(problems)
+
+    def _channel_problems(self) -> list[str]:
+        channels = [joint.channel for joint in self.joints]
+        if sorted(channels) == list(range(len(channels))):
+            return []
+        problem = f'joints: channels {channels} are not 0 to {len(channels) - 1}'
+        for channel in sorted(set(channels)):
+            users = [joint.name for joint in self.joints if joint.channel == channel]
+            if len(users) > 1:
+                problem += f'; {channel} is that of {" and ".join(users)}'
+        return [problem]
 
     def _unit_problems(self) -> list[str]:
         if len({joint.is_linear for joint in self.joints}) > 1:

@@ -73,8 +73,6 @@ class TopicDriver:
             raise Refused(str(state))
         target = self.validator.ordered(names, positions)
         self._check_range(target)
-        if state is MachineState.HOLDING:
-            self.validator.restart()
         self.validator.take(target, stamp, now + self._epoch, self.joints)
         self._command_due, self.is_followed = now + COMMAND_DEADLINE, True
         if self.is_simulated:

@@ -4,9 +4,10 @@ Machines whose joints alone show that leg lengths never fix the pose are rejecte
 """
 
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from hexapod_control.leg_jacobian import leg_jacobian, smallest_singular_value
 from manipulator import rotation as so3
@@ -22,6 +23,11 @@ SixPoints: TypeAlias = tuple[Triple, Triple, Triple, Triple, Triple, Triple]
 Range: TypeAlias = tuple[float, float]
 SixRanges: TypeAlias = tuple[Range, Range, Range, Range, Range, Range]
 VERTICAL_TANGENT = 0.999
+SQUARE = float(np.radians(1.0))
+"""How far from a right angle a crank's axis and tangent may be: numbers in files are rounded."""
+
+LEAST_DIRECTION = 1e-9
+VERTICAL_PLANES = frozen(np.zeros((LEGS, 3)))
 
 CRANK_LENGTH = "from a crank's axis to its rod end; one number for all, or six"
 ROD_LENGTH = 'between the joints of a rod; one number for all, or six'
@@ -47,7 +53,7 @@ class AtHome:
         return Pose.from_xyz_rpy([*self.home_xy, height], self.home_rpy)
 
 
-def at_home(xy_mm: tuple[float, float], rpy_deg: Triple) -> dict[str, Array]:
+def at_home(xy_mm: tuple[float, float], rpy_deg: Triple) -> dict[str, Any]:
     """The fields of `AtHome`, by the keys."""
     return {
         'home_xy': frozen(1e-3 * np.array(xy_mm)),
@@ -59,9 +65,11 @@ def at_home(xy_mm: tuple[float, float], rpy_deg: Triple) -> dict[str, Array]:
 class RotaryGeometry(AtHome):
     """Six cranks and rods in metres; see docs/kinematics.md, section 1.
 
-    Crank i turns about crank_centres[i] (base frame) in the plane of tangents[i] and ups[i]; its
-    angle counts from the tangent towards up. Its rod ends at platform_points[i] (platform frame).
-    normals = tangents × ups. home_height is the platform's height at home, see `AtHome`.
+    Crank i turns by the right hand about normals[i] through crank_centres[i] (base frame); its
+    angle counts from tangents[i] towards ups[i] = normals[i] × tangents[i]. Its rod ends at
+    platform_points[i] (platform frame). By default the plane of each crank is the vertical one
+    through its tangent, with ups as far up as it allows. home_height is the platform's height at
+    home, see `AtHome`. ConfigError names directions that are none, or not square.
     """
 
     crank_centres: Array
@@ -70,8 +78,8 @@ class RotaryGeometry(AtHome):
     crank_lengths: Array
     rod_lengths: Array
     home_height: float
+    normals: Array = field(default_factory=lambda: VERTICAL_PLANES)
     ups: Array = field(init=False)
-    normals: Array = field(init=False)
 
     @property
     def home(self) -> Pose:
@@ -79,22 +87,62 @@ class RotaryGeometry(AtHome):
         return self.home_at(self.home_height)
 
     def __post_init__(self) -> None:
-        """Makes the tangents unit vectors and up what of z is square to them."""
+        """Makes directions unit vectors, and tangents exactly square to the axes."""
         for name in ('crank_centres', 'platform_points'):
             object.__setattr__(self, name, frozen(getattr(self, name)))
         for name in ('crank_lengths', 'rod_lengths'):
             lengths = np.broadcast_to(getattr(self, name), (LEGS,))
             object.__setattr__(self, name, frozen(lengths))
-        tangents = _unit(np.asarray(self.tangents, dtype=np.float64), 'crank tangent')
-        for leg, slope in enumerate(tangents[:, 2], start=1):
-            if abs(slope) > VERTICAL_TANGENT:
-                raise ConfigError(
-                    [f'leg {leg}: crank tangent is vertical, the plane is undefined']
-                )
-        ups = _unit(np.array([0.0, 0.0, 1.0]) - tangents[:, 2:] * tangents, 'up')
+        tangents = unit_vectors(self.tangents, 'crank_tangents')
+        if np.any(self.normals):
+            normals = unit_vectors(self.normals, 'crank_axes')
+            _check_square(tangents, normals)
+            along = (tangents * normals).sum(axis=1, keepdims=True)
+            tangents = unit_vectors(tangents - along * normals, 'crank_tangents')
+        else:
+            _check_not_vertical(tangents)
+            normals = unit_vectors(np.cross(tangents, [0.0, 0.0, 1.0]), 'crank_axes')
         object.__setattr__(self, 'tangents', frozen(tangents))
-        object.__setattr__(self, 'ups', frozen(ups))
-        object.__setattr__(self, 'normals', frozen(np.cross(tangents, ups)))
+        object.__setattr__(self, 'ups', frozen(np.cross(normals, tangents)))
+        object.__setattr__(self, 'normals', frozen(normals))
+
+
+def unit_vectors(vectors: ArrayLike, key: str) -> Array:
+    """Directions (6, 3) at length 1; ConfigError names, by `key`, those without a direction."""
+    given = np.asarray(vectors, dtype=np.float64)
+    lengths = np.sqrt((given * given).sum(axis=1, keepdims=True))
+    problems = [
+        f'leg {leg}: {key}[{leg - 1}] has no direction'
+        for leg, length in enumerate(lengths.ravel().tolist(), start=1)
+        if not length >= LEAST_DIRECTION
+    ]
+    if problems:
+        raise ConfigError(problems)
+    unit: Array = given / lengths
+    return unit
+
+
+def _check_square(tangents: Array, normals: Array) -> None:
+    angles = np.arccos(np.clip((tangents * normals).sum(axis=1), -1.0, 1.0))
+    problems = [
+        f'leg {leg}: crank_axes[{leg - 1}] is at {np.degrees(angle):.1f}° to its '
+        f'crank_tangents[{leg - 1}], needs 90° ± {np.degrees(SQUARE):g}°'
+        for leg, angle in enumerate(angles.tolist(), start=1)
+        if abs(angle - np.pi / 2) > SQUARE
+    ]
+    if problems:
+        raise ConfigError(problems)
+
+
+def _check_not_vertical(tangents: Array) -> None:
+    problems = [
+        f'leg {leg}: crank_tangents[{leg - 1}] is vertical, so the plane of the crank needs '
+        'crank_axes'
+        for leg, slope in enumerate(tangents[:, 2].tolist(), start=1)
+        if abs(slope) > VERTICAL_TANGENT
+    ]
+    if problems:
+        raise ConfigError(problems)
 
 
 @dataclass(frozen=True)
@@ -119,15 +167,19 @@ class HexagonConfig:
     def geometry(self) -> RotaryGeometry:
         """The joints by Prokopovich 2019, eqs (5) and (6), in closed form.
 
-        Leg i stands at (i − 1)·60°; even legs mirror the odd ones (σ = −1, +1, −1 …).
+        Leg i stands at (i − 1)·60°; even legs mirror the odd ones (σ = −1, +1, −1 …). A platform
+        that hangs is that machine upside down, with the same crank angles.
         """
         sigma = np.array([-1.0, 1.0] * 3)
         zero, one = np.zeros(LEGS), np.ones(LEGS)
         outer = (self.body_radius_mm + self.crank_offset_mm) * one
         inner = (self.body_radius_mm - self.joint_inset_mm) * one
+        tangents = _around(zero, -sigma, zero)
+        up = np.copysign([0.0, 0.0, 1.0], self.home_height_mm)
         return RotaryGeometry(
             crank_centres=_around(outer, sigma * self.crank_shift_mm, zero) * 1e-3,
-            tangents=_around(zero, -sigma, zero),
+            tangents=tangents,
+            normals=np.cross(tangents, up),
             platform_points=_around(inner, -sigma * self.joint_shift_mm, zero) * 1e-3,
             crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
@@ -140,7 +192,9 @@ class HexagonConfig:
 class JointsConfig:
     """The `geometry` section by coordinates, in millimetres: a machine as it was measured.
 
-    crank_tangents (no unit, any length) point to where the crank angle is 0.
+    crank_tangents (no unit, any length) point to where the crank angle is 0. crank_axes (likewise)
+    are what the cranks turn about, by the right hand; without them every crank turns in the
+    vertical plane of its tangent, which is 0, from there upwards.
     """
 
     crank_centres_mm: SixPoints = quantity(
@@ -155,9 +209,16 @@ class JointsConfig:
     home_height_mm: float = quantity(*PLACE_MM, HOME_HEIGHT)
     home_xy_mm: Range = quantity(*PLACE_MM, HOME_XY, default=ORIGIN)
     home_rpy_deg: Triple = quantity(*TURN_DEG, HOME_RPY, default=LEVEL)
+    crank_axes: SixPoints | None = quantity(
+        -1000,
+        1000,
+        'about which each crank turns by the right hand, base frame, of any length; without them '
+        'every crank turns in the vertical plane of its tangent',
+        default=None,
+    )
 
     def geometry(self) -> RotaryGeometry:
-        """The same joints in metres; ConfigError where a tangent is zero or vertical."""
+        """The same joints in metres; ConfigError as `RotaryGeometry`."""
         return RotaryGeometry(
             crank_centres=np.array(self.crank_centres_mm) * 1e-3,
             tangents=np.array(self.crank_tangents),
@@ -165,8 +226,14 @@ class JointsConfig:
             crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,
             home_height=self.home_height_mm * 1e-3,
+            normals=self._normals(),
             **at_home(self.home_xy_mm, self.home_rpy_deg),
         )
+
+    def _normals(self) -> Array:
+        if self.crank_axes is None:
+            return VERTICAL_PLANES
+        return unit_vectors(self.crank_axes, 'crank_axes')
 
 
 def _around(radial: Array, along: Array, height: Array) -> Array:
@@ -174,15 +241,6 @@ def _around(radial: Array, along: Array, height: Array) -> Array:
     turn = np.arange(LEGS) * np.pi / 3
     cosine, sine = np.cos(turn), np.sin(turn)
     return np.stack([cosine * radial - sine * along, sine * radial + cosine * along, height], 1)
-
-
-def _unit(vectors: Array, name: str) -> Array:
-    lengths = np.sqrt((vectors * vectors).sum(axis=1))
-    for leg, length in enumerate(lengths, start=1):
-        if length < 1e-9:
-            raise ConfigError([f'leg {leg}: {name} has no direction'])
-    unit: Array = vectors / lengths[:, None]
-    return unit
 
 
 SAMPLES = 24

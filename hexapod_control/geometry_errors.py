@@ -11,7 +11,14 @@ from manipulator.analysis.accuracy import Spread, linear_law, spread_of
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 
-TOLERANT = ('crank_centres', 'base_points', 'platform_points', 'crank_lengths', 'rod_lengths')
+TOLERANT = (
+    'crank_centres',
+    'base_points',
+    'rail_points',
+    'platform_points',
+    'crank_lengths',
+    'rod_lengths',
+)
 STEP = 1e-6
 
 
@@ -19,7 +26,7 @@ STEP = 1e-6
 class GeometryErrors:
     """Every coordinate of a joint and every length off by a normal error, `deviation` (m) each.
 
-    All are independent; the directions of the cranks are taken as exact.
+    All are independent; the directions of cranks and rails are taken as exact.
     """
 
     deviation: float

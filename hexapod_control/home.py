@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from hexapod_control.rails import RailPlatform
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.limits.wording import degrees_in_words, in_words
 from manipulator.machine import Machine
@@ -10,7 +11,7 @@ PAGE = 'docs/machine-files.md, Cranks bent the other way'
 
 
 def home_problems(machine: Machine, has_tangents: bool = True) -> list[str]:
-    """One sentence for each limit that home is beyond, and one for cranks bent the other way.
+    """One sentence for each limit that home is beyond, and what to write for the other bend.
 
     has_tangents: the file has the key crank_tangents.
     """
@@ -18,9 +19,24 @@ def home_problems(machine: Machine, has_tangents: bool = True) -> list[str]:
     home = kinematics.home
     found = machine.constraints.violations(home, kinematics.inverse(home))
     problems = [f'limits: home has {words}' for words in in_words(found)]
-    if isinstance(kinematics, RotaryHexapod) and problems:
+    if isinstance(kinematics, RotaryHexapod) and len({v.quantity for v in found}) == 1:
         problems[0] += _other_bend(machine, kinematics, has_tangents)
+    if isinstance(kinematics, RailPlatform) and problems:
+        problems[0] += _other_side(machine, kinematics)
     return problems
+
+
+def _other_side(machine: Machine, kinematics: RailPlatform) -> str:
+    """What to write for carriages that are out of range, and in it on their joints' other side."""
+    low, high = machine.joint_ranges
+    joints, other = kinematics.legs.branches(kinematics.home)
+    is_out = (joints < low) | (joints > high)
+    if not is_out.any() or not ((other >= low) & (other <= high))[is_out].all():
+        return ''
+    sides = kinematics.geometry.sides * np.where(is_out, -1.0, 1.0)
+    words = ', '.join('behind' if side > 0.0 else 'ahead' for side in sides)
+    places = ', '.join(f'{1e3 * place:.6g}' for place in other[is_out])
+    return f"; on their joints' other side they are at {places} mm: write carriages: [{words}]"
 
 
 def _other_bend(machine: Machine, kinematics: RotaryHexapod, has_tangents: bool) -> str:
@@ -31,9 +47,12 @@ def _other_bend(machine: Machine, kinematics: RotaryHexapod, has_tangents: bool)
     is_other = ((joints < low) | (joints > high)) & (other >= low) & (other <= high)
     if not is_other.all():
         return ''
-    ends = ', '.join(f'{180.0 - end:.6g}' for end in np.degrees([high[0], low[0]]))
+    turned = 180.0 - np.degrees(np.stack([high, low], axis=1))
+    pairs = [f'[{first:.6g}, {last:.6g}]' for first, last in turned]
+    ends = pairs[0] if len(set(pairs)) == 1 else f'[{", ".join(pairs)}]'
     write = (
-        f'negate the crank_tangents and count the angles from there: crank_range_deg: [{ends}], '
+        'negate the crank_tangents (and crank_axes, if there are any) and count the angles '
+        f'from there: crank_range_deg: {ends}, '
         'centre_deg and park_deg 180 minus what they are, and each sign the other'
     )
     if not has_tangents:

@@ -1,4 +1,4 @@
-"""The `limits` sections of machine files: of crank hexapods and of linear platforms.
+"""The `limits` sections of machine files: of each kind of parallel platform.
 
 Passive joints are limited as docs/kinematics.md, section 6, says: a rod end turns freely about
 its bolt, and tilts only as far as its housing lets it.
@@ -22,6 +22,7 @@ from hexapod_control.platform_limits import (
     TILT,
     PlatformLimits,
 )
+from hexapod_control.rails import RailPlatform
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.arrays import Array, frozen
 from manipulator.config import PLACE_MM, SIZE_MM, quantity
@@ -52,7 +53,7 @@ class PlatformLimit:
         return self.group.limited_values(pose, joints)[..., self.columns]
 
 
-def rod_closure(kinematics: RotaryHexapod, is_surplus: bool = False) -> PlatformLimit:
+def rod_closure(kinematics: ParallelPlatform, is_surplus: bool = False) -> PlatformLimit:
     """How much too short (or too long) each rod is to close its leg, in metres: at most 0.
 
     Depends on the pose alone and so has a value where the joints have none.
@@ -75,7 +76,7 @@ def platform_joint_swing(kinematics: ParallelPlatform, largest: float) -> Platfo
 
 
 def base_joint_swing(kinematics: ParallelPlatform, largest: float) -> PlatformLimit:
-    """A linear leg's angle (rad) to its direction at home, as the base sees it: a cone."""
+    """The rod's angle (rad) to its direction at home, as the base sees it: a cone."""
     return _each_leg(kinematics, LEANING, 'base joint swing', 'rad', -np.inf, largest)
 
 
@@ -201,6 +202,51 @@ class LinearLimits:
             (
                 JointRange(
                     low, high, LEG_NAMES, 'leg length', 'm', group=kinematics.limits, columns=JOINT
+                ),
+                base_joint_swing(kinematics, cone),
+                platform_joint_swing(kinematics, cone),
+                singularity_margin(kinematics, self.singularity_margin),
+            )
+        )
+
+
+@dataclass(frozen=True)
+class RailLimits:
+    """What a platform on rails may not exceed, in the units of its machine file.
+
+    The rail range is of the carriages' positions: one for all, or one for each. The passive cone
+    is how far a strut may swing, at either end, from its direction at home.
+    """
+
+    rail_range_mm: Range | SixRanges = quantity(
+        *PLACE_MM, "of every carriage's position, or of each"
+    )
+    passive_cone_deg: float = quantity(
+        1e-3, 180, "a strut's swing from its direction at home, at either end"
+    )
+    singularity_margin: float = quantity(1e-3, 2, SINGULARITY_MARGIN)
+    characteristic_length_mm: float = quantity(*SIZE_MM, CHARACTERISTIC_LENGTH)
+
+    def __post_init__(self) -> None:
+        """Raises ConfigError for ranges that are empty."""
+        _check_ranges('rail_range_mm', self.rail_range_mm)
+
+    @property
+    def rail_ranges(self) -> tuple[Array, Array]:
+        """Where each carriage's range begins and ends, (6,) each, in metres."""
+        low, high = 1e-3 * _of_legs(self.rail_range_mm)
+        return low, high
+
+    def constraints(self, kinematics: RailPlatform) -> Constraints:
+        """The limits, cheapest first."""
+        low, high = self.rail_ranges
+        cone, group = float(np.radians(self.passive_cone_deg)), kinematics.limits
+        names, columns = LEG_NAMES, JOINT
+        return Constraints(
+            (
+                rod_closure(kinematics),
+                JointRange(
+                    low, high, names, 'carriage position', 'm', group=group, columns=columns
                 ),
                 base_joint_swing(kinematics, cone),
                 platform_joint_swing(kinematics, cone),

@@ -4,10 +4,13 @@ import numpy as np
 
 from hexapod_control.geometry import LEGS, HexagonConfig, JointsConfig, check_architecture
 from hexapod_control.home import home_problems
-from hexapod_control.leg_limits import LinearLimits, RotaryLimits
+from hexapod_control.leg_limits import LinearLimits, RailLimits, RotaryLimits
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.linear_geometry import PlatesConfig, PointsConfig
+from hexapod_control.parallel_platform import ParallelPlatform
+from hexapod_control.rails import RailPlatform, RailsConfig
 from hexapod_control.rotary import RotaryHexapod
+from manipulator.arrays import Array
 from manipulator.errors import ConfigError
 from manipulator.formatting import shown
 from manipulator.kinematics import Kinematics
@@ -17,8 +20,8 @@ from manipulator.motion_limits import MotionLimits
 from manipulator.teleop.platform_jogger import PlatformJogger
 
 Parts = tuple[Kinematics, Constraints]
-CRANK_SETTINGS = 8
-"""How many settings of the cranks must all be singular for the architecture to be so."""
+SETTINGS = 8
+"""How many settings of the joints must all be singular for the architecture to be so."""
 
 
 def hexapod(machine_file: MachineFile) -> Machine:
@@ -42,15 +45,13 @@ def platform(machine_file: MachineFile) -> Machine:
 
 def rotary_hexapod(geometry: JointsConfig | HexagonConfig, limits: RotaryLimits) -> Parts:
     """A crank platform; its geometry by the paper's parameters, or by joint coordinates."""
-    joints = geometry.geometry()
     kinematics = RotaryHexapod(
-        joints,
+        geometry.geometry(),
         limits.characteristic_length_mm * 1e-3,
         limits.singularity_margin,
         limits.crank_middles,
     )
-    cranks = np.random.default_rng(1).uniform(*limits.crank_ranges, (CRANK_SETTINGS, LEGS))
-    check_architecture(kinematics.crank_tips(cranks), joints.platform_points)
+    _check_architecture(kinematics, limits.crank_ranges)
     return kinematics, limits.constraints(kinematics)
 
 
@@ -62,7 +63,27 @@ def linear_hexapod(geometry: PointsConfig | PlatesConfig, limits: LinearLimits) 
     return kinematics, limits.constraints(kinematics)
 
 
+def rail_hexapod(geometry: RailsConfig, limits: RailLimits) -> Parts:
+    """A platform on struts whose lower ends slide on rails."""
+    kinematics = RailPlatform(
+        geometry.geometry(),
+        limits.characteristic_length_mm * 1e-3,
+        limits.singularity_margin,
+        limits.rail_ranges,
+    )
+    _check_architecture(kinematics, limits.rail_ranges)
+    return kinematics, limits.constraints(kinematics)
+
+
+def _check_architecture(kinematics: ParallelPlatform, ranges: tuple[Array, Array]) -> None:
+    """As `check_architecture`, with the joints anywhere in their ranges."""
+    joints = np.random.default_rng(1).uniform(*ranges, (SETTINGS, LEGS))
+    points = kinematics.geometry.platform_points
+    check_architecture(kinematics.base_points(joints), points)
+
+
 KINDS = {
     'rotary_hexapod': Kind(HexagonConfig | JointsConfig, RotaryLimits, rotary_hexapod),
     'linear_hexapod': Kind(PlatesConfig | PointsConfig, LinearLimits, linear_hexapod),
+    'rail_hexapod': Kind(RailsConfig, RailLimits, rail_hexapod),
 }

@@ -1,12 +1,16 @@
 """Which poses one set of joints can mean: every assembly mode, judged by the machine's limits."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 
 from hexapod_control.assembly_modes import modes_of
+from hexapod_control.linear import LinearPlatform
 from hexapod_control.parallel_platform import ParallelPlatform
+from hexapod_control.stack_kinematics import StackKinematics
 from manipulator.arrays import Array
+from manipulator.errors import NoSolution
 from manipulator.framed_machine import FramedKinematics
 from manipulator.kinematics import Kinematics
 from manipulator.limits.limit import Violation
@@ -50,7 +54,7 @@ class Modes:
 def all_modes(machine: Machine, joints: Array) -> Modes:
     """Every pose with joints (6,); a serial machine's joints have but one.
 
-    Raises NoSolution for joints that are not six finite numbers, or fix no pose.
+    Raises NoSolution for joints that are not six finite numbers, or fix no pose, and for stacks.
     """
     poses, is_complete = _poses(machine.kinematics, joints)
     modes = (_judged(machine, pose, joints, at_home) for pose, at_home in poses)
@@ -62,11 +66,30 @@ def _poses(kinematics: Kinematics, joints: Array) -> tuple[list[tuple[Pose, bool
     if isinstance(kinematics, FramedKinematics):
         poses, is_complete = _poses(kinematics.inner, joints)
         return [(kinematics.frames.pivot(pose), side) for pose, side in poses], is_complete
+    if isinstance(kinematics, StackKinematics):
+        raise NoSolution('a stack has those of its sections, combined')
     if not isinstance(kinematics, ParallelPlatform):
         return [(kinematics.forward(joints).pose, True)], True
     found = modes_of(kinematics, joints)
-    sides = [bool(kinematics.is_as_at_home(pose, joints)) for pose in found.poses]
-    return list(zip(found.poses, sides, strict=True)), found.is_complete
+    modes, is_complete = found.poses, found.is_complete
+    if isinstance(kinematics, LinearPlatform) and kinematics.geometry.screw_lead != 0.0:
+        modes = _with_screws(kinematics, joints, modes)
+        is_complete = is_complete and len(modes) == len(found.poses)
+    sides = [bool(kinematics.is_as_at_home(pose, joints)) for pose in modes]
+    return list(zip(modes, sides, strict=True)), is_complete
+
+
+def _with_screws(
+    kinematics: LinearPlatform, joints: Array, poses: tuple[Pose, ...]
+) -> tuple[Pose, ...]:
+    """The modes near those of legs as long as their joints, where Newton's method finds others."""
+    found: list[Pose] = []
+    for pose in poses:
+        with suppress(NoSolution):
+            there = kinematics.forward(joints, pose).pose
+            if all(np.abs(there.twist_to(other)).max() > SAME for other in found):
+                found.append(there)
+    return tuple(found)
 
 
 def _judged(machine: Machine, pose: Pose, joints: Array, is_on_home_side: bool) -> Mode:

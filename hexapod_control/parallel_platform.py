@@ -1,28 +1,34 @@
-"""What crank and linear platforms share: six legs that end on one platform."""
+"""What all parallel platforms share: six legs of one kind that end on one platform."""
 
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import Protocol
+from itertools import product
+from typing import ClassVar, Protocol
 
 import numpy as np
 
-from hexapod_control.forward import rules, solution
+from hexapod_control.forward import End, rules, solution
 from hexapod_control.geometry import LEGS
 from hexapod_control.leg_jacobian import (
     leg_jacobian,
     smallest_singular_value,
     units_and_jacobian,
 )
-from hexapod_control.platform_limits import PlatformLimits
+from hexapod_control.legs import Legs
+from hexapod_control.platform_limits import SHORTFALL, SURPLUS, VALUES, PlatformLimits
 from manipulator import _kernel
 from manipulator.arrays import Array, Mask, frozen, stretched
-from manipulator.errors import ConfigError, NoSolution, Unreachable
+from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
+from manipulator.formatting import length
 from manipulator.kinematics import ForwardSolution, first_jump
 from manipulator.links import PLATFORM, Link, Stroke, outline
 from manipulator.pose import Pose
 
 SINGULAR = 1e-6
+
+ENDLESS = 1e6
+"""Metres of a longest rod of which there is none: NEVER of kernel/legs.h is more."""
 
 SAME = 0.02
 """Difference of joints (rad or m) that is a measurement's, not another branch's."""
@@ -46,7 +52,7 @@ class LegGeometry(Protocol):
 class ParallelPlatform(ABC):
     """Six legs, each a straight rod from a base point to the platform: docs/kinematics.md.
 
-    A kind of legs says where base points are and how long rods are for given joints. In
+    A kind of legs says where base points are and how long rods are for given joints: `_legs`. In
     J·twist = W·q̇, J is the leg Jacobian and W the diagonal of the joints' gains.
     characteristic_length (metres) scales rotations in σmin; a cold forward start is trusted
     where σmin is at least trusted_margin. Construction raises ConfigError when the legs do not
@@ -56,7 +62,7 @@ class ParallelPlatform(ABC):
     geometry: LegGeometry
     characteristic_length: float
     trusted_margin: float
-    legs: Array = field(init=False)
+    legs: Legs = field(init=False)
     parameters: Array = field(init=False)
     limits: PlatformLimits = field(init=False)
     home: Pose = field(init=False)
@@ -64,12 +70,12 @@ class ParallelPlatform(ABC):
     cold: Array = field(init=False)
     home_side: float = field(init=False)
     home_bends: Array = field(init=False)
+    powerless: ClassVar[str] = ''
 
     def __post_init__(self) -> None:
         """Finds home, the sign of det J there, and to which side each joint's gain is.
 
-        legs and parameters are the machine as the kernel takes it: crank_legs and platform of
-        kernel/crank.h and platform.h.
+        parameters are the machine as the kernel takes it: platform of kernel/platform.h.
         """
         home = self.geometry.home
         self._put('home', home)
@@ -90,16 +96,16 @@ class ParallelPlatform(ABC):
         object.__setattr__(self, name, value)
 
     def _lay_out(self, home_rods: Array, home_gains: Array) -> None:
-        legs, length = self._legs(), [self.characteristic_length]
+        legs, size = self._legs(), [self.characteristic_length]
         at_home = (home_rods.T.ravel(), home_gains, self.home.rotation.ravel())
-        parameters = frozen(np.concatenate([legs, length, *at_home]))
+        parameters = frozen(np.concatenate([legs.numbers, size, *at_home]))
         self._put('parameters', parameters)
-        self._put('legs', parameters[: len(legs)])
+        self._put('legs', legs)
         self._put('limits', PlatformLimits(parameters))
 
     @abstractmethod
-    def _legs(self) -> Array:
-        """The struct crank_legs of kernel/crank.h."""
+    def _legs(self) -> Legs:
+        """By `Legs.of`."""
 
     @property
     @abstractmethod
@@ -116,13 +122,42 @@ class ParallelPlatform(ABC):
         """Each leg has its own closed form."""
         return True
 
-    @abstractmethod
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
-        """Joints (..., 6); see `Kinematics`."""
+        """Joints (..., 6); see `Kinematics`. As bent at home unless `near` is nearer otherwise."""
+        joints, open_legs = self.legs.inverse(pose, near)
+        if open_legs:
+            self._explain(pose, joints, near)
+        return joints
 
-    @abstractmethod
     def inverse_or_nan(self, pose: Pose, near: Array | None = None) -> Array:
-        """As `inverse`, with NaN for each leg that does not close."""
+        """As `inverse`, with NaN for each joint whose leg does not close."""
+        return self.legs.inverse(pose, near)[0]
+
+    def inverse_all(self, pose: Pose) -> Array:
+        """Every way to bend the legs (64, 6) for one pose, each in either; as at home first.
+
+        Raises Unreachable where a leg does not close.
+        """
+        self.inverse(pose)
+        is_as_home = np.array(list(product((True, False), repeat=LEGS)))
+        return np.where(is_as_home, *self.legs.branches(pose))
+
+    def _explain(self, pose: Pose, joints: Array, near: Array | None) -> None:
+        """Raises what made a joint NaN: an unusable `near`, or the leg that misses the most."""
+        if near is not None and not np.isfinite(near).all():
+            raise InvalidInput('the joints to stay near are not finite')
+        is_open = np.isnan(joints).any(axis=-1)
+        values = self.limits.limited_values(pose[is_open], joints[is_open]).reshape(-1, VALUES)
+        lack, surplus = values[:, SHORTFALL], values[:, SURPLUS]
+        row, leg = np.unravel_index(np.argmax(np.maximum(lack, surplus)), lack.shape)
+        rod, is_short = self.legs.rods[leg], lack[row, leg] > surplus[row, leg]
+        miss, longest = max(lack[row, leg], surplus[row, leg]), rod - surplus[row, leg]
+        most = 'or more' if longest > ENDLESS else f'to {length(longest, 5)}'
+        raise Unreachable(
+            f'leg {leg + 1}: rod too {"short" if is_short else "long"} by {length(miss, 3)} '
+            f'({length(rod, 5)}, needs {length(rod + lack[row, leg], 5)} {most})',
+            int(leg) + 1,
+        )
 
     def inverse_along(self, poses: Pose, near: Array) -> Array:
         """See `Kinematics`: on home's branch where `near` is on it and all of it is continuous.
@@ -143,22 +178,22 @@ class ParallelPlatform(ABC):
 
     def base_points(self, joints: Array) -> Array:
         """Where the rods begin, (..., 6, 3), base frame, metres; NaN for NaN joints."""
-        given = stretched(joints, (*np.shape(joints)[:-1], LEGS))
-        points = np.empty((*given.shape, 3))
-        _kernel.base_points(self.legs, given, points)
-        return points
+        return self.legs.base_points(joints)
 
-    @abstractmethod
     def rod_lengths(self, joints: Array) -> Array:
-        """How long the rods are, (..., 6), metres."""
+        """How long the rods are, (6,), metres: their own, whatever the joints."""
+        return self.legs.rods
 
-    @abstractmethod
     def joint_gains(self, pose: Pose, joints: Array) -> Array:
-        """Gains w (..., 6): how fast each rod's length follows its joint, m/rad or m/m."""
+        """Gains w (..., 6): how fast each rod's length follows its joint, m/rad or m/m.
 
-    @abstractmethod
+        0 where the joint is powerless: an inverse singularity.
+        """
+        return self.legs.gains(joints, self.unit_rods(pose, joints))
+
     def leverage(self, pose: Pose, joints: Array) -> Array:
         """The inverse singularity's margin (..., 6), 0 to 1: |gain| by the most it can be."""
+        return np.asarray(np.abs(self.joint_gains(pose, joints)) / self.legs.most_gains)
 
     def forward_along(self, joints: Array, near: Pose) -> Pose:
         """See `Kinematics`."""
@@ -185,6 +220,20 @@ class ParallelPlatform(ABC):
         )  # fmt: skip
         return solution(position, rotation, report, margin)
 
+    def forward_or_nan(self, joints: Array, near: Pose) -> Pose:
+        """As `forward` for joints (..., 6), from `near` (...); NaN for no pose."""
+        shape = np.broadcast_shapes(np.shape(joints)[:-1], near.position.shape[:-1])
+        position, rotation = np.empty((*shape, 3)), np.empty((*shape, 3, 3))
+        report = np.empty((*shape, 5))
+        _kernel.platform_forward(
+            self.parameters, self.warm, stretched(joints, (*shape, LEGS)),
+            stretched(near.position, (*shape, 3)), stretched(near.rotation, (*shape, 3, 3)),
+            position, rotation, report,
+        )  # fmt: skip
+        missed = report[..., 0] != End.FOUND
+        position[missed], rotation[missed] = np.nan, np.nan
+        return Pose.unchecked(position, rotation)
+
     def is_as_at_home(self, pose: Pose, joints: Array) -> Mask:
         """Which configurations (...) are on home's side of every singularity, of both types."""
         side = np.linalg.det(self.leg_jacobian(pose, joints)) * self.home_side > 0.0
@@ -204,7 +253,7 @@ class ParallelPlatform(ABC):
     def joint_rates(self, pose: Pose, joints: Array) -> Array:
         """W⁻¹J (..., 6, 6): joint rates of a unit twist; NoSolution at an inverse singularity."""
         if not (self.leverage(pose, joints) > SINGULAR).all():
-            raise NoSolution('inverse singularity: a crank and its rod are in line')
+            raise NoSolution(f'inverse singularity: {self.powerless}')
         result: Array = self.leg_jacobian(pose, joints) / self.joint_gains(pose, joints)[..., None]
         return result
 

@@ -18,6 +18,7 @@ from manipulator.arrays import Array
 from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError
 from manipulator.formatting import shortened
+from manipulator.rotation import EXACTLY, to_rpy
 
 ASSUMED_SPEED, ASSUMED_RANGE, ASSUMED_TORQUE = 90.0, 180.0, 50.0
 """deg/s, degrees either way, N·m: of joints whose file gives none."""
@@ -27,8 +28,8 @@ CREDIBLE_SPEED, CREDIBLE_TORQUE = (0.1, 5000.0), (0.001, 10_000.0)
 """deg/s and N·m; others were filled in for form's sake."""
 ONSET = 0.08
 """The singular value below which a posture is near to singular."""
-SAFE = 2.5 * ONSET
-"""That of a posture that will do for home."""
+WELL = 0.6
+"""Of the largest one, that of a posture that will do for home."""
 BENDS = tuple(math.radians(angle) for angle in (0, 30, -30, 60, -60, 90, -90))
 """Angles of joints 2 to 5 in postures that are tried as home."""
 LENGTH_SHARE, RADIUS_SHARE = 0.25, 0.06
@@ -91,12 +92,15 @@ def _geometry(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
     for joint, axis, point in zip(arm.joints, chain.axes, chain.points, strict=True):
         yield f'    - {{axis: {_list(axis)}, point_mm: {_list(1e3 * point)}}}  # {joint.name}'
     yield f'  tool_position_mm: {_list(1e3 * chain.home.position)}'
-    yield f'  tool_rpy_deg: {_list(np.degrees(chain.home.rpy))}'
+    rpy = to_rpy(chain.home.rotation, EXACTLY)
+    yield f'  tool_rpy_deg: {_list(np.degrees(rpy))}'
     if wishes.home_deg is not None:
         yield f'  home_deg: {_list(wishes.home_deg)}'
         return
-    home = np.degrees(home_of(arm, length))
-    yield f'  home_deg: {_list(np.round(home, 3))}  # assumed: not near a singular posture'
+    exact, (low, high) = np.degrees(home_of(arm, length)), np.degrees(_ends(arm))
+    rounded = np.round(exact, 3)
+    home = np.where((low <= rounded) & (rounded <= high), rounded, exact)
+    yield f'  home_deg: {_list(home)}  # assumed: not near a singular posture'
 
 
 def _limits(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
@@ -209,7 +213,7 @@ def _is_credible(value: float | None, bounds: tuple[float, float], is_angle: boo
 
 
 def home_of(arm: UrdfArm, length: float) -> Array:
-    """Joints (6,) in rad: of the postures tried, the nearest to zero that is not near singular.
+    """Joints (6,) in rad: of the postures tried, the nearest to zero far from singular ones.
 
     Of those whose tool and joints are above the base plane, where there are any; within ranges.
     """
@@ -220,12 +224,10 @@ def home_of(arm: UrdfArm, length: float) -> Array:
     postures = np.clip(rest + bends, low, high)
     sigma = arm.chain.sigma_min(postures, length)
     is_above = _lowest(arm.chain, postures) >= min(0.0, float(arm.chain.points[:, 2].min()))
-    for fitting in (is_above & (sigma >= SAFE), sigma >= SAFE):
-        if fitting.any():
-            nearest: Array = postures[fitting][np.abs(bends[fitting]).sum(axis=1).argmin()]
-            return nearest
-    best: Array = postures[sigma.argmax()]
-    return best
+    allowed = is_above if (sigma[is_above] >= ONSET).any() else np.ones_like(is_above)
+    fitting = allowed & (sigma >= WELL * sigma[allowed].max())
+    nearest: Array = postures[fitting][np.abs(bends[fitting]).sum(axis=1).argmin()]
+    return nearest
 
 
 def _lowest(chain: Chain, postures: Array) -> Array:

@@ -17,14 +17,15 @@ from typing import Any
 from arm_control import load as arms
 from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
 from hexapod_control import load as hexapods
-from hexarm.simulation.dynamics_config import SCHEMAS
+from hexapod_control import load_stack
+from hexarm.simulation.dynamics_config import SCHEMAS, StackDynamicsConfig
 from manipulator.config import forms_of, is_required
 from manipulator.frames import FramesConfig
 from manipulator.limits.task_space import TaskSpaceConfig
 from manipulator.machine import Kind, MachineFile
 from manipulator.motion_limits import MotionConfig
 
-KINDS: dict[str, Kind[Any]] = {**hexapods.KINDS, **arms.KINDS}
+KINDS: dict[str, Kind[Any]] = {**hexapods.KINDS, **arms.KINDS, 'stack': load_stack.KIND}
 OF_KINDS = ('geometry', 'limits', 'dynamics')
 BRIDGE: dict[str, Any] = {
     'servos': ServosConfig,
@@ -52,7 +53,7 @@ def sections_of(kind: str) -> dict[str, Any]:
     return {
         'geometry': room.geometry,
         'limits': room.limits,
-        'dynamics': SCHEMAS[kind],
+        'dynamics': SCHEMAS.get(kind, StackDynamicsConfig),
         **BRIDGE,
     }
 
@@ -109,11 +110,12 @@ def keys_of(schema: Any, place: str = '') -> Iterator[Key]:
 
 def tables() -> str:
     """The generated part of docs/machine-files.md."""
-    lines = ['## The file', '', *_table(MachineFile, is_flat=True)]
+    kinds = ', '.join(f'`{kind}`' for kind in KINDS)
+    lines = ['## The file', '', *_table(MachineFile, is_flat=True), f'Kinds: {kinds}.', '']
     for kind in KINDS:
         for name in OF_KINDS:
             schema = sections_of(kind)[name]
-            for form in forms_of(schema):
+            for form in filter(dataclasses.fields, forms_of(schema)):
                 lines += [f'### `{name}` of a `{kind}`{_form(form, schema)}', '', *_table(form)]
     others = {'frames': FramesConfig, 'task_space': TaskSpaceConfig}
     for name, schema in {'motion': MotionConfig, **BRIDGE, **others}.items():
@@ -129,7 +131,7 @@ def json_schema() -> dict[str, Any]:
         top['properties'][name] |= _schema(schema)
     kinds = []
     for kind in KINDS:
-        own = {name: _schema(sections_of(kind)[name]) for name in OF_KINDS}
+        own = {n: _schema(s) for n, s in sections_of(kind).items() if n in OF_KINDS}
         kinds.append(
             {
                 'if': {'properties': {'kind': {'const': kind}}, 'required': ['kind']},
@@ -145,7 +147,7 @@ def _table(schema: Any, is_flat: bool = False) -> list[str]:
     for key in keys_of(schema):
         if is_flat and '.' in key.place:
             continue
-        meaning = key.field.metadata['meaning']
+        meaning = re.sub(r'docs/(\S+\.md)', r'[\1](\1)', key.field.metadata['meaning'])
         cells = (f'`{key.place}`', key.kind, key.unit, key.range, key.default, meaning)
         rows.append(f'| {" | ".join(cells)} |')
     return [*rows, '']

@@ -1,10 +1,12 @@
 """What is doubtful in a valid machine file: a home on the other branch, odd pulses."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from bridge.calibration import COUNTS_PER_US, Calibration
+from hexapod_control.geometry import RotaryGeometry
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.arrays import Array, Mask
 from manipulator.formatting import length
@@ -12,7 +14,7 @@ from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Machine
 
 LEVEL, NEARLY_LEVEL, TILTED = np.radians(2.0), np.radians(10.0), np.radians(20.0)
-"""How far a crank is from level, in either direction, to count as such; and as tilted."""
+"""How far a crank or a tangent is from level, in either direction, to count as such; as tilted."""
 
 ASIDE, FAR, NEAR = 0.2, 0.5, 0.2
 """Distances from the middle of a joint's range, as shares of half the range."""
@@ -33,9 +35,12 @@ GEARED_US = 700.0
 """So far from its centre goes a pulse that fills what there is: a geared servo, or a winch's."""
 
 
-def warnings_of(machine: Machine, calibration: Calibration | None) -> list[str]:
-    """One sentence for each doubt about a machine without problems."""
-    found = [*_other_bend(machine), *_uneven_motion(machine)]
+def warnings_of(
+    machine: Machine, calibration: Calibration | None, geometry: Mapping[str, Any]
+) -> list[str]:
+    """One sentence for each doubt about a machine without problems; geometry is its section."""
+    found = [*_assumed_planes(machine, geometry), *_other_bend(machine)]
+    found += _uneven_motion(machine)
     if calibration is not None:
         found += _pulses(machine, calibration)
     return found
@@ -44,6 +49,22 @@ def warnings_of(machine: Machine, calibration: Calibration | None) -> list[str]:
 def joint_range(machine: Machine) -> JointRange | None:
     """The machine's limit of its joints' travel."""
     return next((x for x in machine.constraints.limits if isinstance(x, JointRange)), None)
+
+
+def _assumed_planes(machine: Machine, geometry: Mapping[str, Any]) -> Iterator[str]:
+    """Tangents that are not level, of cranks that turn in vertical planes for want of an axis."""
+    if 'crank_tangents' not in geometry or 'crank_axes' in geometry:
+        return
+    kinematics = machine.kinematics
+    if isinstance(kinematics, RotaryHexapod):
+        slopes = np.arcsin(kinematics.geometry.tangents[:, 2])
+        legs = np.flatnonzero(np.abs(slopes) > LEVEL)
+        if legs.size:
+            yield (
+                f'geometry.crank_tangents: {_names(kinematics.joint_names, legs.tolist())} at '
+                f'{_degrees(slopes[legs])} to level, and without crank_axes every crank turns in '
+                'the vertical plane of its tangent: if the planes are tilted, give crank_axes'
+            )
 
 
 def _other_bend(machine: Machine) -> Iterator[str]:
@@ -56,7 +77,7 @@ def _other_bend(machine: Machine) -> Iterator[str]:
         return
     bends = kinematics.inverse_all(kinematics.home)
     home, other = bends[0], bends[-1]
-    legs = np.flatnonzero(_is_doubtful(home, other, limit))
+    legs = np.flatnonzero(_is_doubtful(kinematics.geometry, home, other, limit))
     if legs.size:
         middles = np.unique((limit.low + limit.high)[legs] / 2)
         yield (
@@ -67,13 +88,16 @@ def _other_bend(machine: Machine) -> Iterator[str]:
         )
 
 
-def _is_doubtful(home: Array, other: Array, limit: JointRange) -> Mask:
+def _is_doubtful(geometry: RotaryGeometry, home: Array, other: Array, limit: JointRange) -> Mask:
     half, middle = (limit.high - limit.low) / 2, (limit.high + limit.low) / 2
     aside, other_aside = (np.abs(_wrapped(q - middle)) / half for q in (home, other))
-    slope = np.abs(np.arcsin(np.sin(other)))
+    tilt, slope = (
+        np.abs(np.arcsin(np.cos(q) * geometry.tangents[:, 2] + np.sin(q) * geometry.ups[:, 2]))
+        for q in (home, other)
+    )
     is_level = (slope < LEVEL) & (aside > ASIDE) | (slope < NEARLY_LEVEL) & (aside > FAR)
     is_central = (other_aside < NEAR) & (aside > FAR) & (2 * half <= WIDEST)
-    doubtful: Mask = (np.abs(np.arcsin(np.sin(home))) > TILTED) & (is_level | is_central)
+    doubtful: Mask = (aside <= 1.0) & (tilt > TILTED) & (is_level | is_central)
     return doubtful
 
 
@@ -100,7 +124,9 @@ def _pulses(machine: Machine, calibration: Calibration) -> Iterator[str]:
     scale = calibration.scale[order] / COUNTS_PER_US
     ends = centre_us + scale * (np.stack([limit.low, limit.high]) - calibration.centre[order])
     is_servo = (centre_us > PULSES_US[0]) & (centre_us < PULSES_US[1])
-    low, high = ends.min(axis=0), ends.max(axis=0)
+    # Pulses that leave pulse_range_us are a problem already.
+    own = (np.array(c)[order] / COUNTS_PER_US for c in (calibration.lowest, calibration.highest))
+    low, high = np.clip((ends.min(axis=0), ends.max(axis=0)), *own)
     beyond = is_servo & ((low < PULSES_US[0]) | (high > PULSES_US[1]))
     for joints in _alike(beyond, low, high):
         yield (

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -34,11 +35,23 @@ def _arm(machine_file: MachineFile) -> Machine:
     return arm(machine_file)
 
 
+def _stack(machine_file: MachineFile) -> Machine:
+    from hexapod_control.load_stack import stack  # noqa: PLC0415
+
+    return stack(machine_file)
+
+
 KINDS: dict[str, Callable[[MachineFile], Machine]] = {
     'rotary_hexapod': _hexapod,
     'linear_hexapod': _hexapod,
+    'rail_hexapod': _hexapod,
     'serial_arm': _arm,
+    'stack': _stack,
 }
+
+
+OF_A_SECTION = ('kind', 'geometry', 'limits', 'dynamics')
+"""What a stack's section takes of the machine file that it names."""
 
 
 def folders() -> list[Path]:
@@ -87,7 +100,61 @@ def saved_poses_file(name_or_path: str) -> Path:
 def read(name_or_path: str) -> MachineFile:
     """The sections of a machine file; ConfigError lists everything wrong at the top level."""
     path = find(name_or_path)
-    return build(MachineFile, parse_yaml(text_of(path), str(path)), source=str(path))
+    return build(MachineFile, content_of(path), source=str(path))
+
+
+def content_of(path: Path) -> dict[str, Any]:
+    """What a machine file holds, see `with_sections`."""
+    content = parse_yaml(text_of(path), str(path))
+    try:
+        return with_sections(content, path.parent)
+    except ConfigError as error:
+        raise ConfigError(error.problems, str(path)) from error
+
+
+def with_sections(content: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """A machine file's content; a stack's sections that name a machine hold what its file does.
+
+    Such a name is that of a shipped machine, or a path from the folder of the stack's file.
+    """
+    geometry = content.get('geometry')
+    if content.get('kind') != 'stack' or not isinstance(geometry, dict):
+        return content
+    sections = geometry.get('sections')
+    if not isinstance(sections, list):
+        return content
+    from hexapod_control.load_stack import check_count  # noqa: PLC0415
+
+    problems, there = [], []
+    try:
+        check_count(len(sections))
+    except ConfigError as error:
+        raise ConfigError([f'geometry.{p}' for p in error.problems]) from error
+    for i, section in enumerate(sections):
+        try:
+            there.append(_section(section, folder))
+        except ConfigError as error:
+            problems.append(f'geometry.sections[{i}].machine: {error}')
+    if problems:
+        raise ConfigError(problems)
+    return {**content, 'geometry': {**geometry, 'sections': there}}
+
+
+def _section(section: object, folder: Path) -> object:
+    """A section of a stack, with what the machine file that it names says of the platform."""
+    if not isinstance(section, dict) or 'machine' not in section:
+        return section
+    name = section['machine']
+    if not isinstance(name, str):
+        raise ConfigError([f'{shown(name)} is neither a name nor a path'])
+    own = sorted(set(section) & set(OF_A_SECTION))
+    if own:
+        problem = f'{shown(name)} gives {" and ".join(own)}, and so does this section'
+        raise ConfigError([problem])
+    is_path = '/' in name or name.endswith(('.yaml', '.yml'))
+    file = find(str(folder / name) if is_path else name)
+    content = parse_yaml(text_of(file), str(file))
+    return {**section, **{key: content[key] for key in OF_A_SECTION if key in content}}
 
 
 def family(name_or_path: str) -> str:

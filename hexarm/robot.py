@@ -4,12 +4,20 @@ Metres, radians, seconds. Poses are those of the platform, or of the tool, in th
 """
 
 import asyncio
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from hexarm.machines import load
 from hexarm.namespaces import NAMESPACE
 from hexarm.robot_client import PATIENCE, Progress, RobotClient
-from hexarm.robot_values import Limits, PoseLike, checked, moved_to, pose_from, poses_from
+from hexarm.robot_values import (
+    Limits,
+    PoseLike,
+    checked,
+    moved_to,
+    numbers_by_name,
+    pose_from,
+    poses_from,
+)
 from manipulator.analysis.reach import Reach, reach
 from manipulator.errors import InvalidInput
 from manipulator.formatting import shown
@@ -135,6 +143,21 @@ class Robot:
         if wait:
             self.wait(timeout)
 
+    def move_joints(
+        self,
+        joints: Mapping[str, float] | None = None,
+        /,
+        *,
+        wait: bool = True,
+        timeout: float = PATIENCE,
+        **named: float,
+    ) -> None:
+        """Moves joints by name (rad, m), all in proportion; the others stay as commanded."""
+        goal = numbers_by_name(joints, named, 'joint')
+        self._client.begin(lambda: self._client.send_joints(goal))
+        if wait:
+            self.wait(timeout)
+
     def follow(
         self,
         poses: Pose | Iterable[PoseLike],
@@ -180,6 +203,20 @@ class Robot:
         duration = checked('seconds', seconds, above=0.0)
         self.wait()
         self._client.jog(twist, frame, duration)
+
+    def jog_joints(
+        self,
+        rates: Mapping[str, float] | None = None,
+        /,
+        *,
+        seconds: float = 1.0,
+        **named: float,
+    ) -> None:
+        """Turns joints by name at rates (rad/s, m/s) for some seconds; as `jog`."""
+        request = numbers_by_name(rates, named, 'joint')
+        duration = checked('seconds', seconds, above=0.0)
+        self.wait()
+        self._client.jog_joints(request, duration)
 
     def stop(self) -> None:
         """Brakes along the path and returns when the machine holds; then it may move again."""

@@ -2,7 +2,7 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any
@@ -18,6 +18,7 @@ from hexarm.client import Client
 from hexarm.robot_values import share_done
 from manipulator.errors import ManipulatorError, Refused, Stopped, TimedOut
 from manipulator.nodes.messages import pose_of
+from manipulator.nodes.messages import seconds as seconds_of
 from manipulator.nodes.qos import COMMAND, EVERY_WORD, LATCHED
 from manipulator.pose import Pose
 from manipulator.states import MachineState, MotionMode
@@ -50,7 +51,7 @@ class RobotClient(Client):
         for name, kind in (('pose', PoseStamped), ('joint_states', JointState)):
             self.node.create_subscription(kind, name, partial(self._note, name), COMMAND)
         self.watch_setpoints()
-        self._twists = self.node.create_publisher(TwistStamped, 'cmd_vel', COMMAND)
+        self._publishers: dict[str, Any] = {}
         self._stops = self.node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
         self._brakes = self.node.create_client(Trigger, 'trajectory/stop')
         for name in ('saved_poses', 'saved_pose_status'):
@@ -192,19 +193,61 @@ class RobotClient(Client):
             self._share = share
             self._progress(share)
 
+    def send_joints(self, named: Mapping[str, float]) -> None:
+        """As `send_goal`, to positions of joints by name (rad, m)."""
+        publisher = self._received_on(JointState, 'goal_joints')
+        message = JointState(name=list(named), position=list(named.values()))
+        message.header.stamp = self.node.get_clock().now().to_msg()
+        publisher.publish(message)
+        self._pursue(f'{seconds_of(message.header.stamp):.9f}')
+
+    def _received_on(self, kind: type, topic: str) -> Any:
+        """The publisher of a topic, once the machine receives it."""
+        if topic not in self._publishers:
+            self._publishers[topic] = self.node.create_publisher(kind, topic, COMMAND)
+        publisher = self._publishers[topic]
+        self.wait(f'a subscriber on {topic}', lambda: self.reaches(publisher), PATIENCE)
+        return publisher
+
     # Jogging and stopping
 
     def jog(self, twist: Sequence[float], frame: str, seconds: float) -> None:
         """Publishes a twist for a while, then a zero, and waits until the machine holds."""
-        self.wait('a subscriber on cmd_vel', lambda: self.reaches(self._twists), PATIENCE)
+        twists = self._received_on(TwistStamped, 'cmd_vel')
+
+        def send(share: float) -> None:
+            message = TwistStamped()
+            message.header.frame_id = frame
+            message.header.stamp = self.node.get_clock().now().to_msg()
+            linear, angular = message.twist.linear, message.twist.angular
+            numbers = [share * value for value in twist]
+            linear.x, linear.y, linear.z, angular.x, angular.y, angular.z = numbers
+            twists.publish(message)
+
+        self._jog(send, seconds)
+
+    def jog_joints(self, rates: Mapping[str, float], seconds: float) -> None:
+        """As `jog`, rates of joints by name (rad/s, m/s)."""
+        publisher = self._received_on(JointState, 'cmd_joints')
+
+        def send(share: float) -> None:
+            velocities = [share * rate for rate in rates.values()]
+            message = JointState(name=list(rates), velocity=velocities)
+            message.header.stamp = self.node.get_clock().now().to_msg()
+            publisher.publish(message)
+
+        self._jog(send, seconds)
+
+    def _jog(self, send: Callable[[float], None], seconds: float) -> None:
+        """Sends a jog command for a while, then none of it, and waits until the machine holds."""
         until, is_accepted = time.monotonic() + seconds, False
         try:
             while (left := until - time.monotonic()) > 0.0:
-                self._publish_twist(twist, frame)
+                send(1.0)
                 self.spin(min(JOG_PERIOD, left))
                 is_accepted = self._is_jogged(is_accepted)
         finally:
-            self._publish_twist([0.0] * 6, frame)
+            send(0.0)
         try:
             self.wait('jogging', lambda: is_accepted or self._is_jogged(False), ACCEPTED_WITHIN)
         except TimedOut:
@@ -221,14 +264,7 @@ class RobotClient(Client):
     def _jog_refusal(self) -> str:
         self.spin(REPORTED_WITHIN)
         values = {pair.key: pair.value for pair in self.report_of('trajectory').values}
-        return values.get('last_twist_refusal') or f'cmd_vel is not accepted ({self.summary})'
-
-    def _publish_twist(self, twist: Sequence[float], frame: str) -> None:
-        message = TwistStamped()
-        message.header.stamp, message.header.frame_id = self.node.get_clock().now().to_msg(), frame
-        linear, angular = message.twist.linear, message.twist.angular
-        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z = twist
-        self._twists.publish(message)
+        return values.get('last_twist_refusal') or f'the jog is not accepted ({self.summary})'
 
     def emergency_stop(self) -> None:
         """STOP to the board at once, and again as a service, which confirms it."""

@@ -96,6 +96,16 @@ def checked(name: str, value: Any, above: float = -math.inf) -> float:
     return number
 
 
+def numbers_by_name(
+    first: Mapping[str, float] | None, named: Mapping[str, float], what: str
+) -> dict[str, float]:
+    """Finite numbers of a mapping and of keywords; InvalidInput where none is given."""
+    numbers = {name: checked(name, value) for name, value in {**(first or {}), **named}.items()}
+    if not numbers:
+        raise InvalidInput(f'no {what} is named')
+    return numbers
+
+
 def share_done(start: Pose, here: Pose, goal: Pose) -> float:
     """How much of a move from start to goal is done, 0 to 1; by its shift or turn."""
     way, left = start.twist_to(goal), here.twist_to(goal)

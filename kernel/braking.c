@@ -32,10 +32,7 @@ static void put_joints(const struct jogged *machine, const struct braking_path *
     rotate3(rotation, frame->pivot, arm);
     for (int i = 0; i < 3; i++)
         position[i] = frame->position[i] + of_pivot[i] - arm[i];
-    if (machine->platform->legs.crank[0] > 0)
-        crank_inverse(&machine->platform->legs, position, rotation, near, joints);
-    else
-        linear_inverse(&machine->platform->legs, position, rotation, joints);
+    leg_inverse(&machine->platform->legs, position, rotation, near, joints);
 }
 
 /* The joint that is the furthest above a bound, if any: what it is, by its bound. */

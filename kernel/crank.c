@@ -2,10 +2,6 @@
 
 #include "trigonometry.h"
 
-/* So much nearer, in rad, elbow in must be for a leg to be taken for bent that way: at the edge of
-   the reach both branches meet, and a machine that comes back bends its legs as at home. */
-#define BRANCHES_MEET REAL(0.1)
-
 void leg_gaps(const struct crank_legs *legs, const real position[3], const real rotation[9],
               real gap[3][LEGS])
 {
@@ -19,11 +15,6 @@ void leg_gaps(const struct crank_legs *legs, const real position[3], const real 
 static inline real along(const real axis[3][LEGS], real gap[3][LEGS], int i)
 {
     return axis[0][i] * gap[0][i] + axis[1][i] * gap[1][i] + axis[2][i] * gap[2][i];
-}
-
-static inline real within_half_a_turn(real angle, real centre)
-{
-    return angle - REAL_TURN * nearest_integer((angle - centre) * (1 / REAL_TURN));
 }
 
 int crank_elbows(const struct crank_legs *legs, const real position[3], const real rotation[9],
@@ -56,32 +47,4 @@ int crank_elbows(const struct crank_legs *legs, const real position[3], const re
         in[i] = within_half_a_turn(angle, legs->middle[i]);
     }
     return open;
-}
-
-int crank_inverse(const struct crank_legs *legs, const real position[3], const real rotation[9],
-                  const real *near, real angles[LEGS])
-{
-    if (!near)
-        return crank_elbows(legs, position, rotation, angles, 0);
-    real in[LEGS];
-    int open = crank_elbows(legs, position, rotation, angles, in);
-    for (int i = 0; i < LEGS; i++) {
-        real far_out = within_half_a_turn(angles[i], near[i]);
-        real far_in = within_half_a_turn(in[i], near[i]);
-        real difference = real_fabs(far_out - near[i]) - real_fabs(far_in - near[i]);
-        angles[i] = difference <= BRANCHES_MEET ? far_out : far_in;
-    }
-    for (int i = 0; i < LEGS; i++)
-        open += !(real_fabs(near[i]) < INFINITY);
-    return open;
-}
-
-void linear_inverse(const struct crank_legs *legs, const real position[3], const real rotation[9],
-                    real lengths[LEGS])
-{
-    real gap[3][LEGS];
-    leg_gaps(legs, position, rotation, gap);
-    for (int i = 0; i < LEGS; i++)
-        lengths[i] =
-            real_sqrt(gap[0][i] * gap[0][i] + gap[1][i] * gap[1][i] + gap[2][i] * gap[2][i]);
 }

@@ -1,4 +1,4 @@
-/* Legs with a crank and a rod: docs/kinematics.md, 2; and legs that change their length: 8. */
+/* Legs with a crank and a rod: docs/kinematics.md, 2. */
 #ifndef KERNEL_CRANK_H
 #define KERNEL_CRANK_H
 
@@ -7,8 +7,7 @@
 enum { LEGS = 6 };
 
 /* Six legs side by side, so that one loop serves all; metres and radians. Axes are unit vectors of
-   the base frame. A leg that changes its length has a crank of length 0, and its axes do not
-   matter. */
+   the base frame. Legs of other kinds use some of it: legs.h. */
 struct crank_legs {
     real centre[3][LEGS];  /* of the crank's turning, base frame */
     real normal[3][LEGS];  /* tangent x up: the crank's axis */
@@ -28,14 +27,5 @@ void leg_gaps(const struct crank_legs *legs, const real position[3], const real 
    (2.2); `in` may be null. NaN for a leg that does not close. Returns how many do not. */
 int crank_elbows(const struct crank_legs *legs, const real position[3], const real rotation[9],
                  real out[LEGS], real *in);
-
-/* As elbow out, or where `near` (6) is not null, of both the angle nearest to it, modulo turns.
-   NaN, and counted, is a leg that does not close or has nothing finite to be near to. */
-int crank_inverse(const struct crank_legs *legs, const real position[3], const real rotation[9],
-                  const real *near, real angles[LEGS]);
-
-/* The lengths (6) of legs that change them: (8.1). */
-void linear_inverse(const struct crank_legs *legs, const real position[3], const real rotation[9],
-                    real lengths[LEGS]);
 
 #endif

@@ -25,16 +25,12 @@ void put_offset(const struct descent *d, const struct place *from, const real po
 
 void put_margins(const struct descent *d, const struct place *place, real margins[BOUNDS])
 {
-    const struct crank_legs *legs = &d->platform->legs;
     const real *r = place->rotation, *c = d->pivot;
     real origin[3], joints[LEGS], values[VALUES];
     for (int k = 0; k < 3; k++)
         origin[k] = place->position[k] -
                     (r[3 * k] * c[0] + r[3 * k + 1] * c[1] + r[3 * k + 2] * c[2]);
-    if (legs->crank[0] > 0)
-        crank_elbows(legs, origin, r, joints, NULL);
-    else
-        linear_inverse(legs, origin, r, joints);
+    leg_inverse(&d->platform->legs, origin, r, NULL, joints);
     limited_values(d->platform, origin, r, joints, values);
     for (int i = 0; i < VALUES; i++) {
         margins[i] = values[i] - d->low[i];

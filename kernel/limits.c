@@ -12,8 +12,8 @@ static struct rods rods_at(const struct platform *platform, const real position[
                            const real rotation[9], const real joints[LEGS])
 {
     real base[3][LEGS];
-    base_points(&platform->legs, joints, base);
-    return rods_of(base, platform->legs.end, position, rotation);
+    leg_points(&platform->legs, joints, base);
+    return rods_of(base, platform->legs.shape.end, position, rotation);
 }
 
 /* Products with the unit rods, one a leg: the sines of their angles to the cranks' planes, and the
@@ -26,7 +26,7 @@ static struct products products_of(const struct platform *platform, const struct
                                    const real rotation[9])
 {
     struct products p;
-    const real(*home)[LEGS] = platform->home_rod, (*normal)[LEGS] = platform->legs.normal;
+    const real(*home)[LEGS] = platform->home_rod, (*normal)[LEGS] = platform->legs.shape.normal;
     const real *h = platform->home_rotation;
     real r[9]; /* from home's orientation */
     for (int i = 0; i < 9; i++) {
@@ -50,34 +50,13 @@ static real home_tilt(const struct platform *platform, int leg)
 {
     real sine = 0;
     for (int k = 0; k < 3; k++)
-        sine += platform->home_rod[k][leg] * platform->legs.normal[k][leg];
+        sine += platform->home_rod[k][leg] * platform->legs.shape.normal[k][leg];
     return real_asin(fmax(-1, fmin(1, sine)));
 }
 
 static real clipped(real cosine)
 {
     return cosine > 1 ? 1 : cosine < -1 ? -1 : cosine;
-}
-
-/* How far a rod is from the shortest and the longest that would close its leg: (2.3). */
-static void put_misfits(const struct crank_legs *legs, const real position[3],
-                        const real rotation[9], real values[VALUES])
-{
-    real gap[3][LEGS];
-    leg_gaps(legs, position, rotation, gap);
-    for (int i = 0; i < LEGS; i++) {
-        real across = 0, along = 0, up = 0, r = legs->crank[i];
-        for (int k = 0; k < 3; k++) {
-            across += legs->normal[k][i] * gap[k][i];
-            along += legs->tangent[k][i] * gap[k][i];
-            up += legs->up[k][i] * gap[k][i];
-        }
-        real in_plane = real_sqrt(along * along + up * up);
-        values[SHORTFALL + i] =
-            real_sqrt(across * across + (in_plane - r) * (in_plane - r)) - legs->rod[i];
-        values[SURPLUS + i] =
-            legs->rod[i] - real_sqrt(across * across + (in_plane + r) * (in_plane + r));
-    }
 }
 
 /* The cosine of the platform's inclination: docs/motion.md, (1.3). */
@@ -104,14 +83,14 @@ void limited_values(const struct platform *platform, const real position[3],
     struct rods rods = rods_at(platform, position, rotation, joints);
     struct products p = products_of(platform, &rods, rotation);
     real columns[6][6];
-    put_misfits(&platform->legs, position, rotation, values);
+    leg_misfits(&platform->legs, position, rotation, values + SHORTFALL, values + SURPLUS);
     for (int i = 0; i < LEGS; i++) {
         values[JOINT + i] = joints[i];
         values[TILT + i] = real_asin(clipped(p.tilt_sine[i])) - home_tilt(platform, i);
         values[SWING + i] = real_acos(clipped(p.swing_cosine[i]));
         values[LEANING + i] = real_acos(clipped(p.leaning_cosine[i]));
     }
-    leg_columns(&rods, platform->length, columns);
+    leg_rows(&platform->legs, &rods, rotation, platform->length, columns);
     for (int k = 0; k < 3; k++)
         values[POSITION + k] = position[k];
     values[INCLINATION] = real_acos(clipped(inclination_cosine(platform, rotation)));
@@ -168,10 +147,11 @@ static int keeps_orientation(const struct platform *platform, const struct limit
     return angle >= r->rotation[0] && angle <= r->rotation[1];
 }
 
-static int keeps_margin(const struct platform *platform, const struct rods *rods, real least)
+static int keeps_margin(const struct platform *platform, const struct rods *rods,
+                        const real rotation[9], real least)
 {
     real columns[6][6];
-    leg_columns(rods, platform->length, columns);
+    leg_rows(&platform->legs, rods, rotation, platform->length, columns);
     return least < LEAST_PIVOT_MARGIN ? smallest_singular_value(columns) >= least
                                       : keeps_singular_value(columns, least);
 }
@@ -189,5 +169,6 @@ int keeps_limits(const struct platform *platform, const struct limit_ranges *ran
                 (p.tilt_sine[i] <= ranges->tilt_sine[1][i]) &
                 (p.swing_cosine[i] >= ranges->swing_cosine[i]) &
                 (p.leaning_cosine[i] >= ranges->leaning_cosine[i]);
-    return kept && (ranges->sigma == -INFINITY || keeps_margin(platform, &rods, ranges->sigma));
+    return kept && (ranges->sigma == -INFINITY ||
+                    keeps_margin(platform, &rods, rotation, ranges->sigma));
 }

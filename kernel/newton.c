@@ -19,9 +19,14 @@ static void linearised(const struct newton_problem *problem, const real position
     real base[3][LEGS], columns[6][LEGS];
     memcpy(base, problem->base, sizeof base);
     struct rods rods = rods_of(base, problem->end, position, rotation);
+    real extra[LEGS] = {0};
     leg_columns(&rods, 1, columns);
+    if (problem->screws) {
+        screw_lengths(problem->screws, &rods, rotation, extra);
+        add_screw_columns(problem->screws, &rods, rotation, 1, columns);
+    }
     for (int i = 0; i < LEGS; i++) {
-        error[i] = problem->length[i] - rods.length[i];
+        error[i] = problem->length[i] - extra[i] - rods.length[i];
         for (int k = 0; k < 6; k++)
             jacobian[i][k] = columns[k][i];
     }

@@ -2,13 +2,14 @@
 #ifndef KERNEL_NEWTON_H
 #define KERNEL_NEWTON_H
 
-#include "crank.h"
+#include "screws.h"
 
 /* Rods between base points (base frame) and platform joints (platform frame). */
 struct newton_problem {
     real base[3][LEGS];
     real end[3][LEGS];
     real length[LEGS];
+    const struct screws *screws; /* of joints given for lengths; null: none */
 };
 
 /* What is trusted of what is found. */

@@ -2,14 +2,14 @@
 #ifndef KERNEL_PLATFORM_H
 #define KERNEL_PLATFORM_H
 
-#include "crank.h"
+#include "legs.h"
 #include "newton.h"
 
 struct platform {
-    struct crank_legs legs;
+    struct legs legs;
     real length;            /* L of (5.1), m */
     real home_rod[3][LEGS]; /* unit vectors along the rods at home, base axes */
-    real home_gain[LEGS];   /* of the cranks at home, (4.1) */
+    real home_gain[LEGS];   /* of the joints at home, (4.1) */
     real home_rotation[9];
 };
 

@@ -11,6 +11,7 @@
 #include "python.h"
 #include "rods.h"
 #include "se3.h"
+#include "stack.h"
 #include "vector.h"
 
 static void by_axis(const real points[3 * LEGS], real columns[3][LEGS])
@@ -27,60 +28,71 @@ static void by_leg(real columns[3][LEGS], real points[3 * LEGS])
             points[3 * i + k] = columns[k][i];
 }
 
-static Py_ssize_t call_crank_inverse(real *const *a, Py_ssize_t items)
+static Py_ssize_t call_leg_inverse(real *const *a, Py_ssize_t items)
 {
     Py_ssize_t open = 0;
     for (Py_ssize_t i = 0; i < items; i++)
-        open += crank_inverse((const struct crank_legs *)a[0], a[1] + 3 * i, a[2] + 9 * i,
-                              a[3] ? a[3] + LEGS * i : NULL, a[4] + LEGS * i);
+        open += leg_inverse((const struct legs *)a[0], a[1] + 3 * i, a[2] + 9 * i,
+                            a[3] ? a[3] + LEGS * i : NULL, a[4] + LEGS * i);
     return open;
 }
-FUNCTION(crank_inverse, {WHOLE, NUMBERS(struct crank_legs)}, {ITEMS, 3}, {ITEMS, 9},
-         {OPTIONAL, LEGS}, {WRITTEN, LEGS})
+FUNCTION(leg_inverse, {WHOLE, NUMBERS(struct legs)}, {ITEMS, 3}, {ITEMS, 9}, {OPTIONAL, LEGS},
+         {WRITTEN, LEGS})
 
-static Py_ssize_t call_crank_elbows(real *const *a, Py_ssize_t items)
+static Py_ssize_t call_leg_branches(real *const *a, Py_ssize_t items)
 {
     Py_ssize_t open = 0;
     for (Py_ssize_t i = 0; i < items; i++)
-        open += crank_elbows((const struct crank_legs *)a[0], a[1] + 3 * i, a[2] + 9 * i,
+        open += leg_branches((const struct legs *)a[0], a[1] + 3 * i, a[2] + 9 * i,
                              a[3] + LEGS * i, a[4] + LEGS * i);
     return open;
 }
-FUNCTION(crank_elbows, {WHOLE, NUMBERS(struct crank_legs)}, {ITEMS, 3}, {ITEMS, 9},
-         {WRITTEN, LEGS}, {WRITTEN, LEGS})
-
-static Py_ssize_t call_linear_inverse(real *const *a, Py_ssize_t items)
-{
-    for (Py_ssize_t i = 0; i < items; i++)
-        linear_inverse((const struct crank_legs *)a[0], a[1] + 3 * i, a[2] + 9 * i,
-                       a[3] + LEGS * i);
-    return 0;
-}
-FUNCTION(linear_inverse, {WHOLE, NUMBERS(struct crank_legs)}, {ITEMS, 3}, {ITEMS, 9},
+FUNCTION(leg_branches, {WHOLE, NUMBERS(struct legs)}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, LEGS},
          {WRITTEN, LEGS})
 
-static Py_ssize_t call_base_points(real *const *a, Py_ssize_t items)
+static Py_ssize_t call_leg_points(real *const *a, Py_ssize_t items)
 {
     for (Py_ssize_t i = 0; i < items; i++) {
-        real base[3][LEGS];
-        base_points((const struct crank_legs *)a[0], a[1] + LEGS * i, base);
-        by_leg(base, a[2] + 3 * LEGS * i);
+        real points[3][LEGS];
+        leg_points((const struct legs *)a[0], a[1] + LEGS * i, points);
+        by_leg(points, a[2] + 3 * LEGS * i);
     }
     return 0;
 }
-FUNCTION(base_points, {WHOLE, NUMBERS(struct crank_legs)}, {ITEMS, LEGS}, {WRITTEN, 3 * LEGS})
+FUNCTION(leg_points, {WHOLE, NUMBERS(struct legs)}, {ITEMS, LEGS}, {WRITTEN, 3 * LEGS})
 
-static Py_ssize_t call_crank_gains(real *const *a, Py_ssize_t items)
+static Py_ssize_t call_leg_gains(real *const *a, Py_ssize_t items)
 {
     for (Py_ssize_t i = 0; i < items; i++) {
         real unit[3][LEGS];
         by_axis(a[2] + 3 * LEGS * i, unit);
-        crank_gains((const struct crank_legs *)a[0], a[1] + LEGS * i, unit, a[3] + LEGS * i);
+        leg_gains((const struct legs *)a[0], a[1] + LEGS * i, unit, a[3] + LEGS * i);
     }
     return 0;
 }
-FUNCTION(crank_gains, {WHOLE, NUMBERS(struct crank_legs)}, {ITEMS, LEGS}, {ITEMS, 3 * LEGS},
+FUNCTION(leg_gains, {WHOLE, NUMBERS(struct legs)}, {ITEMS, LEGS}, {ITEMS, 3 * LEGS},
          {WRITTEN, LEGS})
+
+/* What screws add to the joints of linear legs, and its rows for a unit twist. */
+static Py_ssize_t call_screw_turns(real *const *a, Py_ssize_t items)
+{
+    const struct legs *legs = (const struct legs *)a[0];
+    real base[3][LEGS];
+    memcpy(base, legs->shape.centre, sizeof base);
+    for (Py_ssize_t i = 0; i < items; i++) {
+        const real *rotation = a[2] + 9 * i;
+        real columns[6][LEGS] = {{0}};
+        struct rods rods = rods_of(base, legs->shape.end, a[1] + 3 * i, rotation);
+        screw_lengths(&legs->screws, &rods, rotation, a[3] + LEGS * i);
+        add_screw_columns(&legs->screws, &rods, rotation, 1, columns);
+        for (int leg = 0; leg < LEGS; leg++)
+            for (int k = 0; k < 6; k++)
+                a[4][36 * i + 6 * leg + k] = columns[k][leg];
+    }
+    return 0;
+}
+FUNCTION(screw_turns, {WHOLE, NUMBERS(struct legs)}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, LEGS},
+         {WRITTEN, 36})
 
 /* Platform joints, base points, poses: the rods' unit vectors, and the leg Jacobian. */
 static Py_ssize_t call_leg_jacobian(real *const *a, Py_ssize_t items)
@@ -120,6 +132,7 @@ static Py_ssize_t call_forward_by_lengths(real *const *a, Py_ssize_t items)
 {
     struct newton_problem problem;
     by_axis(a[0], problem.end);
+    problem.screws = NULL;
     for (Py_ssize_t i = 0; i < items; i++) {
         real *position = a[6] + 3 * i, *rotation = a[7] + 9 * i;
         by_axis(a[2] + 3 * LEGS * i, problem.base);
@@ -160,6 +173,34 @@ static Py_ssize_t call_limited_values(real *const *a, Py_ssize_t items)
 }
 FUNCTION(limited_values, {WHOLE, NUMBERS(struct platform)}, {ITEMS, 3}, {ITEMS, 9}, {ITEMS, LEGS},
          {WRITTEN, VALUES})
+
+/* Stack; whether each end begins where the one before came to, all of the row then ending with the
+   first that does not settle; ends; free twists; sections; whether they settled. */
+static Py_ssize_t call_stack_sections(real *const *a, Py_ssize_t items)
+{
+    const struct stack *stack = (const struct stack *)a[0];
+    for (Py_ssize_t i = 0; i < items; i++) {
+        struct placement end, sections[MOST_SECTIONS];
+        real *free = a[4] + 6 * MOST_SECTIONS * i;
+        a[7][i] = 0;
+        if (i > 0 && *a[1] != 0) {
+            if (a[7][i - 1] == 0)
+                continue;
+            memcpy(free, free - 6 * MOST_SECTIONS, 6 * MOST_SECTIONS * sizeof(real));
+        }
+        memcpy(end.position, a[2] + 3 * i, sizeof end.position);
+        memcpy(end.rotation, a[3] + 9 * i, sizeof end.rotation);
+        a[7][i] = stack_sections(stack, &end, free, sections);
+        for (int k = 0; k < (int)stack->count; k++) {
+            memcpy(a[5] + 3 * (MOST_SECTIONS * i + k), sections[k].position, 3 * sizeof(real));
+            memcpy(a[6] + 9 * (MOST_SECTIONS * i + k), sections[k].rotation, 9 * sizeof(real));
+        }
+    }
+    return 0;
+}
+FUNCTION(stack_sections, {WHOLE, NUMBERS(struct stack)}, {WHOLE, 1}, {ITEMS, 3}, {ITEMS, 9},
+         {WRITTEN, 6 * MOST_SECTIONS}, {WRITTEN, 3 * MOST_SECTIONS}, {WRITTEN, 9 * MOST_SECTIONS},
+         {WRITTEN, 1})
 
 static Py_ssize_t call_limit_ranges(real *const *a, Py_ssize_t items)
 {
@@ -300,16 +341,17 @@ FUNCTION(first_free_path, {WHOLE, NUMBERS(struct platform)}, {WHOLE, NUMBERS(str
          {WRITTEN, NUMBERS(struct braking_path)})
 
 PyMethodDef PLATFORM_FUNCTIONS[] = {
-    METHOD(crank_inverse),
-    METHOD(crank_elbows),
-    METHOD(linear_inverse),
-    METHOD(base_points),
-    METHOD(crank_gains),
+    METHOD(leg_inverse),
+    METHOD(leg_branches),
+    METHOD(leg_points),
+    METHOD(leg_gains),
+    METHOD(screw_turns),
     METHOD(leg_jacobian),
     METHOD(smallest_singular_value),
     METHOD(forward_by_lengths),
     METHOD(platform_forward),
     METHOD(limited_values),
+    METHOD(stack_sections),
     METHOD(limit_ranges),
     METHOD(keeps_limits),
     METHOD(rotation_exp),

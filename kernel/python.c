@@ -21,17 +21,16 @@ static int open_array(const struct function *f, int index, PyObject *object, Py_
 /* Whether the array has as many numbers as items need; the first array of items says how many. */
 static int fits(const struct function *f, int index, Py_ssize_t length, Py_ssize_t *items)
 {
-    Py_ssize_t numbers = f->arrays[index].numbers, found = length / (Py_ssize_t)sizeof(real);
-    Py_ssize_t needed = numbers;
+    Py_ssize_t needed = f->arrays[index].numbers, size = (Py_ssize_t)sizeof(real);
     if (f->arrays[index].kind != WHOLE) {
-        if (*items < 0)
-            *items = found / numbers;
-        needed = numbers * *items;
+        if (*items < 0) /* a division takes longer than all the rest */
+            *items = length == needed * size ? 1 : length / (needed * size);
+        needed *= *items;
     }
-    if (found == needed && length % (Py_ssize_t)sizeof(real) == 0)
+    if (length == needed * size)
         return 1;
     PyErr_Format(PyExc_ValueError, "%s: array %d has %zd numbers, needs %zd", f->name, index + 1,
-                 found, needed);
+                 length / size, needed);
     return 0;
 }
 

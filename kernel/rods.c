@@ -1,30 +1,5 @@
 #include "rods.h"
 
-#include "trigonometry.h"
-
-static void turned(const real joints[LEGS], real sine[LEGS], real cosine[LEGS])
-{
-    int is_far = 0;
-    for (int i = 0; i < LEGS; i++)
-        sine_and_cosine(joints[i], &sine[i], &cosine[i]);
-    for (int i = 0; i < LEGS; i++)
-        is_far |= real_fabs(joints[i]) > MOST_ANGLE;
-    for (int i = 0; is_far && i < LEGS; i++) {
-        sine[i] = real_sin(joints[i]);
-        cosine[i] = real_cos(joints[i]);
-    }
-}
-
-void base_points(const struct crank_legs *legs, const real joints[LEGS], real base[3][LEGS])
-{
-    real sine[LEGS], cosine[LEGS];
-    turned(joints, sine, cosine);
-    for (int i = 0; i < LEGS; i++)
-        for (int k = 0; k < 3; k++)
-            base[k][i] = legs->centre[k][i] + legs->crank[i] * (cosine[i] * legs->tangent[k][i] +
-                                                                sine[i] * legs->up[k][i]);
-}
-
 struct rods rods_of(real base[3][LEGS], const real end[3][LEGS], const real position[3],
                     const real rotation[9])
 {
@@ -56,18 +31,5 @@ void leg_columns(const struct rods *rods, real length, real columns[6][LEGS])
             columns[k][i] = rods->unit[k][i];
             columns[3 + k][i] = scale * (arm1[i] * unit2[i] - arm2[i] * unit1[i]);
         }
-    }
-}
-
-void crank_gains(const struct crank_legs *legs, const real joints[LEGS], real unit[3][LEGS],
-                 real gains[LEGS])
-{
-    real sine[LEGS], cosine[LEGS];
-    turned(joints, sine, cosine);
-    for (int i = 0; i < LEGS; i++) {
-        real along = 0;
-        for (int k = 0; k < 3; k++)
-            along += unit[k][i] * (cosine[i] * legs->up[k][i] - sine[i] * legs->tangent[k][i]);
-        gains[i] = legs->crank[i] * along;
     }
 }

@@ -11,18 +11,11 @@ struct rods {
     real length[LEGS];
 };
 
-/* Where rods begin for given joints: the cranks' tips, (1.1). */
-void base_points(const struct crank_legs *legs, const real joints[LEGS], real base[3][LEGS]);
-
 struct rods rods_of(real base[3][LEGS], const real end[3][LEGS], const real position[3],
                     const real rotation[9]);
 
 /* The Jacobian's columns, row i of which says how fast rod i grows with a twist: (3.1). Rotations
    are divided by `length`. */
 void leg_columns(const struct rods *rods, real length, real columns[6][LEGS]);
-
-/* How fast each rod's length follows its crank's angle, (4.1); `unit` as in struct rods. */
-void crank_gains(const struct crank_legs *legs, const real joints[LEGS], real unit[3][LEGS],
-                 real gains[LEGS]);
 
 #endif

@@ -12,6 +12,12 @@ static inline real nearest_integer(real x)
     return (x + large) - large;
 }
 
+/* The angle less whole turns, within half a turn of `centre`. */
+static inline real within_half_a_turn(real angle, real centre)
+{
+    return angle - REAL_TURN * nearest_integer((angle - centre) * (1 / REAL_TURN));
+}
+
 #define MOST_ANGLE REAL(1e5)
 
 #ifdef KERNEL_FLOAT

@@ -5,22 +5,22 @@ Those named after what they write fill it in. Shapes are those of one item; see 
 
 from manipulator.arrays import Array
 
-def crank_inverse(
-    legs: Array, position: Array, rotation: Array, near: Array | None, angles: Array
+def leg_inverse(
+    legs: Array, position: Array, rotation: Array, near: Array | None, joints: Array
 ) -> int:
-    """How many legs do not close; `angles` is written: see kernel/crank.h."""
+    """How many legs do not close; `joints` is written: see kernel/legs.h."""
 
-def crank_elbows(legs: Array, position: Array, rotation: Array, out: Array, inside: Array) -> int:
-    """How many legs do not close; both angles are written: kernel/crank.h."""
+def leg_branches(legs: Array, position: Array, rotation: Array, out: Array, inside: Array) -> int:
+    """How many legs do not close; both joints are written: kernel/legs.h."""
 
-def linear_inverse(legs: Array, position: Array, rotation: Array, lengths: Array) -> int:
-    """0; `lengths` is written: kernel/crank.h."""
+def leg_points(legs: Array, joints: Array, points: Array) -> int:
+    """0; `points` (6, 3) is written: kernel/legs.h."""
 
-def base_points(legs: Array, joints: Array, points: Array) -> int:
-    """0; `points` (6, 3) is written: kernel/rods.h."""
+def leg_gains(legs: Array, joints: Array, units: Array, gains: Array) -> int:
+    """0; `gains` is written: kernel/legs.h."""
 
-def crank_gains(legs: Array, joints: Array, units: Array, gains: Array) -> int:
-    """0; `gains` is written: kernel/rods.h."""
+def screw_turns(legs: Array, position: Array, rotation: Array, extra: Array, rows: Array) -> int:
+    """0; `extra` (6) and `rows` (6, 6) are written: kernel/screws.h."""
 
 def leg_jacobian(
     platform_points: Array,
@@ -64,6 +64,18 @@ def limited_values(
     platform: Array, position: Array, rotation: Array, joints: Array, values: Array
 ) -> int:
     """0; `values` is written: kernel/limits.h."""
+
+def stack_sections(
+    stack: Array,
+    is_row: Array,
+    position: Array,
+    rotation: Array,
+    free: Array,
+    positions: Array,
+    rotations: Array,
+    settled: Array,
+) -> int:
+    """0; the last four are written, `free` says where the descent begins: kernel/stack.h."""
 
 def limit_ranges(platform: Array, low: Array, high: Array, ranges: Array) -> int:
     """0; `ranges` is written: kernel/limits.h."""

@@ -9,17 +9,16 @@ that a section may have; the one with most of the keys is meant.
 import dataclasses
 import difflib
 import math
-import re
 import types
 import typing
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
 import yaml
-from yaml.composer import Composer
 
 from manipulator.errors import ConfigError
-from manipulator.formatting import shortened, shown
+from manipulator.formatting import shortened, shown, told_apart
+from manipulator.strict_yaml import content_of
 
 T = TypeVar('T')
 U = TypeVar('U')
@@ -60,7 +59,7 @@ def parse_yaml(text: str, source: str = '') -> dict[str, Any]:
             [f'{len(text)} characters, a machine file has at most {MAX_CHARACTERS}'], source
         )
     try:
-        content = _content(text)
+        content = content_of(text)
     except yaml.YAMLError as error:
         raise ConfigError([_short(error)], source) from error
     except (ValueError, TypeError, OverflowError) as error:
@@ -94,60 +93,6 @@ def build_both(
     if problems:
         raise ConfigError(problems)
     return typing.cast(tuple[T, U], results)
-
-
-NUMBER = re.compile(r'[-+]?(\.\d+|\d+(\.\d*)?)([eE][-+]?\d+)?$')
-"""As in YAML 1.2; for PyYAML, which knows 1.1, 3e6 is a text."""
-
-
-def _content(text: str) -> object:
-    """What the text holds: read quickly, or else slowly, for an error that shows the line."""
-    try:
-        return yaml.load(text, Loader=_QuickLoader)
-    except (yaml.YAMLError, ValueError, TypeError, OverflowError, RecursionError):
-        return yaml.load(text, Loader=_StrictLoader)
-
-
-class _Strict(Composer):
-    """Refuses aliases (no anchor bombs) and repeated keys."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        if self.check_event(yaml.AliasEvent):  # type: ignore[attr-defined]
-            mark = self.peek_event().start_mark  # type: ignore[attr-defined]
-            raise yaml.YAMLError(f'line {mark.line + 1}: aliases are not allowed')
-        return super().compose_node(parent, index)
-
-    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        seen: set[object] = set()
-        for key_node, _ in node.value:
-            if key_node.value in seen:
-                line = key_node.start_mark.line + 1
-                raise yaml.YAMLError(f'line {line}: key {shown(key_node.value)} is duplicated')
-            if isinstance(key_node.value, str):
-                seen.add(key_node.value)
-        mapping: dict[Any, Any] = super().construct_mapping(node, deep)  # type: ignore[misc]
-        return mapping
-
-
-class _StrictLoader(_Strict, yaml.SafeLoader):
-    """In Python, which gives the best error messages."""
-
-
-_StrictLoader.add_implicit_resolver('tag:yaml.org,2002:float', NUMBER, list('-+.0123456789'))
-
-
-_Events: Any = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
-
-
-class _QuickLoader(_Strict, _Events):  # type: ignore[misc]
-    """On libyaml, where PyYAML has it: several times as fast."""
-
-    def __init__(self, stream: str) -> None:
-        _Events.__init__(self, stream)
-        Composer.__init__(self)
-
-
-_QuickLoader.add_implicit_resolver('tag:yaml.org,2002:float', NUMBER, list('-+.0123456789'))
 
 
 def _convert(expected: Any, value: object, where: str, problems: list[str]) -> Any:
@@ -190,15 +135,25 @@ def _fitting(kinds: list[Any], value: object) -> Any:
 def _convert_form(
     forms: list[Any], value: Mapping[Any, Any], where: str, problems: list[str]
 ) -> Any:
-    """By the form that has most of the keys in `value`."""
-    names = [[f.name for f in dataclasses.fields(form)] for form in forms]
-    shared = [len({*of_form} & {*value}) for of_form in names]
-    best = max(shared)
-    if shared.count(best) > 1:
-        firsts = [of_form[0] for of_form in names]
+    form = fitting_form(forms, value)
+    if form is None:
+        firsts = [dataclasses.fields(form)[0].name for form in forms]
         problems.append(f'{where}: has the keys of no form or of two, needs one of {firsts}')
         return None
-    return _convert_section(forms[shared.index(best)], value, where, problems)
+    return _convert_section(form, value, where, problems)
+
+
+def fitting_form(forms: list[Any], value: Mapping[Any, Any]) -> Any:
+    """The dataclass that has most of the keys in `value`; None where two have as many."""
+    shared = [len({f.name for f in dataclasses.fields(form)} & {*value}) for form in forms]
+    best = max(shared)
+    return forms[shared.index(best)] if shared.count(best) == 1 else None
+
+
+def unknown_key(where: str, name: object, known: list[str]) -> tuple[str, str]:
+    """The known key that is nearest, empty where none is near; and the problem in words."""
+    near = nearest(str(name), known)
+    return near, f'{_join(where, name)}: unknown key{_did_you_mean(near)}'
 
 
 def _convert_section(schema: Any, value: object, where: str, problems: list[str]) -> Any:
@@ -209,9 +164,9 @@ def _convert_section(schema: Any, value: object, where: str, problems: list[str]
     before, meant = len(problems), set()
     for name in value:
         if name not in fields:
-            near = nearest(str(name), list(fields))
+            near, problem = unknown_key(where, name, list(fields))
             meant.add(near)
-            problems.append(f'{_join(where, name)}: unknown key{_did_you_mean(near)}')
+            problems.append(problem)
     hints = typing.get_type_hints(schema)
     arguments = {}
     for name, field in fields.items():
@@ -268,8 +223,8 @@ def _check_range(field: Any, value: object, where: str, problems: list[str]) -> 
         for i, entry in enumerate(value):
             _check_range(field, entry, f'{where}[{i}]', problems)
     elif isinstance(value, int | float) and not bounds[0] <= value <= bounds[1]:
-        number = _as_float(value)
-        problems.append(f'{where}: {number:g} outside [{bounds[0]:g}, {bounds[1]:g}]')
+        number, low, high = told_apart([_as_float(value), *bounds])
+        problems.append(f'{where}: {number} outside [{low}, {high}]')
 
 
 def _as_float(value: float) -> float:

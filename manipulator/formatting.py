@@ -1,6 +1,10 @@
 """How messages write lengths, counts and the reasons of the operating system."""
 
 import math
+from collections.abc import Iterable
+
+MOST_DIGITS = 12
+"""Values that differ after them are the same, but for rounding."""
 
 MOST_SHOWN = 80
 """Characters of an input that a message repeats."""
@@ -14,6 +18,16 @@ def length(metres: float, digits: int = 4) -> str:
     value, unit = (metres, 'm') if abs(metres) > METRES_FROM else (1e3 * metres, 'mm')
     written = f'{float(f"{value:.{digits}g}"):.10f}'.rstrip('0').rstrip('.')
     return f'{written} {unit}'
+
+
+def told_apart(numbers: Iterable[float], fewest: int = 6) -> list[str]:
+    """With so many digits, or with as many as values that differ need to look different."""
+    values, texts = [float(f'{n:.{MOST_DIGITS}g}') for n in numbers], list[str]()
+    for digits in range(fewest, MOST_DIGITS + 1):
+        texts = [f'{value:.{digits}g}' for value in values]
+        if len(set(texts)) == len(set(values)):
+            break
+    return texts
 
 
 def decimals(largest: float, digits: int = 4, fewest: int = 4) -> int:

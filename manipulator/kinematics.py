@@ -117,3 +117,20 @@ def first_jump(joints: Array) -> int | None:
     steps = np.abs(np.diff(joints, axis=0)).max(axis=-1, initial=0.0)
     jumps = np.flatnonzero(steps > BRANCH_JUMP)
     return int(jumps[0]) if jumps.size else None
+
+
+POSE_NUMBERS = 6
+"""A machine with more joints chooses them by a rule: of one pose it can have many."""
+DIFFERENCE = 1e-5
+"""Of a second."""
+
+
+def chosen_rates(kinematics: Kinematics, pose: Pose, joints: Array, twist: Array) -> Array:
+    """Rates (..., n) of the joints that the inverse chooses for a twist (..., 6) at poses (...).
+
+    By differences; joints (..., n) are those at the poses. NaN where a leg does not close.
+    """
+    step = DIFFERENCE * twist
+    ahead, behind = (kinematics.inverse_or_nan(pose.moved(part), joints) for part in (step, -step))
+    rates: Array = (ahead - behind) / (2.0 * DIFFERENCE)
+    return rates

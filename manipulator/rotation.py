@@ -102,14 +102,20 @@ def from_rpy(roll_pitch_yaw: ArrayLike) -> Array:
     return matrix
 
 
-def to_rpy(rotation: ArrayLike) -> Array:
-    """Roll, pitch, yaw of a matrix, pitch in [−π/2, π/2]; roll is 0 where pitch is ±π/2."""
+def to_rpy(rotation: ArrayLike, locked: float = 1e-9) -> Array:
+    """Roll, pitch, yaw of a matrix, pitch in [−π/2, π/2]; roll is 0 where pitch is ±π/2.
+
+    Within `locked` (rad) of it, which is the error there. Yaw makes good what rounding did to
+    roll, so that `from_rpy` leads back however near to ±π/2 pitch is.
+    """
     m = np.asarray(rotation, dtype=np.float64)
     cosine = np.hypot(m[..., 0, 0], m[..., 1, 0])
     pitch = np.arctan2(-m[..., 2, 0], cosine)
-    locked = cosine < 1e-9
-    roll = np.where(locked, 0.0, np.arctan2(m[..., 2, 1], m[..., 2, 2]))
-    yaw = np.where(
-        locked, np.arctan2(-m[..., 0, 1], m[..., 1, 1]), np.arctan2(m[..., 1, 0], m[..., 0, 0])
-    )
+    roll = np.where(cosine < locked, 0.0, np.arctan2(m[..., 2, 1], m[..., 2, 2]))
+    s, c = np.sin(roll), np.cos(roll)
+    yaw = np.arctan2(s * m[..., 0, 2] - c * m[..., 0, 1], c * m[..., 1, 1] - s * m[..., 1, 2])
     return np.stack([roll, pitch, yaw], axis=-1)
+
+
+EXACTLY = 1e-14
+"""As `locked` of `to_rpy`: for files, which are to lead back to the same rotation."""

@@ -37,9 +37,10 @@ NOT = re.compile(rb'!(?=[\w(])')
 STATEMENT = re.compile(
     rb'^[ \t]+(\w+\([^;{}]*\)|[*\w]+(?:->|\.|\[)[^;{}]*? [-+|&*/]?= [^;{}]*);$', re.MULTILINE
 )
-NAMES = rb'\w+(?:\[[^\]]*\])*(?:, ?\*?\w+(?:\[[^\]]*\])*)*'
-LENGTH = re.compile(rb'\w[\w ]*[ *]' + NAMES + rb'\[$')
-WORDS = re.compile(rb'^\s*(?:return|case|else)\b')
+TYPE = rb'(?:(?:static|const) )*(?:real|float|double|int|char|bool|u?int\d+_t|struct \w+|[A-Z]\w+)'
+DECLARED = re.compile(
+    rb'(?:^|[(,;{]) *' + TYPE + rb' [^=;()]*(?:\(\*\w+\)(?:\[[^\]]*\])*)?\[[^\]]*$'
+)
 
 
 def mutations(source: bytes) -> list[Mutation]:
@@ -53,7 +54,7 @@ def mutations(source: bytes) -> list[Mutation]:
 
 def _changes(code: bytes) -> Iterator[tuple[int, int, str]]:
     for match in OPERATOR.finditer(code):
-        for other in SWAPPED[match.group().decode()]:
+        for other in () if _is_length(code, match.start()) else SWAPPED[match.group().decode()]:
             yield *match.span(), other
     for match in NUMBER.finditer(code):
         if not _is_length(code, match.start()):
@@ -66,8 +67,7 @@ def _changes(code: bytes) -> Iterator[tuple[int, int, str]]:
 
 def _is_length(code: bytes, place: int) -> bool:
     """Whether a number is how many elements a declared array has."""
-    line = code[code.rfind(b'\n', 0, place) + 1 : place]
-    return bool(LENGTH.search(line)) and not WORDS.match(line)
+    return bool(DECLARED.search(code[code.rfind(b'\n', 0, place) + 1 : place]))
 
 
 def _mutation(source: bytes, start: int, end: int, after: str) -> Mutation:

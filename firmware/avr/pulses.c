@@ -48,7 +48,7 @@ void pulses_begin(void)
 }
 
 /* A compare value of n makes a pulse of n + 1 counts. */
-bool hardware_stage_pulses(const uint16_t counts[MAX_JOINTS], uint8_t is_on, uint32_t periods)
+bool hardware_stage_pulses(const uint16_t counts[MAX_JOINTS], uint32_t is_on, uint32_t periods)
 {
     bool is_in_time;
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
@@ -57,7 +57,7 @@ bool hardware_stage_pulses(const uint16_t counts[MAX_JOINTS], uint8_t is_on, uin
         if (is_in_time) {
             for (uint8_t i = 0; i < MACHINE.joint_count; i++)
                 staged[i] = counts[i] - 1;
-            staged_on = is_on;
+            staged_on = (uint8_t)is_on;
         }
     }
     return is_in_time;

@@ -1,6 +1,7 @@
 #include "board.h"
 
 #include <stdbool.h>
+#include <string.h>
 
 #include "clock.h"
 #include "command.h"
@@ -158,16 +159,24 @@ static uint16_t echo_age_us(void)
     return age < 0 ? 0 : (uint16_t)age;
 }
 
+/* Two bits a joint: two bytes for up to eight. */
+static uint8_t known_bytes(void)
+{
+    return (uint8_t)(MACHINE.joint_count > 8 ? (MACHINE.joint_count + 3) / 4 : 2);
+}
+
 /* What is known of each joint, two bits each, and its count: measured, else as commanded. */
 static uint8_t *put_joints(uint8_t *at)
 {
     uint16_t measured[MAX_JOINTS] = {0};
     bool is_measured = hardware_read_positions(measured);
-    uint16_t known = 0;
+    uint8_t *known = at;
+    at += known_bytes();
+    memset(known, 0, known_bytes());
     for (uint8_t i = 0; i < MACHINE.joint_count; i++)
         if (is_measured || motion_is_on(i))
-            known |= (uint16_t)((is_measured ? KNOWN_MEASURED : KNOWN_COMMANDED) << 2 * i);
-    at = put16(at, known);
+            known[i / 4] = (uint8_t)(known[i / 4] | (is_measured ? KNOWN_MEASURED : KNOWN_COMMANDED)
+                                                        << 2 * (i % 4));
     for (uint8_t i = 0; i < MACHINE.joint_count; i++) {
         uint16_t commanded = motion_is_on(i) ? motion_count(i) : 0;
         at = put16(at, is_measured ? measured[i] : commanded);
@@ -177,7 +186,8 @@ static uint8_t *put_joints(uint8_t *at)
 
 static void send_state(void)
 {
-    uint8_t payload[17 + 2 * MAX_JOINTS];
+    uint8_t payload[15 + (MAX_JOINTS + 3) / 4 + 2 * MAX_JOINTS];
+    _Static_assert(sizeof payload <= MAX_PAYLOAD, "a STATE fits into a frame");
     uint8_t *at = put16(payload, echo);
     at = put16(at, echo_age_us());
     *at++ = safety_mode();

@@ -21,7 +21,7 @@ uint32_t hardware_us(void);
 
 /* What the next latch puts out, unless `periods` is no longer the number of periods: then false,
  * and nothing has changed. Bit i of `is_on`: channel i has pulses; counts of half a microsecond. */
-bool hardware_stage_pulses(const uint16_t counts[MAX_JOINTS], uint8_t is_on, uint32_t periods);
+bool hardware_stage_pulses(const uint16_t counts[MAX_JOINTS], uint32_t is_on, uint32_t periods);
 
 /* What encoders measure, in counts; false where there are none. */
 bool hardware_read_positions(uint16_t counts[MAX_JOINTS]);

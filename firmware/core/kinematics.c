@@ -31,7 +31,7 @@ void kinematics_turned(const float rpy[3], const float start[9], float rotation[
 bool kinematics_cranks(const CrankHexapod *hexapod, const float position[3],
                        const float rotation[9], float cranks[LEGS])
 {
-    return crank_inverse(&hexapod->legs, position, rotation, 0, cranks) == 0;
+    return crank_elbows(&hexapod->legs, position, rotation, cranks, 0) == 0;
 }
 
 bool kinematics_is_within_limits(const CrankHexapod *hexapod, const float position[3],

@@ -10,7 +10,7 @@
 static STATE float now[MAX_JOINTS];  /* what the last latch put out */
 static STATE float next[MAX_JOINTS]; /* what the next one will */
 static STATE float target[MAX_JOINTS];
-static STATE uint8_t on; /* bit i: channel i */
+static STATE uint32_t on; /* bit i: channel i */
 static STATE uint32_t latches; /* how many `now` accounts for */
 
 static void account_for_latch(void)
@@ -70,7 +70,7 @@ void motion_halt(void)
 
 void motion_energise(uint8_t channel, uint16_t count)
 {
-    on = (uint8_t)(on | 1 << channel);
+    on |= (uint32_t)1 << channel;
     do {
         account_for_latch();
         now[channel] = target[channel] = count;
@@ -90,7 +90,7 @@ bool motion_is_on(uint8_t channel)
 
 bool motion_is_all_on(void)
 {
-    return on == (1 << MACHINE.joint_count) - 1;
+    return on == ((uint32_t)1 << MACHINE.joint_count) - 1;
 }
 
 bool motion_is_slewing(void)

@@ -2,7 +2,10 @@
 #pragma once
 
 #define PROTOCOL_VERSION 1
-#define MAX_JOINTS 8
+/* As many as a STATE of 63 bytes holds. The chip, which has fewer channels, is built for those. */
+#ifndef MAX_JOINTS
+#define MAX_JOINTS 18
+#endif
 #define NO_JOINT 255
 #define MIN_DEADLINE_MS 1
 #define MAX_DEADLINE_MS 2000

@@ -17,7 +17,7 @@ struct Host {
     uint64_t next_latch_us;
     uint32_t periods;
     uint16_t staged[MAX_JOINTS];
-    uint8_t staged_on;
+    uint32_t staged_on;
     uint8_t output[OUTPUT_BYTES];
     uint32_t output_length;
     uint8_t state[]; /* the program's variables, while another board uses them */
@@ -167,7 +167,7 @@ uint32_t hardware_us(void)
     return (uint32_t)current->now_us;
 }
 
-bool hardware_stage_pulses(const uint16_t counts[MAX_JOINTS], uint8_t is_on, uint32_t periods)
+bool hardware_stage_pulses(const uint16_t counts[MAX_JOINTS], uint32_t is_on, uint32_t periods)
 {
     if (current->periods != periods)
         return false;

@@ -13,6 +13,7 @@ import numpy as np
 from hexapod_control.geometry import LEGS, RotaryGeometry
 from hexapod_control.leg_jacobian import leg_jacobian
 from hexapod_control.linear_geometry import LinearGeometry
+from hexapod_control.rails import RailGeometry
 from manipulator.analysis.measurements import Parameter
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution
@@ -48,7 +49,7 @@ class LegModel(ABC):
         """Six a kind and leg, or eighteen for points: leg by leg, then x, y, z."""
 
     @abstractmethod
-    def identified(self, values: Array) -> RotaryGeometry | LinearGeometry:
+    def identified(self, values: Array) -> RotaryGeometry | LinearGeometry | RailGeometry:
         """The geometry with these values."""
 
     @abstractmethod
@@ -63,17 +64,22 @@ class LegModel(ABC):
         platform axes.
         """
 
+    def screw_turns(self, values: Array, poses: Pose) -> tuple[Array | float, Array | float]:
+        """What joints are longer than legs at n poses, (n, 6), and its rows (n, 6, 6): 0."""
+        return 0.0, 0.0
+
     def predict(self, values: Array, joints: Array, near: Pose) -> Pose:
         """By Newton's method, all poses at once; see `Model`."""
         legs, pose = self.legs(values, joints), near
         for _ in range(MOST_ITERATIONS):
             rods = pose.transform(legs.platform) - legs.base
-            missing = legs.lengths - np.sqrt((rods * rods).sum(axis=-1))
+            extra, turning = self.screw_turns(values, pose)
+            missing = legs.lengths - extra - np.sqrt((rods * rods).sum(axis=-1))
             if not np.isfinite(missing).all():
                 break
             if np.abs(missing).max() < CLOSED:
                 return pose
-            rows = leg_jacobian(legs.base, legs.platform, pose)
+            rows = leg_jacobian(legs.base, legs.platform, pose) + turning
             try:
                 pose = pose.moved(np.linalg.solve(rows, missing[..., None])[..., 0])
             except np.linalg.LinAlgError:
@@ -89,6 +95,7 @@ class LegModel(ABC):
         units = rods / np.sqrt((rods * rods).sum(axis=-1))[..., None]
         gaps = self.gap_slopes(values, joints, units, units @ poses.rotation)
         rows = leg_jacobian(legs.base, legs.platform, poses)
+        rows = rows + self.screw_turns(values, poses)[1]
         return np.asarray(np.linalg.solve(rows, -gaps))
 
 

@@ -1,7 +1,7 @@
 """Platforms whose parameters can be identified, and their values as lines of a machine file.
 
-A crank platform has 12 joint centres, 6 cranks, 6 rods and 12 angles; one on linear legs 12 joint
-centres and 6 lengths at zero. Files hold millimetres and degrees.
+A crank platform has 12 joint centres, 6 cranks, 6 rods and 18 angles; one on linear legs 12 joint
+centres and 6 lengths at zero (one on rails: rail_model.py). Files hold millimetres and degrees.
 """
 
 import dataclasses
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hexapod_control.geometry import RotaryGeometry
+from hexapod_control.geometry import LEGS, RotaryGeometry
 from hexapod_control.identification.leg_model import (
     LegModel,
     Legs,
@@ -19,18 +19,21 @@ from hexapod_control.identification.leg_model import (
     points_parameters,
     rigid_point_motions,
 )
-from hexapod_control.linear import LinearPlatform
+from hexapod_control.identification.rail_model import RailModel
+from hexapod_control.linear import LinearPlatform, linear_legs
 from hexapod_control.linear_geometry import LinearGeometry
+from hexapod_control.rails import RailGeometry, RailPlatform
 from hexapod_control.rotary import RotaryHexapod
 from manipulator import rotation as so3
 from manipulator.analysis.measurements import Parameter
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.kinematics import Kinematics
+from manipulator.pose import Pose
 from manipulator.yaml_edit import flow_list
 
 
-def geometry_lines(geometry: RotaryGeometry | LinearGeometry) -> list[str]:
+def geometry_lines(geometry: RotaryGeometry | LinearGeometry | RailGeometry) -> list[str]:
     """The `geometry` section by coordinates, to 0.1 µm."""
     home = [f'  home_height_mm: {1e3 * geometry.home_height:g}']
     for key, values in (
@@ -40,10 +43,26 @@ def geometry_lines(geometry: RotaryGeometry | LinearGeometry) -> list[str]:
         home += [f'  {key}: {flow_list(values)}'] if values.any() else []
     joints = _points('platform_joints_mm', 1e3 * geometry.platform_points)
     if isinstance(geometry, LinearGeometry):
-        return [*_points('base_joints_mm', 1e3 * geometry.base_points), *joints, *home]
+        plain = [*_points('base_joints_mm', 1e3 * geometry.base_points), *joints, *home]
+        return plain if geometry.screw_lead == 0.0 else [*plain, *_screw_lines(geometry)]
+    if isinstance(geometry, RailGeometry):
+        sides = ', '.join('behind' if side > 0 else 'ahead' for side in geometry.sides)
+        return [
+            *_points('rail_points_mm', 1e3 * geometry.rail_points),
+            *_points('rail_directions', geometry.directions, DIGITS),
+            *joints,
+            f'  rod_length_mm: {flow_list(1e3 * geometry.rod_lengths)}',
+            f'  carriages: [{sides}]',
+            *home,
+        ]
+    level = np.cross(geometry.tangents, [0.0, 0.0, 1.0])
+    off = level - np.linalg.norm(level, axis=1, keepdims=True) * geometry.normals
+    are_as_assumed = np.abs(off).max() < 10.0**-DIGITS
+    axes = [] if are_as_assumed else _points('crank_axes', geometry.normals, DIGITS)
     return [
         *_points('crank_centres_mm', 1e3 * geometry.crank_centres),
-        *_points('crank_tangents', geometry.tangents, 6),
+        *_points('crank_tangents', geometry.tangents, DIGITS),
+        *axes,
         *joints,
         f'  crank_length_mm: {flow_list(1e3 * geometry.crank_lengths)}',
         f'  rod_length_mm: {flow_list(1e3 * geometry.rod_lengths)}',
@@ -51,20 +70,30 @@ def geometry_lines(geometry: RotaryGeometry | LinearGeometry) -> list[str]:
     ]
 
 
+def _screw_lines(geometry: LinearGeometry) -> list[str]:
+    return [
+        f'  screw_lead_mm: {1e3 * geometry.screw_lead:g}',
+        *_points('base_joint_axes', geometry.base_axes, DIGITS),
+        *_points('platform_joint_axes', geometry.platform_axes, DIGITS),
+    ]
+
+
 def _points(key: str, points: Array, digits: int = 4) -> list[str]:
     return [f'  {key}:', *(f'    - {flow_list(point, digits)}' for point in points)]
 
 
-UP = np.array([0.0, 0.0, 1.0])
+DIGITS = 6
+"""Of directions."""
+
 ANCHORS, JOINTS = slice(0, 18), slice(18, 36)
 CRANKS, RODS = slice(36, 42), slice(42, 48)
-ZEROS, HEADINGS = slice(48, 54), slice(54, 60)
+ZEROS, HEADINGS, TILTS = slice(48, 54), slice(54, 60), slice(60, 66)
 
 
 @dataclass(frozen=True, eq=False)
 class RotaryModel(LegModel):
-    """See `Model`. A crank stands at its commanded angle and its zero angle; its plane is
-    vertical and turned about z by its heading.
+    """See `Model`. A crank stands at its commanded angle and its zero angle; its plane is turned
+    about the file's tangent by its tilt, then about the file's ups by its heading.
     """
 
     geometry: RotaryGeometry
@@ -72,7 +101,7 @@ class RotaryModel(LegModel):
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """Anchors, platform joints, cranks, rods, zero angles, headings: 60."""
+        """Anchors, platform joints, cranks, rods, zero angles, headings, tilts: 66."""
         length, angle = self.tolerances.length, self.tolerances.angle
         return (
             *points_parameters('anchor', 'anchors', length),
@@ -81,6 +110,7 @@ class RotaryModel(LegModel):
             *leg_parameters('rod {} length', 'rods', 'm', length),
             *leg_parameters('crank {} zero angle', 'zeros', 'rad', angle),
             *leg_parameters('crank {} heading', 'headings', 'rad', angle),
+            *leg_parameters('crank {} tilt', 'tilts', 'rad', angle),
         )
 
     def legs(self, values: Array, joints: Array) -> Legs:
@@ -94,25 +124,26 @@ class RotaryModel(LegModel):
         """See `LegModel`."""
         found = self.identified(values)
         along, across = self._directions(found, values, joints)
-        sideways = np.cross(UP, along)
         r = found.crank_lengths[:, None]
-        cranks, zeros, headings = (
-            -(units * part).sum(axis=-1, keepdims=True)
-            for part in (along, r * across, r * sideways)
+        sideways = (r * np.cross(axis, along) for axis in self._turning_axes(values))
+        cranks, zeros, headings, tilts = (
+            -(units * part).sum(axis=-1, keepdims=True) for part in (along, r * across, *sideways)
         )
         rods = -np.ones_like(cranks)
-        own = (-units, arms, cranks, rods, zeros, headings)
+        own = (-units, arms, cranks, rods, zeros, headings, tilts)
         return np.concatenate([own_leg(part) for part in own], axis=2)
 
     def identified(self, values: Array) -> RotaryGeometry:
         """The geometry with these values; the zero angles are not in it."""
         g = self.geometry
-        turns = so3.exp(values[HEADINGS, None] * UP)
+        heading = so3.exp(values[HEADINGS, None] * g.ups)
+        turns = heading @ so3.exp(values[TILTS, None] * g.tangents)
         return dataclasses.replace(
             g,
             crank_centres=g.crank_centres + values[ANCHORS].reshape(6, 3),
             platform_points=g.platform_points + values[JOINTS].reshape(6, 3),
             tangents=np.einsum('lij,lj->li', turns, g.tangents),
+            normals=np.einsum('lij,lj->li', turns, g.normals),
             crank_lengths=g.crank_lengths + values[CRANKS],
             rod_lengths=g.rod_lengths + values[RODS],
         )
@@ -122,18 +153,26 @@ class RotaryModel(LegModel):
         return values[ZEROS]
 
     def rigid_motions(self, values: Array) -> dict[str, Array]:
-        """See `Model`. The planes stay vertical: turned about x or y, the base is another."""
-        g = self.identified(values)
-        found: dict[str, Array] = {}
-        sides = ((ANCHORS, g.crank_centres, 'anchors'), (JOINTS, g.platform_points, 'joints'))
-        for part, points, side in sides:
-            name = 'the anchors' if side == 'anchors' else 'the platform joints'
-            for motion, direction in rigid_point_motions(points, name).items():
-                found[motion] = np.zeros(60)
+        """See `Model`."""
+        g, found = self.identified(values), dict[str, Array]()
+        base = rigid_point_motions(g.crank_centres, 'the anchors')
+        platform = rigid_point_motions(g.platform_points, 'the platform joints')
+        for part, motions in ((ANCHORS, base), (JOINTS, platform)):
+            for motion, direction in motions.items():
+                found[motion] = np.zeros(len(self.parameters))
                 found[motion][part] = direction
-                if part is ANCHORS and motion.endswith('about z'):
-                    found[motion][HEADINGS] = 1.0
+        frames = np.stack([*self._turning_axes(values), g.normals], axis=-1)
+        for axis, direction in zip('xyz', np.eye(3), strict=True):
+            turns = np.linalg.solve(frames, np.broadcast_to(direction[:, None], (LEGS, 3, 1)))
+            moved = found[f'the anchors turned together about {axis}']
+            moved[HEADINGS], moved[TILTS], moved[ZEROS] = turns[..., 0].T
         return found
+
+    def _turning_axes(self, values: Array) -> tuple[Array, Array]:
+        """Unit vectors (6, 3), base axes, about which headings and tilts turn the cranks."""
+        g = self.geometry
+        heading = so3.exp(values[HEADINGS, None] * g.ups)
+        return g.ups, np.einsum('lij,lj->li', heading, g.tangents)
 
     def _directions(
         self, found: RotaryGeometry, values: Array, joints: Array
@@ -185,6 +224,13 @@ class LinearModel(LegModel):
             platform_points=g.platform_points + values[POINTS : 2 * POINTS].reshape(6, 3),
         )
 
+    def screw_turns(self, values: Array, poses: Pose) -> tuple[Array | float, Array | float]:
+        """See `LegModel`; the axes of the joints are as in the file."""
+        found = self.identified(values)
+        if found.screw_lead == 0.0:
+            return 0.0, 0.0
+        return linear_legs(found).screw_turns(poses)
+
     def joint_offsets(self, values: Array) -> Array:
         """(6,): true length less the commanded one, m."""
         return values[2 * POINTS :]
@@ -200,10 +246,14 @@ class LinearModel(LegModel):
         }
 
 
-def model_of(kinematics: Kinematics, tolerances: Tolerances) -> RotaryModel | LinearModel:
+def model_of(
+    kinematics: Kinematics, tolerances: Tolerances
+) -> RotaryModel | LinearModel | RailModel:
     """InvalidInput for a machine that is no platform."""
     if isinstance(kinematics, RotaryHexapod):
         return RotaryModel(kinematics.geometry, tolerances)
     if isinstance(kinematics, LinearPlatform):
         return LinearModel(kinematics.geometry, tolerances)
+    if isinstance(kinematics, RailPlatform):
+        return RailModel(kinematics.geometry, tolerances)
     raise InvalidInput(f'no model to identify for a {type(kinematics).__name__}')

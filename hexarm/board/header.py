@@ -6,6 +6,7 @@ from pathlib import Path
 
 from bridge.calibration import Calibration
 from bridge.fake.board_settings import BoardSettings
+from bridge.protocol import MAX_JOINTS
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board.kinematics import crank_hexapod
@@ -14,6 +15,8 @@ from manipulator.errors import ConfigError
 
 WIDEST_COUNT = 36_000
 """18 ms: a wider pulse would still be in progress when the board prepares the next one."""
+CHANNELS = 8
+"""Pulses that the chip makes, MAX_JOINTS of its program: firmware/Makefile, avr/pulses.c."""
 BAUD_STEP, WORST_BAUD = 2_000_000, 0.025
 """Bits per second at the chip's fastest; 115200 is 2.1 % off, and still understood."""
 HIGHEST_BATTERY_MV = 9_990
@@ -59,6 +62,7 @@ def _board_config(machine: str) -> BoardConfig:
 
 def header(settings: BoardSettings, name: str = A_MACHINE) -> str:
     """parameters.h: the program's structure of its machine (firmware/core/machine.h)."""
+    _refuse_joints(settings)
     _refuse_wide_pulses(settings)
     _refuse_baud(settings.baud)
     _refuse_battery(settings)
@@ -78,7 +82,8 @@ def _initialiser(value: object) -> str:
     if isinstance(value, ctypes.Structure):
         return f'{{{", ".join(_fields(value))}}}'
     if isinstance(value, ctypes.Array):
-        return f'{{{", ".join(map(_initialiser, value))}}}'
+        numbers = value[:CHANNELS] if len(value) == MAX_JOINTS else value
+        return f'{{{", ".join(map(_initialiser, numbers))}}}'
     if isinstance(value, float):
         return f'{value:.9e}f'
     return str(value).lower()
@@ -101,6 +106,12 @@ def _refuse_baud(baud: int) -> None:
     if abs(made / baud - 1) > WORST_BAUD:
         nearest = f'the board makes {made:.0f} instead'
         raise ConfigError([f'link.baud: {baud} bit/s; {nearest}, 250000 is exact'])
+
+
+def _refuse_joints(settings: BoardSettings) -> None:
+    count = len(settings.count_ranges)
+    if count > CHANNELS:
+        raise ConfigError([f'servos.joints: {count} joints, the board has {CHANNELS} channels'])
 
 
 def _refuse_battery(settings: BoardSettings) -> None:

@@ -39,7 +39,7 @@ OPTIONS = (
     Option('--noise-mm', NOISE_MM, "the device's noise, an axis"),
     Option('--noise-deg', NOISE_DEG, 'the same for the orientation'),
     Option('--tolerance-mm', TOLERANCE_MM, 'how well lengths were built'),
-    Option('--tolerance-deg', TOLERANCE_DEG, 'how well zeros, headings and twists were'),
+    Option('--tolerance-deg', TOLERANCE_DEG, 'how well zeros, headings, tilts and twists were'),
 )
 
 
@@ -53,8 +53,8 @@ def add_parser(parts: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> 
     parser.add_argument(
         '--free', nargs='+', metavar='GROUP',
         help='what is sought (default: all that the machine has): anchors, joints, cranks, rods, '
-        'zeros, headings of a platform; zeros, lengths, twists of an arm; device and marker, the '
-        'frames of the measuring device',
+        'zeros, headings, tilts, rails of a platform; zeros, lengths, twists of an arm; device '
+        'and marker, the frames of the measuring device',
     )  # fmt: skip
     for option in OPTIONS:
         parser.add_argument(

@@ -107,12 +107,17 @@ class MachineWriter:
             raise ConfigError([f'{self.source} was changed meanwhile: nothing was written'])
         if self.target != self.source and self.target.exists():
             raise ConfigError([f'{self.target} was made meanwhile: it is not overwritten'])
-        found = new_problems(self.text, text)
+        found = self._new_problems(text)
         try:
             self._replace(text)
         except OSError as error:
             raise ConfigError([f'{self.target} cannot be written: {error.strerror}']) from error
         return found
+
+    def _new_problems(self, text: str) -> list[str]:
+        """What is wrong with the machine file after the change and was not before."""
+        before = set(problems_of(self.text, self.source.parent))
+        return [p for p in problems_of(text, self.target.parent) if p not in before]
 
     def _replace(self, text: str) -> None:
         number, name = tempfile.mkstemp(prefix=f'.{self.target.name}.', dir=self.target.parent)
@@ -127,9 +132,3 @@ class MachineWriter:
             with contextlib.suppress(OSError):
                 os.unlink(name)
             raise
-
-
-def new_problems(before: str, after: str) -> list[str]:
-    """What is wrong with a machine file after a change and was not before."""
-    old = set(problems_of(before))
-    return [problem for problem in problems_of(after) if problem not in old]

@@ -62,6 +62,7 @@ FOUND = {
 POSITIVE = {
     'rotary_hexapod': ' (the crank turns from its tangent upwards)',
     'linear_hexapod': ' (the leg grows longer)',
+    'rail_hexapod': ' (the carriage moves in the direction of its rail)',
     'serial_arm': ' (a right-hand turn about the axis)',
 }
 """The positive direction, by the kind of machine."""

@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Prints problems and warnings, one a line, and what home is like; status 2 for problems."""
     try:
         path = find(arguments.file)
-        report = report_of(parse_yaml(text_of(path), str(path)))
+        report = report_of(parse_yaml(text_of(path), str(path)), path.parent)
         lines = _in_words(arguments.file, report, units_of(arguments))
     except ConfigError as error:
         report = Report(error.problems)

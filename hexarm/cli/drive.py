@@ -1,12 +1,13 @@
 """`hexarm go|home|park|pose|joints NAMESPACE`: a machine that runs, moved and measured."""
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from hexarm.cli.answers import (
     Answer,
+    Units,
     add_units,
     answering,
     for_programs,
@@ -15,8 +16,9 @@ from hexarm.cli.answers import (
 )
 from hexarm.cli.statuses import STATUSES
 from hexarm.namespaces import namespace_of
-from hexarm.robot_values import moved_to
+from hexarm.robot_values import checked, moved_to
 from manipulator.errors import ConfigError, InvalidInput, Refused, TimedOut, Unreachable
+from manipulator.formatting import shown
 from manipulator.pose import Pose
 
 if TYPE_CHECKING:
@@ -41,8 +43,13 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument(
         '--speed', type=float, metavar='V', help='m/s (or mm/s), at most; along a line'
     )
-    for name, act in (('home', home), ('park', park), ('pose', pose), ('joints', joints)):
+    for name, act in (('home', home), ('park', park), ('pose', pose)):
         add_driving(commands, name, act)
+    parser = add_driving(commands, 'joints', joints, epilog=STATUSES)
+    parser.add_argument(
+        '--set', nargs='+', metavar='NAME=Q', dest='named',
+        help='moves these joints first (rad or m; with --units mm: ° or mm)',
+    )  # fmt: skip
 
 
 def add_driving(
@@ -130,10 +137,26 @@ def pose(robot: 'Robot', arguments: argparse.Namespace) -> Answer:
     return answer, units_of(arguments).pose(measured)
 
 
+def joints_asked(words: Sequence[str], kinds: Mapping[str, str], units: Units) -> dict[str, float]:
+    """NAME=Q of each joint, in SI; InvalidInput names the word that is none."""
+    named: dict[str, float] = {}
+    for word in words:
+        name, _, number = word.partition('=')
+        if name not in kinds:
+            known = ', '.join(kinds)
+            raise InvalidInput(f'--set {shown(word)}: needs NAME=Q, with one of {known}')
+        if name in named:
+            raise InvalidInput(f'--set: joint {name} is named twice')
+        named[name] = checked(name, number) / units.factor(kinds[name])
+    return named
+
+
 def joints(robot: 'Robot', arguments: argparse.Namespace) -> Answer:
-    """The measured joints."""
-    units, measured = units_of(arguments), robot.joints
-    kinds = robot.limits.units
+    """The measured joints, after a move of those of --set."""
+    units, kinds = units_of(arguments), robot.limits.units
+    if arguments.named:
+        robot.move_joints(joints_asked(arguments.named, kinds, units))
+    measured = robot.joints
     width = max(12, *map(len, measured))
     lines = [
         f'{name:<{width}} {units.quantities([position], kind):>16}'

@@ -17,6 +17,8 @@ from hexarm.cli.answers import (
 from hexarm.cli.statuses import STATUSES
 from hexarm.machines import load
 from manipulator.arrays import Array
+from manipulator.errors import InvalidInput
+from manipulator.formatting import counted
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 from manipulator.unit_hints import hint_at_metres
@@ -37,6 +39,10 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     add_machine(parser)
     add_pose(parser)
     parser.add_argument('--all', action='store_true', help='every branch, also beyond limits')
+    parser.add_argument(
+        '--near', nargs='+', type=float, metavar='Q',
+        help='one a joint, rad or m (or ° or mm): the branch and turns nearest to these',
+    )  # fmt: skip
     parser.set_defaults(run=answering(answer))
 
 
@@ -46,7 +52,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
     pose = pose_asked(arguments)
     kinematics = machine.kinematics
     with hint_at_metres(kinematics, pose):
-        joints = kinematics.inverse(pose)
+        joints = kinematics.inverse(pose, near_of(arguments, machine))
         if arguments.all:
             return every_branch(machine, pose, units_of(arguments))
         machine.constraints.check(pose, joints)
@@ -57,6 +63,21 @@ def answer(arguments: argparse.Namespace) -> Answer:
         for name, position in zip(names, positions, strict=True)
     ]
     return {'joints': {'names': names, 'positions': positions}}, lines
+
+
+def near_of(arguments: argparse.Namespace, machine: Machine) -> Array | None:
+    """The joints (n,) of --near; None without it, InvalidInput for another number of them."""
+    if arguments.near is None:
+        return None
+    names, units = machine.kinematics.joint_names, units_of(arguments)
+    if len(arguments.near) != len(names):
+        count = counted(len(arguments.near), 'number')
+        raise InvalidInput(f'--near: {count}, needs {len(names)}: {", ".join(names)}')
+    is_angle = machine.kinematics.joint_unit == 'rad'
+    near: Array = np.array(arguments.near) / (units.per_radian if is_angle else units.per_metre)
+    if not np.isfinite(near).all():
+        raise InvalidInput(f'--near: {near[~np.isfinite(near)][0]}, needs finite numbers')
+    return near
 
 
 def every_branch(machine: Machine, pose: Pose, units: Units) -> Answer:

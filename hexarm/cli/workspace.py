@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from arm_control.arm import SerialArm
+from hexapod_control.stack_kinematics import StackKinematics
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.cli.progress import progress
 from hexarm.machines import load
@@ -23,7 +23,7 @@ from manipulator.pose import Pose
 
 POINTS, FEWER_POINTS, FEWEST_POINTS = 1_000_000, 20_000, 1000
 SLOW_POINTS = 2000
-"""For arms that are solved numerically: a millisecond and more a pose."""
+"""For stacks, and arms that are solved numerically: up to a millisecond and more a pose."""
 TABLE_POINTS = 100_000
 TILT = 0.5
 COLUMNS = ('x', 'y', 'z', 'admitted', 'sigma_min', 'joint_speed')
@@ -36,7 +36,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument(
         '--points', type=int, metavar='N',
         help=f'positions for the volume (default {POINTS}, for serial arms {FEWER_POINTS}, '
-        f'without closed form {SLOW_POINTS})',
+        f'without closed form, and stacks {SLOW_POINTS})',
     )  # fmt: skip
     parser.add_argument(
         '--tilt', type=float, default=TILT, metavar='RAD',
@@ -69,13 +69,16 @@ def answer(arguments: argparse.Namespace) -> Answer:
             written += draw(machine, found, arguments.picture, arguments.machine)
             on_progress('pictures', 1.0)
     files = [str(path) for path in written]
-    return {**_for_programs(found), 'files': files}, [*_in_words(found), *files]
+    return {**_for_programs(found), 'files': files}, [
+        *_in_words(found),
+        _sampling(machine, found),
+        *files,
+    ]
 
 
 def default_points(machine: Machine) -> int:
     """As many positions as take a minute or two."""
-    arm = machine.kinematics
-    if isinstance(arm, SerialArm) and not arm.is_explicit:
+    if not machine.kinematics.is_explicit:
         return SLOW_POINTS
     return FEWER_POINTS if is_by_joints(machine) else POINTS
 
@@ -119,6 +122,20 @@ def _in_words(found: Survey) -> list[str]:
         f'  roll, pitch, yaw each within ±{found.tilt:g} rad; a lower bound: the second half of '
         f'the search found {1e3 * found.search_gain:.3g} dm³ of it'
     )
+    return lines
+
+
+def _sampling(machine: Machine, found: Survey) -> str:
+    """How the volumes were sampled."""
+    sides = ' × '.join(f'{1e3 * side:.4g}' for side in found.box.high - found.box.low)
+    lines = (
+        f'sampled at {counted(found.constant_orientation.points, "position")} spread evenly over '
+        f'{sides} mm, and at {found.some_orientation.points} where orientations are tried'
+    )
+    if isinstance(machine.kinematics, StackKinematics):
+        lines += (
+            '; sections share each pose as docs/kinematics.md, 9, says, others might reach more'
+        )
     return lines
 
 

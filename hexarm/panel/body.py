@@ -124,9 +124,10 @@ class Body:
     def _add_plate(self, scene: Any, name: str, stance: Stance, style: dict[str, Any]) -> Any:
         """The platform as a plate, where the machine has one."""
         strokes = self._kinematics.skeleton(stance.pose, stance.joints)
-        outline = next((s.points[:-1] for s in strokes if s.part == 'platform'), None)
-        if outline is None:
+        outlines = [s.points[:-1] for s in strokes if s.part == 'platform']
+        if not outlines:
             return None
+        outline = outlines[-1]  # the uppermost of a stack
         inside = stance.pose.inverse().transform(outline) * self._scale
         vertices, faces = plate(inside, PLATE)
         style = {key: value for key, value in style.items() if key != 'lod'}

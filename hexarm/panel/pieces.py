@@ -175,12 +175,13 @@ def colours(parts: tuple[str, ...], owners: tuple[str, ...], left: dict[str, flo
 
 
 def _owners(strokes: tuple[Stroke, ...]) -> list[str]:
-    """Whose each stroke is: cranks and rods are counted, each by itself."""
+    """Whose each stroke is, where it says so, else cranks and rods are counted, each by itself."""
     counts: dict[str, int] = {}
     found = []
     for stroke in strokes:
         counts[stroke.part] = counts.get(stroke.part, 0) + 1
-        found.append(f'leg {counts[stroke.part]}' if stroke.part in COLUMNS else '')
+        counted = stroke.owners[0] if stroke.owners else f'leg {counts[stroke.part]}'
+        found.append(counted if stroke.part in COLUMNS else '')
     return found
 
 

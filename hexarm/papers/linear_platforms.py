@@ -9,11 +9,13 @@ from hexapod_control.leg_motion import LegMotion, paper_motion
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.linear_geometry import PlatesConfig
 from hexarm import machines
-from hexarm.papers.finding import LINEAR, Claim, Finding, minus
+from hexarm.papers.finding import LINEAR, Claim, Finding, minus, unstated
 from hexarm.papers.plane_method import PlaneMethod
+from manipulator.analysis.inside import ranges
 from manipulator.arrays import Array
 from manipulator.config import build
 from manipulator.errors import InvalidInput
+from manipulator.machine import Machine, MachineFile
 from manipulator.pose import Pose
 
 MACHINES = {'6-3': 'stewart_6_3', '6-6': 'stewart_6_6'}
@@ -23,6 +25,10 @@ LINEAR_MM, NEARLY_MM = 0.1, 3.3
 SHOWN_DEGREES = 1.0
 """The axes of figs 7 and 9 end at ±1; the scan shows no finer scale."""
 HIGHER_MM = 0.1
+SECTIONS = (3, 4)
+"""As config/stack_6_6.yaml, and as the LX-4, which the paper names."""
+GAIN_AXES = ('x', 'y', 'z', 'roll', 'pitch')
+"""About z a stack turns as far as it is looked for."""
 
 
 def motion(name: str) -> LegMotion:
@@ -52,6 +58,9 @@ def findings() -> Iterator[Finding]:
     )  # fmt: skip
     yield plane_method()
     yield solutions()
+    alone = _spans(machines.load('stewart_6_6'))
+    for count in SECTIONS:
+        yield multi_section(count, alone)
 
 
 def linearity(kind: str, found: LegMotion) -> Finding:
@@ -110,6 +119,29 @@ def solutions() -> Finding:
         (float(len(modes.poses)),), 'real poses', 0.5,
         'all computed at once: [forward-modes.md](forward-modes.md)',
     )  # fmt: skip
+
+
+def multi_section(count: int, alone: Array) -> Finding:
+    """The outlook: 6-6 platforms on each other, and what their end gains by one of them."""
+    path = machines.find('stack_6_6')
+    content = machines.content_of(path)
+    section = content['geometry']['sections'][0]
+    content['geometry'] = {'sections': [section] * count}
+    machine = machines.loader('stack')(build(MachineFile, content))
+    gains = _spans(machine) / alone
+    words = ', '.join(f'{axis} {gain:.2f}' for axis, gain in zip(GAIN_AXES, gains, strict=True))
+    return Finding(
+        f'sections_{count}', LINEAR, f'outlook: {count} sections 6-6 on each other, ranges by '
+        'those of one', unstated('proposed (LX-4 has four)'), words, tuple(map(float, gains)), '',
+        0.01, f'{6 * count} joints for one pose: each section stays nearest to its home '
+        '([kinematics.md](kinematics.md), 9); the plates between them are 4 mm, ours',
+    )  # fmt: skip
+
+
+def _spans(machine: Machine) -> Array:
+    """How far home moves in all along and about some axes, metres and radians."""
+    found = ranges(machine)
+    return np.array([np.ptp(found[axis]) for axis in GAIN_AXES])
 
 
 def platform(name: str) -> LinearPlatform:

@@ -19,8 +19,9 @@ from manipulator.analysis.survey import Survey
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 
-GRID = 161
-RINGS, SECTORS = 37, 73
+GRIDS = {True: 161, False: 61}
+RINGS = {True: 37, False: 19}
+"""By whether the inverse is explicit; others take up to a millisecond a pose."""
 SPEED = 0.03
 INK, SOFT = '#22313f', '#4a5a6a'
 PLANES = ((0, 1), (0, 2), (1, 2))
@@ -58,7 +59,8 @@ def _shape(machine: Machine, found: Survey, name: str) -> Figure:
         'sections through home', color=SOFT,
     )  # fmt: skip
     _surface(figure.add_axes((-0.025, 0.02, 0.37, 0.88), projection='3d'), machine)
-    planes = [section(machine, axes, found.box.low, found.box.high, GRID) for axes in PLANES]
+    grid = GRIDS[machine.kinematics.is_explicit]
+    planes = [section(machine, axes, found.box.low, found.box.high, grid) for axes in PLANES]
     rows = (
         ('sigma_min', 'singularity margin σmin', 'viridis', 1.0),
         ('joint_speed', _speed_label(machine), 'magma_r', _speed_factor(machine)),
@@ -77,8 +79,9 @@ def _shape(machine: Machine, found: Survey, name: str) -> Figure:
 
 
 def _surface(axes: Axes3D, machine: Machine) -> None:
+    rings = RINGS[machine.kinematics.is_explicit]
     polar, turn = np.meshgrid(
-        np.linspace(0, np.pi, RINGS), np.linspace(0, 2 * np.pi, SECTORS), indexing='ij'
+        np.linspace(0, np.pi, rings), np.linspace(0, 2 * np.pi, 2 * rings - 1), indexing='ij'
     )
     directions = np.stack(
         [np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar)], axis=-1

@@ -40,7 +40,7 @@ def arm_links(arm: SerialArm, config: ArmDynamicsConfig) -> tuple[RigidBody, ...
 
 def arm_model(name: str, arm: SerialArm, config: ArmDynamicsConfig, drives: Drives) -> Mechanism:
     """The model at zero angles, with the drives of the joints."""
-    chain, root = arm.chain, document(name)
+    chain, root = arm.chain, document(name, config.gravity)
     parent, origin = child(root, 'worldbody'), np.zeros(3)
     points = [*chain.points, chain.home.position]
     tube(parent, origin, points[0], 1e-3 * config.links[0].radius_mm, METAL)

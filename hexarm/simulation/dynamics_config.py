@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from manipulator.arrays import Array
+from manipulator.arrays import Array, frozen
 from manipulator.config import PLACE_MM, SIZE_MM, key, quantity
 from manipulator.errors import ConfigError
 
@@ -16,6 +16,13 @@ Three = tuple[float, float, float]
 SOURCE = "where the numbers come from, or 'estimate'"
 INERTIA = 'principal moments about the centre of mass, along the axes'
 COMPENSATION = 'whether targets are corrected by the static deflection of the drives'
+GRAVITY = 9.80665
+"""m/s², on Earth."""
+
+GRAVITY_DIRECTION = (
+    "of gravity, base frame, of any length: 0, 0, 1 where the base frame's z points down; a home "
+    'below an upright base needs no other'
+)
 MASS_G = (1e-3, 1e9)
 EFFORT = (1e-6, 1e8)
 """N or N·m."""
@@ -62,7 +69,7 @@ class PlateConfig:
     """
 
     source: str = key(SOURCE)
-    mass_g: float = quantity(*MASS_G, 'of one')
+    mass_g: float = quantity(*MASS_G, 'of the plate')
     thickness_mm: float = quantity(*SIZE_MM, 'of the plate')
     centre_mm: Three = quantity(*PLACE_MM, 'of mass, platform frame', default=(0.0, 0.0, 0.0))
     inertia_g_mm2: Three | None = quantity(0, 1e18, INERTIA, default=None)
@@ -80,7 +87,7 @@ class PayloadConfig:
     source: str = key(SOURCE)
     mass_g: float = quantity(0, MASS_G[1], '0 is nothing')
     radius_mm: float = quantity(*SIZE_MM, 'of a cylinder')
-    height_mm: float = quantity(*SIZE_MM, 'of it')
+    height_mm: float = quantity(*SIZE_MM, 'of the cylinder')
 
 
 @dataclass(frozen=True)
@@ -94,7 +101,7 @@ class RodConfig:
 
 @dataclass(frozen=True)
 class TubeConfig:
-    """A part of a linear leg: a round rod of even density and a length of its own."""
+    """A part of a leg that is as long as it says: a round rod of even density."""
 
     source: str = key(SOURCE)
     mass_g: float = quantity(*MASS_G, 'of one')
@@ -132,8 +139,33 @@ class PushingDriveConfig:
     rotor_mass_g: float = quantity(MASS_G[0], 1e12, 'as felt at the output')
 
 
+@dataclass(frozen=True, kw_only=True)
+class GravityConfig:
+    """Where gravity pulls, for every kind of machine."""
+
+    gravity_direction: Three = quantity(-1000, 1000, GRAVITY_DIRECTION, default=(0.0, 0.0, -1.0))
+
+    def __post_init__(self) -> None:
+        """Raises ConfigError for a direction that is none."""
+        if not np.linalg.norm(self.gravity_direction) > 0.0:
+            raise ConfigError([f'gravity_direction: {list(self.gravity_direction)} is none'])
+
+    @property
+    def gravity(self) -> Array:
+        """The acceleration of free fall, (3,) m/s², base frame."""
+        direction = np.array(self.gravity_direction)
+        return frozen(GRAVITY * direction / np.linalg.norm(direction))
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicsConfig(GravityConfig):
+    """What the section has for every machine with masses and drives of its own."""
+
+    compensation: bool = key(COMPENSATION, default=False)
+
+
 @dataclass(frozen=True)
-class RotaryDynamicsConfig:
+class RotaryDynamicsConfig(DynamicsConfig):
     """A crank platform's masses and drives."""
 
     platform: PlateConfig = key('a hexagonal plate about its joints')
@@ -142,11 +174,10 @@ class RotaryDynamicsConfig:
     rod: RodConfig = key('every rod, round')
     servo: TubeConfig = key('every servo, drawn as a cylinder')
     drive: TurningDriveConfig = key('a servo that turns')
-    compensation: bool = key(COMPENSATION, default=False)
 
 
 @dataclass(frozen=True)
-class LinearDynamicsConfig:
+class LinearDynamicsConfig(DynamicsConfig):
     """A linear platform's masses and drives: a leg is a cylinder below and a piston above."""
 
     platform: PlateConfig = key('a hexagonal plate about its joints')
@@ -154,7 +185,17 @@ class LinearDynamicsConfig:
     cylinder: TubeConfig = key('lower part of every leg')
     piston: TubeConfig = key('upper part of every leg')
     drive: PushingDriveConfig = key('a servo that pushes')
-    compensation: bool = key(COMPENSATION, default=False)
+
+
+@dataclass(frozen=True)
+class RailDynamicsConfig(DynamicsConfig):
+    """The masses and drives of a platform on rails; a carriage's length is along its rail."""
+
+    platform: PlateConfig = key('a hexagonal plate about its joints')
+    payload: PayloadConfig = key('what is carried, on the xy plane of the moving frame')
+    carriage: TubeConfig = key('every carriage, drawn as a cylinder along its rail')
+    rod: RodConfig = key('every rod, round')
+    drive: PushingDriveConfig = key('a servo that pushes')
 
 
 @dataclass(frozen=True)
@@ -186,19 +227,26 @@ class LinkConfig:
 
 
 @dataclass(frozen=True)
-class ArmDynamicsConfig:
+class ArmDynamicsConfig(DynamicsConfig):
     """A serial arm's links, base first, and what its tool carries."""
 
     links: tuple[LinkConfig, LinkConfig, LinkConfig, LinkConfig, LinkConfig, LinkConfig] = key(
         'base first'
     )
     payload: PayloadConfig = key('what is carried, on the xy plane of the moving frame')
-    compensation: bool = key(COMPENSATION, default=False)
 
 
-SCHEMAS: dict[str, type[RotaryDynamicsConfig | LinearDynamicsConfig | ArmDynamicsConfig]] = {
+@dataclass(frozen=True)
+class StackDynamicsConfig(GravityConfig):
+    """A stack has no masses and drives but those of its sections; gravity is its own."""
+
+
+Dynamics = RotaryDynamicsConfig | LinearDynamicsConfig | RailDynamicsConfig | ArmDynamicsConfig
+
+SCHEMAS: dict[str, type[Dynamics]] = {
     'rotary_hexapod': RotaryDynamicsConfig,
     'linear_hexapod': LinearDynamicsConfig,
+    'rail_hexapod': RailDynamicsConfig,
     'serial_arm': ArmDynamicsConfig,
 }
 """What the section must hold, by the machine's kind."""

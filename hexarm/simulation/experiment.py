@@ -24,7 +24,8 @@ Shift = Callable[[Pose, Array], Array]
 class Recording:
     """What the sensors showed, one row every 2 ms; commanded are the requested poses.
 
-    closure is how far the worst loop's ends are apart, metres.
+    closure is how far the worst loop's ends are apart, metres; gravity the acceleration of free
+    fall, (3,).
     """
 
     times: Array
@@ -36,6 +37,7 @@ class Recording:
     accelerations: Array
     closure: Array
     commanded: Pose
+    gravity: Array
 
     @property
     def errors(self) -> Array:
@@ -69,7 +71,8 @@ def run(
         readings.append(simulation.watched())
         shown.append(k)
         closure.append(simulation.closure_errors().max(initial=0.0))
-    return _recording(readings, frozen(closure), poses[shown])
+    gravity = frozen(simulation.model.opt.gravity)
+    return _recording(readings, frozen(closure), poses[shown], gravity)
 
 
 def unshifted(pose: Pose, joints: Array) -> Array:
@@ -100,7 +103,9 @@ def _swelling(cycle: Cycle, times: Array, period: float) -> Pose:
     return cycle.centre.moved(part[:, None] * cycle.centre.twist_to(cycle.at(times).pose))
 
 
-def _recording(readings: list[Reading], closure: Array, commanded: Pose) -> Recording:
+def _recording(
+    readings: list[Reading], closure: Array, commanded: Pose, gravity: Array
+) -> Recording:
     def stacked(name: str) -> Array:
         return frozen(np.array([getattr(reading, name) for reading in readings]))
 
@@ -117,4 +122,5 @@ def _recording(readings: list[Reading], closure: Array, commanded: Pose) -> Reco
         stacked('acceleration'),
         closure,
         commanded,
+        gravity,
     )

@@ -12,11 +12,10 @@ import numpy as np
 from hexapod_control.rotary import RotaryHexapod
 from hexarm.simulation.dynamics_config import RotaryDynamicsConfig
 from hexarm.simulation.platform_parts import moving_bodies
-from hexarm.simulation.rigid_body import GRAVITY, RigidBody
+from hexarm.simulation.rigid_body import RigidBody
 from manipulator.arrays import Array
 from manipulator.planning.plan import MotionState
 
-UP = np.array([0.0, 0.0, 1.0])
 NEAR = 1e-5
 """Seconds to either side over which the crank rates' change is taken."""
 
@@ -65,9 +64,9 @@ class InverseDynamics:
         )
         arms = geometry.platform_points @ np.swapaxes(motion.pose.rotation, -1, -2)
         end = _acceleration_at(motion, arms)
-        weight = 0.5 * rod * GRAVITY * UP
+        weight = -0.5 * rod * config.gravity
         at_end = rod / 6 * (2 * end + tip) + weight
-        at_tip = rod / 6 * (2 * tip + end) + weight + 0.5 * crank * GRAVITY * UP
+        at_tip = rod / 6 * (2 * tip + end) + weight - 0.5 * crank * config.gravity
         wrench = self._moving_wrench(motion)
         wrench[..., :3] += at_end.sum(axis=-2)
         wrench[..., 3:] += np.cross(arms, at_end).sum(axis=-2)
@@ -87,7 +86,8 @@ class InverseDynamics:
         body, rotation = self.moving, motion.pose.rotation
         arm = np.einsum('...ij,j->...i', rotation, body.centre)
         inertia = rotation @ body.inertia @ np.swapaxes(rotation, -1, -2)
-        force = body.mass * (_acceleration_at(motion, arm[..., None, :])[..., 0, :] + GRAVITY * UP)
+        centre = _acceleration_at(motion, arm[..., None, :])[..., 0, :]
+        force = body.mass * (centre - self.dynamics.gravity)
         turning, omega = motion.acceleration[..., 3:], motion.twist[..., 3:]
         spin = np.einsum('...ij,...j->...i', inertia, omega)
         moment = np.einsum('...ij,...j->...i', inertia, turning) + np.cross(omega, spin)

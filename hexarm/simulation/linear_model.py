@@ -38,18 +38,30 @@ from hexarm.simulation.rigid_body import (
     written,
 )
 from manipulator.arrays import Array
+from manipulator.errors import ConfigError
 from manipulator.pose import Pose
+
+PLATE = 0.012
+"""Thickness of the base plate, behind its joints, metres."""
 
 
 def linear_model(
     name: str, kinematics: LinearPlatform, config: LinearDynamicsConfig, drives: Drives
 ) -> Mechanism:
-    """The model at home, with the drives of the legs."""
+    """The model at home, with the drives of the legs; ConfigError for legs on screws that turn."""
     geometry, joints = kinematics.geometry, kinematics.joint_names
-    root = document(name)
+    if geometry.screw_lead != 0.0:
+        lead = 1e3 * geometry.screw_lead
+        raise ConfigError(
+            [f'geometry.screw_lead_mm: {lead:g}, the model turns no screws: needs 0']
+        )
+    root = document(name, config.gravity)
     base = add(child(root, 'worldbody'), 'body', name='body')
-    low = float(geometry.base_points[:, 2].min())
-    add_hexagon(root, base, 'body', inradius(geometry.base_points), (low - 0.012, low), METAL)
+    heights = geometry.base_points[:, 2]
+    low = float(heights.min()) - PLATE
+    if geometry.home.position[2] < low:
+        low = float(heights.max())
+    add_hexagon(root, base, 'body', inradius(geometry.base_points), (low, low + PLATE), METAL)
     add_platform(root, config.platform, config.payload, geometry.platform_points, geometry.home)
     rods = kinematics.unit_rods(kinematics.home, kinematics.inverse(kinematics.home))
     universals = tuple(UniversalJoint.across(u) for u in rods)

@@ -1,28 +1,34 @@
 """From a machine file to its MuJoCo model: one function a kind of machine."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from arm_control.geometry import ArmLimits
+from arm_control.joint_limits import ArmLimits
 from hexapod_control.geometry import LEGS
+from hexapod_control.load_stack import section_files
+from hexapod_control.stack_kinematics import StackKinematics
 from hexarm.simulation.arm_model import arm_model
 from hexarm.simulation.drives import Drives, pushing, servo_speeds, turning
 from hexarm.simulation.dynamics_config import (
     SCHEMAS,
     ArmDynamicsConfig,
+    Dynamics,
     LinearDynamicsConfig,
+    RailDynamicsConfig,
     RotaryDynamicsConfig,
+    StackDynamicsConfig,
 )
 from hexarm.simulation.linear_model import linear_model
+from hexarm.simulation.rail_model import rail_model
 from hexarm.simulation.rigid_body import Mechanism
 from hexarm.simulation.rotary_model import rotary_model
+from hexarm.simulation.stack_model import stack_model
 from manipulator.config import build
 from manipulator.errors import ConfigError
 from manipulator.kinematics import Kinematics
 from manipulator.machine import MachineFile
-
-Dynamics = RotaryDynamicsConfig | LinearDynamicsConfig | ArmDynamicsConfig
 
 
 def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dynamics:
@@ -30,6 +36,10 @@ def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dy
 
     Raises ConfigError where it is missing or wrong, or a payload is negative or not finite.
     """
+    if machine_file.kind not in SCHEMAS:
+        raise ConfigError(
+            [f'kind: a {machine_file.kind} is not simulated, hexarm mjcf has its model']
+        )
     if machine_file.dynamics is None:
         raise ConfigError(
             ['dynamics: missing, the model needs masses and drives (see docs/physics.md)']
@@ -46,7 +56,7 @@ def drives_of(dynamics: Dynamics, machine_file: MachineFile) -> Drives:
     An arm without servos of ours has drives as fast as its joints may turn.
     """
     servos = machine_file.servos
-    if isinstance(dynamics, LinearDynamicsConfig):
+    if isinstance(dynamics, LinearDynamicsConfig | RailDynamicsConfig):
         return pushing(dynamics.drive, LEGS, servos)
     if isinstance(dynamics, RotaryDynamicsConfig):
         return turning((dynamics.drive,) * LEGS, servo_speeds(servos, LEGS))
@@ -70,12 +80,38 @@ def mechanism(
     payload_g replaces the file's payload, torque (N·m or N) its drives' effort. ConfigError as
     `dynamics_of`.
     """
+    if isinstance(kinematics, StackKinematics):
+        parts = _sections(machine_file, kinematics, payload_g, torque)
+        own = build(StackDynamicsConfig, machine_file.dynamics or {}, 'dynamics')
+        return stack_model(name, kinematics, parts, own.gravity)
     dynamics = dynamics_of(machine_file, payload_g)
     drives = drives_of(dynamics, machine_file)
     if torque is not None:
         drives = drives.stronger(torque)
     make = _MODELS[type(dynamics)](machine_file.limits)
     return make(name, kinematics, dynamics, drives)
+
+
+def _sections(
+    machine_file: MachineFile,
+    kinematics: StackKinematics,
+    payload_g: float | None,
+    torque: float | None,
+) -> tuple[Mechanism, ...]:
+    """Of a stack; the payload is what its uppermost platform carries."""
+    parts, last = [], len(kinematics.platforms) - 1
+    files = zip(section_files(machine_file), kinematics.platforms, strict=True)
+    for i, (file, platform) in enumerate(files):
+        own = replace(
+            file, driver=machine_file.driver, servos=machine_file.servos, link=machine_file.link
+        )
+        load = payload_g if i == last else 0.0
+        try:
+            parts.append(mechanism(f'section_{i + 1}', own, platform, load, torque))
+        except ConfigError as error:
+            problems = [f'geometry.sections[{i}].{problem}' for problem in error.problems]
+            raise ConfigError(problems) from error
+    return tuple(parts)
 
 
 def _crank_platform(limits: dict[str, Any]) -> Callable[..., Mechanism]:
@@ -85,6 +121,7 @@ def _crank_platform(limits: dict[str, Any]) -> Callable[..., Mechanism]:
 _MODELS: dict[type[Dynamics], Callable[[dict[str, Any]], Callable[..., Mechanism]]] = {
     RotaryDynamicsConfig: _crank_platform,
     LinearDynamicsConfig: lambda limits: linear_model,
+    RailDynamicsConfig: lambda limits: rail_model,
     ArmDynamicsConfig: lambda limits: arm_model,
 }
 """What makes the model of a kind of machine, from the limits of its machine file."""

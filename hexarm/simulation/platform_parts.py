@@ -1,4 +1,4 @@
-"""What crank and linear platforms have in common as MuJoCo models: plate, payload, drives.
+"""What parallel platforms have in common as MuJoCo models: plate, payload, drives.
 
 A universal joint is two hinges: the angles that turn a rod from its home to a direction.
 """
@@ -10,7 +10,7 @@ import numpy as np
 
 from hexapod_control.geometry import LEGS
 from hexarm.simulation.drives import Drives
-from hexarm.simulation.dynamics_config import PayloadConfig, PlateConfig
+from hexarm.simulation.dynamics_config import PayloadConfig, PlateConfig, RodConfig
 from hexarm.simulation.rigid_body import (
     BLUE,
     ORANGE,
@@ -20,6 +20,8 @@ from hexarm.simulation.rigid_body import (
     inertial,
     payload,
     plate,
+    rod,
+    tube,
 )
 from manipulator.arrays import Array, frozen
 from manipulator.pose import Pose
@@ -124,6 +126,23 @@ def add_closure(root: ET.Element, leg: int) -> tuple[str, str]:
     pair = (f'end_{leg}', f'joint_{leg}')
     add(child(root, 'equality'), 'connect', name=f'ball_{leg}', site1=pair[0], site2=pair[1])
     return pair
+
+
+def add_rod(
+    carrier: ET.Element,
+    leg: int,
+    config: RodConfig,
+    ends: tuple[Array, Array],
+    universal: UniversalJoint,
+) -> None:
+    """A rod on a universal joint, with the site that meets the platform; ends in carrier axes."""
+    begin, along, zero = ends[0], ends[1] - ends[0], np.zeros(3)
+    held = add(carrier, 'body', name=f'rod_{leg}', pos=begin)
+    add_hinges(held, leg, (universal.first_axis, universal.second_axis))
+    radius = 1e-3 * config.radius_mm
+    inertial(held, rod(1e-3 * config.mass_g, radius, zero, along), zero)
+    tube(held, zero, along, radius)
+    add(held, 'site', name=f'end_{leg}', pos=along)
 
 
 def add_drives(root: ET.Element, joints: tuple[str, ...], drives: Drives) -> None:

@@ -115,7 +115,6 @@ def _steiner(mass: float, offset: Array) -> Array:
 
 
 TIME_STEP = 0.0005
-GRAVITY = 9.80665
 GREY, METAL, BLUE, ORANGE = (
     '0.55 0.57 0.6 1',
     '0.3 0.32 0.35 1',
@@ -131,15 +130,16 @@ def add(parent: ET.Element, tag: str, **attributes: Value) -> ET.Element:
     return ET.SubElement(parent, tag, {k: _text(v) for k, v in attributes.items()})
 
 
-def document(name: str) -> ET.Element:
+def document(name: str, gravity: Array) -> ET.Element:
     """The root: radians, SI, no contacts, loops closed stiffly at a step of TIME_STEP.
 
-    MuJoCo's default solref and solimp leave millimetres of error in closed loops.
+    gravity (3,) is the acceleration of free fall in the base frame, m/s². MuJoCo's default solref
+    and solimp leave millimetres of error in closed loops.
     """
     root = ET.Element('mujoco', model=name)
     add(root, 'compiler', angle='radian', autolimits='true')
     option = add(
-        root, 'option', timestep=TIME_STEP, gravity=(0.0, 0.0, -GRAVITY),
+        root, 'option', timestep=TIME_STEP, gravity=gravity,
         integrator='implicitfast', iterations='50', tolerance='1e-12',
     )  # fmt: skip
     add(option, 'flag', contact='disable')

@@ -18,9 +18,9 @@ from hexarm.simulation.platform_parts import (
     add_closure,
     add_drives,
     add_hexagon,
-    add_hinges,
     add_joint,
     add_platform,
+    add_rod,
 )
 from hexarm.simulation.rigid_body import (
     METAL,
@@ -54,7 +54,7 @@ def rotary_model(
     The body's lid is where a level platform at minimum_height (m), its limit, rests on it.
     """
     geometry, joints = kinematics.geometry, kinematics.joint_names
-    root = document(name)
+    root = document(name, config.gravity)
     lid = minimum_height - 0.5e-3 * config.platform.thickness_mm
     _add_body(root, kinematics, config, lid)
     add_platform(root, config.platform, config.payload, geometry.platform_points, geometry.home)
@@ -80,17 +80,26 @@ def _universals(kinematics: RotaryHexapod) -> tuple[UniversalJoint, ...]:
 def _add_body(
     root: ET.Element, kinematics: RotaryHexapod, config: RotaryDynamicsConfig, lid: float
 ) -> None:
-    """The fixed body, a hexagonal prism up to the lid (m), and a servo behind each crank."""
+    """The fixed body, a hexagonal prism, and a servo behind each crank.
+
+    The prism reaches up to the lid (m); above a platform that hangs, up from the lowest crank.
+
+    Behind is where the crank's axis leads towards the body, away from the platform's side.
+    """
     geometry, world = kinematics.geometry, child(root, 'worldbody')
+    middle = 2 * geometry.crank_centres.mean(axis=0) - kinematics.home.position
     reach = np.linalg.norm(geometry.crank_centres[:, :2], axis=1).min()
     body = add(world, 'body', name='body')
     servo = config.servo
     length, radius = 1e-3 * servo.length_mm, 1e-3 * servo.radius_mm
-    bottom = min(-BODY_DEPTH, lid - LEAST_DEPTH)
-    add_hexagon(root, body, 'body', reach - length, (bottom, lid), METAL)
+    heights = min(-BODY_DEPTH, lid - LEAST_DEPTH), lid
+    if middle[2] > geometry.crank_centres[:, 2].max():
+        lowest = float(geometry.crank_centres[:, 2].min())
+        heights = lowest, lowest + BODY_DEPTH
+    add_hexagon(root, body, 'body', reach - length, heights, METAL)
     for leg in range(LEGS):
         centre, normal = geometry.crank_centres[leg], geometry.normals[leg]
-        inward = normal if normal @ centre < 0 else -normal
+        inward = normal if normal @ (centre - middle) < 0 else -normal
         case = rod(1e-3 * servo.mass_g, radius, centre, centre + length * inward)
         held = add(body, 'body', name=f'servo_{leg + 1}')
         inertial(held, case, np.zeros(3))
@@ -109,19 +118,14 @@ def _add_leg(
     angles = kinematics.inverse(home)
     centre, tip = geometry.crank_centres[leg], kinematics.crank_tips(angles)[leg]
     end = home.transform(geometry.platform_points)[leg]
-    zero, crank, bar = np.zeros(3), config.crank, config.rod
+    zero, crank = np.zeros(3), config.crank
     turning = add(child(root, 'worldbody'), 'body', name=f'crank_{leg + 1}', pos=centre)
     name = kinematics.joint_names[leg]
     add_joint(turning, name, 'hinge', geometry.normals[leg], float(angles[leg]), drives, leg)
     radius = 1e-3 * crank.radius_mm
     inertial(turning, rod(1e-3 * crank.mass_g, radius, centre, tip), centre)
     tube(turning, zero, tip - centre, radius)
-    hanging = add(turning, 'body', name=f'rod_{leg + 1}', pos=tip - centre)
-    add_hinges(hanging, leg + 1, (universal.first_axis, universal.second_axis))
-    radius = 1e-3 * bar.radius_mm
-    inertial(hanging, rod(1e-3 * bar.mass_g, radius, tip, end), tip)
-    tube(hanging, zero, end - tip, radius)
-    add(hanging, 'site', name=f'end_{leg + 1}', pos=end - tip)
+    add_rod(turning, leg + 1, config.rod, (tip - centre, end - centre), universal)
 
 
 def _seat(kinematics: RotaryHexapod, universals: tuple[UniversalJoint, ...]) -> Seat:

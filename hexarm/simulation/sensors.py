@@ -11,13 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from hexarm.simulation.experiment import Recording
-from hexarm.simulation.rigid_body import GRAVITY, RigidBody
+from hexarm.simulation.rigid_body import RigidBody
 from manipulator import rotation as so3
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.formatting import reason
 
-UP = np.array([0.0, 0.0, 1.0])
 AXES = ('x', 'y', 'z')
 DIGITS = 7
 
@@ -25,13 +24,13 @@ DIGITS = 7
 def carrying_force(recording: Recording, load: RigidBody) -> Array:
     """What holds and moves `load`, given in the moving frame: (N, 3) newtons, base axes.
 
-    m (a + g), a the acceleration of its centre: what a force sensor below it shows.
+    m (a − g), a the acceleration of its centre: what a force sensor below it shows.
     """
     arm = recording.poses.rotation @ load.centre
     turning, spin_up = recording.twists[:, 3:], recording.accelerations[:, 3:]
     inward = np.cross(turning, np.cross(turning, arm))
     centre = recording.accelerations[:, :3] + np.cross(spin_up, arm) + inward
-    force: Array = load.mass * (centre + GRAVITY * UP)
+    force: Array = load.mass * (centre - recording.gravity)
     return force
 
 

@@ -1,9 +1,10 @@
 """What the drives must hold against gravity, by virtual work, and where they cannot.
 
-A drive's effort is how fast the potential energy grows with its joint: τ = Σ m g ∂z/∂q. A rod of
-even density counts half at either end.
+A drive's effort is how fast the potential energy grows with its joint: τ = −Σ m g·∂r/∂q, g the
+acceleration of free fall. A rod of even density counts half at either end.
 """
 
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -11,21 +12,25 @@ import numpy as np
 from arm_control.arm import SerialArm
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.parallel_platform import ParallelPlatform
+from hexapod_control.rails import RailPlatform
 from hexapod_control.rotary import RotaryHexapod
 from hexarm.simulation.arm_model import arm_links
 from hexarm.simulation.drives import Drives
 from hexarm.simulation.dynamics_config import (
     ArmDynamicsConfig,
+    Dynamics,
     LinearDynamicsConfig,
+    RailDynamicsConfig,
     RotaryDynamicsConfig,
 )
-from hexarm.simulation.model import Dynamics
 from hexarm.simulation.platform_parts import moving_bodies
-from hexarm.simulation.rigid_body import GRAVITY, payload
+from hexarm.simulation.rigid_body import payload
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.kinematics import Kinematics
 from manipulator.pose import Pose
+
+PlatformDynamics = RotaryDynamicsConfig | LinearDynamicsConfig | RailDynamicsConfig
 
 
 class StaticLoad(Protocol):
@@ -39,7 +44,9 @@ class StaticLoad(Protocol):
 def static_load(kinematics: Kinematics, dynamics: Dynamics) -> StaticLoad:
     """The static load of one machine; InvalidInput where kinematics and masses do not fit."""
     if isinstance(kinematics, RotaryHexapod) and isinstance(dynamics, RotaryDynamicsConfig):
-        return _rotary(kinematics, dynamics)
+        return _rods(kinematics, dynamics, 0.5e-3 * dynamics.crank.mass_g)
+    if isinstance(kinematics, RailPlatform) and isinstance(dynamics, RailDynamicsConfig):
+        return _rods(kinematics, dynamics, 1e-3 * dynamics.carriage.mass_g)
     if isinstance(kinematics, LinearPlatform) and isinstance(dynamics, LinearDynamicsConfig):
         return _linear(kinematics, dynamics)
     if isinstance(kinematics, SerialArm) and isinstance(dynamics, ArmDynamicsConfig):
@@ -47,28 +54,35 @@ def static_load(kinematics: Kinematics, dynamics: Dynamics) -> StaticLoad:
     raise InvalidInput(f'{type(kinematics).__name__} does not fit {type(dynamics).__name__}')
 
 
-def _platform_wrench(
-    kinematics: ParallelPlatform, bodies: tuple[Array, Array], joint_mass: float, pose: Pose
-) -> Array:
-    """∂E/∂twist (..., 6) of the moving bodies and of joint_mass (kg) at each platform joint."""
-    masses, centres = bodies
-    points = np.vstack([centres, kinematics.geometry.platform_points])
-    weights = GRAVITY * np.concatenate([masses, np.full(6, joint_mass)])
-    arms = points @ np.swapaxes(pose.rotation, -1, -2)
-    # A twist (v, ω) lifts the point at arm r by v_z + ω_x r_y − ω_y r_x.
-    lift = np.zeros((*arms.shape[:-1], 6))
-    lift[..., 2] = 1.0
-    lift[..., 3], lift[..., 4] = arms[..., 1], -arms[..., 0]
-    wrench: Array = np.einsum('k,...kj->...j', weights, lift)
-    return wrench
+@dataclass(frozen=True, eq=False)
+class _Carried:
+    """Masses (k,) in kg at points (k, 3) of the platform; up is the acceleration that holds them.
 
+    joint_mass (kg) is at each platform joint besides.
+    """
 
-def _bodies(kinematics: ParallelPlatform, dynamics: Dynamics) -> tuple[Array, Array]:
-    if isinstance(dynamics, ArmDynamicsConfig):
-        raise InvalidInput('an arm has no platform')
-    points = kinematics.geometry.platform_points
-    bodies = moving_bodies(dynamics.platform, dynamics.payload, points)
-    return np.array([b.mass for b in bodies]), np.array([b.centre for b in bodies])
+    masses: Array
+    points: Array
+    up: Array
+
+    @classmethod
+    def by(
+        cls, kinematics: ParallelPlatform, dynamics: PlatformDynamics, joint_mass: float
+    ) -> '_Carried':
+        joints = kinematics.geometry.platform_points
+        bodies = moving_bodies(dynamics.platform, dynamics.payload, joints)
+        masses = [*(body.mass for body in bodies), *np.full(len(joints), joint_mass)]
+        points = np.vstack([*(body.centre for body in bodies), joints])
+        return cls(np.array(masses), points, -dynamics.gravity)
+
+    def wrench(self, pose: Pose) -> Array:
+        """∂E/∂twist (..., 6)."""
+        arms = self.points @ np.swapaxes(pose.rotation, -1, -2)
+        # A twist (v, ω) moves the point at arm r by v + ω × r.
+        turning = np.cross(arms, self.up)
+        lift = np.concatenate([np.broadcast_to(self.up, turning.shape), turning], axis=-1)
+        wrench: Array = np.einsum('k,...kj->...j', self.masses, lift)
+        return wrench
 
 
 def _in_joints(kinematics: ParallelPlatform, pose: Pose, joints: Array, wrench: Array) -> Array:
@@ -77,40 +91,45 @@ def _in_joints(kinematics: ParallelPlatform, pose: Pose, joints: Array, wrench: 
     return result
 
 
-def _rotary(kinematics: RotaryHexapod, dynamics: RotaryDynamicsConfig) -> StaticLoad:
-    bodies, geometry = _bodies(kinematics, dynamics), kinematics.geometry
-    half_rod, half_crank = 0.5e-3 * dynamics.rod.mass_g, 0.5e-3 * dynamics.crank.mass_g
+def _rods(
+    kinematics: ParallelPlatform,
+    dynamics: RotaryDynamicsConfig | RailDynamicsConfig,
+    at_base_point: float,
+) -> StaticLoad:
+    """Rods of one length; at_base_point (kg) is what of a crank or carriage counts there."""
+    half_rod = 0.5e-3 * dynamics.rod.mass_g
+    carried = _Carried.by(kinematics, dynamics, half_rod)
 
     def load(pose: Pose, joints: Array) -> Array:
-        wrench = _platform_wrench(kinematics, bodies, half_rod, pose)
-        cosine, sine = np.cos(joints), np.sin(joints)
-        rise = geometry.crank_lengths * (
-            cosine * geometry.ups[:, 2] - sine * geometry.tangents[:, 2]
-        )
-        own: Array = GRAVITY * (half_rod + half_crank) * rise
-        return _in_joints(kinematics, pose, joints, wrench) + own
+        rise = kinematics.legs.gains(joints, np.broadcast_to(carried.up, (*joints.shape, 3)))
+        own: Array = (half_rod + at_base_point) * rise
+        return _in_joints(kinematics, pose, joints, carried.wrench(pose)) + own
 
     return load
 
 
 def _linear(kinematics: LinearPlatform, dynamics: LinearDynamicsConfig) -> StaticLoad:
-    bodies = _bodies(kinematics, dynamics)
+    carried, geometry = _Carried.by(kinematics, dynamics, 0.0), kinematics.geometry
     cylinder, piston = dynamics.cylinder, dynamics.piston
     masses = np.array([1e-3 * cylinder.mass_g, 1e-3 * piston.mass_g])
     middle = np.array([0.5e-3 * cylinder.length_mm, -0.5e-3 * piston.length_mm])
 
     def load(pose: Pose, joints: Array) -> Array:
         rods = kinematics.unit_rods(pose, joints)
-        # A point s along a leg of length L whose end moves by w goes by (s/L)(w − u u·w) + ṡ u.
-        share = (masses[0] * middle[0] + masses[1] * (joints + middle[1])) / joints
-        arms = kinematics.geometry.platform_points @ np.swapaxes(pose.rotation, -1, -2)
-        across = np.array([0.0, 0.0, 1.0]) - rods[..., 2:] * rods
-        ends = GRAVITY * share[..., None] * across
-        wrench = _platform_wrench(kinematics, bodies, 0.0, pose)
+        gaps = (
+            pose.transform(kinematics.geometry.platform_points) - kinematics.geometry.base_points
+        )
+        lengths = np.linalg.norm(gaps, axis=-1)
+        # A point s along a leg of length L whose end moves by w goes by (s/L)(w − u u·w), and a
+        # piston's by u u·w more.
+        share = (masses[0] * middle[0] + masses[1] * (lengths + middle[1])) / lengths
+        arms = geometry.platform_points @ np.swapaxes(pose.rotation, -1, -2)
+        along = rods @ carried.up
+        ends = share[..., None] * carried.up + ((masses[1] - share) * along)[..., None] * rods
+        wrench = carried.wrench(pose)
         wrench[..., :3] += ends.sum(axis=-2)
         wrench[..., 3:] += np.cross(arms, ends).sum(axis=-2)
-        own: Array = GRAVITY * masses[1] * rods[..., 2]
-        return _in_joints(kinematics, pose, joints, wrench) + own
+        return _in_joints(kinematics, pose, joints, wrench)
 
     return load
 
@@ -121,7 +140,7 @@ def _arm(arm: SerialArm, dynamics: ArmDynamicsConfig) -> StaticLoad:
     centres = np.vstack(
         [*(link.centre for link in links), arm.chain.home.transform(carried.centre[None])]
     )
-    weights = GRAVITY * np.array([*(link.mass for link in links), carried.mass])
+    masses, up = np.array([*(link.mass for link in links), carried.mass]), -dynamics.gravity
     holders = np.array([1, 2, 3, 4, 5, 6, 6])
 
     def load(pose: Pose, joints: Array) -> Array:
@@ -132,9 +151,9 @@ def _arm(arm: SerialArm, dynamics: ArmDynamicsConfig) -> StaticLoad:
         points = np.einsum('...nij,nj->...ni', moved[..., :-1, :3, :3], arm.chain.points)
         points = points + moved[..., :-1, :3, 3]
         arms = where[..., None, :, :] - points[..., :, None, :]
-        rise = np.cross(axes[..., :, None, :], arms)[..., 2]
+        rise = np.cross(axes[..., :, None, :], arms) @ up
         carries = np.arange(1, 7)[:, None] <= holders
-        result: Array = np.einsum('...nk,nk,k->...n', rise, carries, weights)
+        result: Array = np.einsum('...nk,nk,k->...n', rise, carries, masses)
         return result
 
     return load

@@ -9,6 +9,7 @@ from manipulator.analysis.free_paths import admits
 from manipulator.analysis.readings import CHECKS_PER_LENGTH
 from manipulator.analysis.travel import travel
 from manipulator.arrays import Array, Mask
+from manipulator.kinematics import POSE_NUMBERS, chosen_rates
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
@@ -44,8 +45,15 @@ def conditions(machine: Machine, poses: Pose) -> Conditions:
 
 
 def joint_rates(machine: Machine, poses: Pose) -> Array:
-    """(..., n, 6): the joint rates of a unit twist, at poses that are admitted."""
+    """(..., n, 6): the joint rates of a unit twist, at poses that are admitted.
+
+    Of a machine with more joints than a pose has numbers: of the joints that its inverse chooses.
+    """
     joints = machine.kinematics.inverse_or_nan(poses)
+    if joints.shape[-1] > POSE_NUMBERS:
+        units = np.eye(POSE_NUMBERS)
+        columns = [chosen_rates(machine.kinematics, poses, joints, unit) for unit in units]
+        return np.stack(columns, axis=-1)
     jacobian = machine.kinematics.jacobian(poses, joints)
     return np.asarray(np.linalg.pinv(jacobian, rcond=RANK), dtype=np.float64)
 

@@ -11,7 +11,7 @@ from sensor_msgs.msg import JointState
 from manipulator.machine import Machine
 from manipulator.nodes.diagnostics import Diagnostics, Report
 from manipulator.nodes.intra_process import IntraProcess
-from manipulator.nodes.messages import joint_message, known_joints, pose_of
+from manipulator.nodes.messages import joint_message, joints_of, known_joints, pose_of
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
 from manipulator.nodes.subscriptions import FilteredCallback
@@ -31,9 +31,11 @@ class IkNode(Node):
         self._check = SetpointValidator(machine)
         self._setpoint = FilteredCallback(self, 'setpoint', self._on_setpoint)
         self._states = FilteredCallback(self, 'joint_states', self._on_joint_states)
+        self._requests = FilteredCallback(self, 'joint_setpoint', self._on_requested)
         self._publisher = process.publisher(self, JointState, 'joint_command', COMMAND)
         process.subscribe(self, PoseStamped, 'setpoint', self._setpoint, COMMAND)
         process.subscribe(self, JointState, 'joint_states', self._states, MEASUREMENT)
+        process.subscribe(self, JointState, 'joint_setpoint', self._requests, COMMAND)
         self._diagnostics = Diagnostics(
             self, self._report, ('setpoint', 'joint_command', 'joint_states')
         )
@@ -41,6 +43,9 @@ class IkNode(Node):
     def _on_setpoint(self, message: PoseStamped) -> None:
         joints = self._check.command(pose_of(message), time.monotonic())
         self._publisher.publish(joint_message(joints, self._names, message.header.stamp))
+
+    def _on_requested(self, message: JointState) -> None:
+        self._check.note_requested(joints_of(message, self._names), time.monotonic())
 
     def _on_joint_states(self, message: JointState) -> None:
         self._check.note_joints(known_joints(message, self._names))

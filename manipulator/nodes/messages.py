@@ -6,11 +6,18 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PointStamped, PoseStamped, TwistStamped
 from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory
 
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.formatting import counted
 from manipulator.frames import Frames
+from manipulator.planning.joint_points import (
+    InvalidJoints,
+    JointPoint,
+    JointPoints,
+    joint_points,
+)
 from manipulator.pose import Pose
 
 FASTEST_TWIST = 100.0
@@ -114,6 +121,38 @@ def joints_of(message: JointState, names: tuple[str, ...]) -> Array:
         name = names[int(np.argmin(np.isfinite(joints)))]
         raise InvalidInput(f'{name} is {positions[name]}, needs a finite number')
     return joints
+
+
+def named_joints(message: JointState, what: str) -> dict[str, float]:
+    """One number a joint of the array `what` of the message: position or velocity.
+
+    Raises InvalidJoints for a joint that is named twice, InvalidInput for an array of another
+    length.
+    """
+    names, values = [name[:80] for name in message.name], getattr(message, what)
+    if len(names) != len(values):
+        plural = 'positions' if what == 'position' else 'velocities'
+        raise InvalidInput(f'{counted(len(names), "name")} but {len(values)} {plural}')
+    named = dict(zip(names, values, strict=True))
+    if len(named) != len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise InvalidJoints(f'joint {twice} is named twice')
+    return named
+
+
+def joint_points_of(message: JointTrajectory, known: tuple[str, ...]) -> JointPoints:
+    """The points of a trajectory, checked as `joint_points` does."""
+    points = [
+        JointPoint(
+            point.time_from_start.sec + point.time_from_start.nanosec * 1e-9,
+            point.positions,
+            point.velocities,
+            point.accelerations,
+            point.effort,
+        )
+        for point in message.points
+    ]
+    return joint_points(message.joint_names, points, known)
 
 
 def known_joints(message: JointState, names: tuple[str, ...]) -> Array | None:

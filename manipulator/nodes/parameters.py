@@ -21,7 +21,7 @@ from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
 from manipulator.formatting import shown
 from manipulator.planning.cycle import Cycle
-from manipulator.planning.goal import Motion
+from manipulator.planning.goal import Motion, OnUnreachable
 from manipulator.planning.orientation import Orientation
 from manipulator.pose import Pose
 
@@ -65,22 +65,26 @@ def checked(name: str, value: Any, default: Any, bounds: tuple[float, float] | N
 CHOICES: dict[str, tuple[type[Enum], str]] = {
     'goal_motion': (
         Motion,
-        'how a machine at rest goes to goal_pose: line, joint (all joints in proportion), or any '
-        '(a line where it can)',
+        'how a machine at rest goes to goal_pose: line, joint (all joints in proportion), any '
+        '(a line where it can), or unwind (joint, to the branch and turns of home)',
     ),
     'goal_orientation': (
         Orientation,
         'of goal_pose and goal_path: given, or by their points alone hold_orientation, parallel, '
         'look_at (as jog_mode)',
     ),
+    'on_unreachable': (
+        OnUnreachable,
+        'a goal_pose out of reach: refuse it, or go to the nearest pose within all limits',
+    ),
 }
 
 
 class GoalParameters:
-    """goal_motion and goal_orientation: names of which only known ones are taken."""
+    """goal_motion, goal_orientation, on_unreachable: only names that are known are taken."""
 
     def __init__(self, node: Node) -> None:
-        """Declares both; Refused for an unknown name."""
+        """Declares them; Refused for an unknown name."""
         self._node = node
         for name, (kind, description) in CHOICES.items():
             first = next(iter(kind)).value
@@ -96,6 +100,11 @@ class GoalParameters:
     def orientation(self) -> Orientation:
         """Where the orientation of goals and paths comes from."""
         return Orientation(self._node.get_parameter('goal_orientation').value)
+
+    @property
+    def on_unreachable(self) -> OnUnreachable:
+        """What becomes of goals out of reach."""
+        return OnUnreachable(self._node.get_parameter('on_unreachable').value)
 
 
 def choice(name: str, value: object) -> Enum:

@@ -5,7 +5,6 @@ time. What is longer than the longest path is refused by its length, and never d
 """
 
 import time
-from dataclasses import dataclass
 from functools import partial
 from math import radians
 from operator import attrgetter
@@ -14,7 +13,6 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from nav_msgs.msg import Path
 from rclpy.node import Node
-from std_msgs.msg import Header
 
 from manipulator import rotation as so3
 from manipulator.arrays import Array
@@ -30,7 +28,7 @@ from manipulator.nodes.messages import (
 )
 from manipulator.nodes.parameters import GoalParameters, declare
 from manipulator.nodes.qos import COMMAND
-from manipulator.nodes.subscriptions import FilteredCallback, decoded
+from manipulator.nodes.subscriptions import FilteredCallback, RawMessage, decoded, raw_message
 from manipulator.planning.path import Tolerance
 from manipulator.planning.path_timing import PathRequest
 from manipulator.pose import Pose
@@ -43,14 +41,6 @@ MOST_BYTES = 100 * MOST_POSES
 
 NUMBERS = ('x', 'y', 'z', 'qx', 'qy', 'qz', 'qw')
 POSITION, ORIENTATION = attrgetter(*'xyz'), attrgetter(*'xyzw')
-
-
-@dataclass(frozen=True)
-class RawPath:
-    """A path of which only the header has been decoded; an empty one where it cannot be."""
-
-    header: Header
-    serialized: bytes
 
 
 class PathGoals:
@@ -69,10 +59,14 @@ class PathGoals:
             declare(node, name, default, description, bounds, is_read_only=False)
         self._receive = FilteredCallback(node, 'goal_path', self._on_path, self._on_bad_path)
         node.create_subscription(
-            Path, 'goal_path', lambda raw: self._receive(raw_path(raw)), COMMAND, raw=True
+            Path,
+            'goal_path',
+            lambda raw: self._receive(raw_message(raw, MOST_BYTES)),
+            COMMAND,
+            raw=True,
         )
 
-    def _on_path(self, message: RawPath) -> None:
+    def _on_path(self, message: RawMessage) -> None:
         length = len(message.serialized)
         if length > MOST_BYTES:
             raise InvalidInput(
@@ -85,7 +79,7 @@ class PathGoals:
             time.monotonic(),
         )
 
-    def _goal_of(self, message: RawPath) -> PathGoal:
+    def _goal_of(self, message: RawMessage) -> PathGoal:
         frame = message.header.frame_id or BASE_FRAME
         tolerance = Tolerance(
             self._parameter('path_tolerance'), self._parameter('path_turn_tolerance')
@@ -99,16 +93,8 @@ class PathGoals:
     def _parameter(self, name: str) -> float:
         return float(self._node.get_parameter(name).value)
 
-    def _on_bad_path(self, message: RawPath, error: ManipulatorError) -> None:
+    def _on_bad_path(self, message: RawMessage, error: ManipulatorError) -> None:
         self._controller.refuse(seconds(message.header.stamp), error)
-
-
-def raw_path(serialized: bytes) -> RawPath:
-    """A path with its header decoded, which is what it begins with: at most 0.3 ms."""
-    try:
-        return RawPath(decoded(serialized[:MOST_BYTES], Header, MOST_BYTES), serialized)
-    except InvalidInput:
-        return RawPath(Header(), serialized)
 
 
 def _request(

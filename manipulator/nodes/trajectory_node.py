@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
+from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PointStamped, PoseStamped
 from rclpy.node import Node
@@ -14,10 +15,12 @@ from manipulator.errors import ManipulatorError
 from manipulator.machine import JOG_SINGULARITIES, Machine
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report, status
 from manipulator.nodes.intra_process import IntraProcess
+from manipulator.nodes.joint_topics import JointTopics
 from manipulator.nodes.messages import (
     BASE_FRAME,
     PLATFORM_FRAME,
     WORK_FRAME,
+    joint_message,
     known_joints,
     point_of,
     pose_message,
@@ -31,8 +34,10 @@ from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.subscriptions import FilteredCallback
 from manipulator.nodes.teleop_topics import TeleopTopics
+from manipulator.nodes.trajectory_action import TrajectoryAction
 from manipulator.nodes.trajectory_services import TrajectoryServices
 from manipulator.planning.goal import Goal
+from manipulator.pose import Pose
 from manipulator.states import MotionResult
 from manipulator.teleop.arbiter import PEOPLE
 from manipulator.trajectory.controller import MotionController, lag_of
@@ -73,10 +78,13 @@ class TrajectoryNode(Node):
         singularity = declare(self, 'jog_singularity', JOG_SINGULARITIES[0], SINGULARITY)
         dt, self._worker = 1.0 / rate, PlanningThread()
         machine = replace(load(name), jog_singularity=singularity)
+        self._names = machine.kinematics.joint_names
         tolerances = Tolerances.of(machine, tolerance, goal_tolerance, distance)
         self._controller = MotionController(machine, dt, tolerances, self._worker, delay)
         self._connect(process)
         PathGoals(self, self._controller, self._goal_parameters)
+        joints = JointTopics(self, self._controller, tolerances.goal)
+        self._action = TrajectoryAction(self, self._controller, joints)
         self._teleop_topics = TeleopTopics(self, self._controller.teleop)
         self._answers = TrajectoryServices(
             self, self._controller, self._goal_parameters, dt, self._worker
@@ -86,6 +94,7 @@ class TrajectoryNode(Node):
 
     def close(self) -> None:
         """Ends what runs beside this node."""
+        self._action.close()
         self._controller.close()
         self._worker.close()
 
@@ -94,6 +103,7 @@ class TrajectoryNode(Node):
         self._poses = FilteredCallback(self, 'pose', self._on_pose)
         self._joints = FilteredCallback(self, 'joint_states', self._on_joint_states)
         self._setpoints = process.publisher(self, PoseStamped, 'setpoint', COMMAND)
+        self._joint_setpoints = process.publisher(self, JointState, 'joint_setpoint', COMMAND)
         self._statuses = self.create_publisher(DiagnosticStatus, 'motion_status', LATCHED)
         subscribe = self.create_subscription
         subscribe(PoseStamped, 'goal_pose', self._goals, COMMAND)
@@ -113,8 +123,7 @@ class TrajectoryNode(Node):
         self._publish_news()
 
     def _on_joint_states(self, message: JointState) -> None:
-        names = self._controller.supervisor.machine.kinematics.joint_names
-        self._controller.note_joints(known_joints(message, names))
+        self._controller.note_joints(known_joints(message, self._names))
 
     def _on_pose(self, message: PoseStamped) -> None:
         self._controller.note_pose(pose_of(message), time.monotonic())
@@ -126,7 +135,13 @@ class TrajectoryNode(Node):
         pose = pose_of(message, (BASE_FRAME, WORK_FRAME), rule.is_given)
         stamp = seconds(message.header.stamp)
         self._controller.pursue(
-            Goal(pose, stamp, motion=chosen.motion, orientation=rule),
+            Goal(
+                pose,
+                stamp,
+                motion=chosen.motion,
+                orientation=rule,
+                on_unreachable=chosen.on_unreachable,
+            ),
             lambda error: self._goals.refuse(message, error),
             time.monotonic(),
             is_of_platform,
@@ -153,13 +168,21 @@ class TrajectoryNode(Node):
         stamp = self.get_clock().now().to_msg()
         pose = self._controller.end_tick(time.monotonic())
         if pose is not None:
-            self._setpoints.publish(pose_message(pose, stamp))
+            self._publish_setpoint(pose, stamp)
         self._answers.poll()
         self._publish_news()
+        self._action.poll(time.monotonic())
+
+    def _publish_setpoint(self, pose: Pose, stamp: Time) -> None:
+        joints = self._controller.supervisor.requested_joints
+        if joints is not None:
+            self._joint_setpoints.publish(joint_message(joints, self._names, stamp))
+        self._setpoints.publish(pose_message(pose, stamp))
 
     def _publish_news(self) -> None:
         for new in self._controller.news.take():
             self._publish(new)
+            self._action.note(new)
 
     def _publish(self, new: MotionStatus) -> None:
         """Publishes a status; refusals and stops are logged."""

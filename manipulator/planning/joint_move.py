@@ -10,7 +10,7 @@ import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.errors import NoSolution, Refused
-from manipulator.kinematics import Kinematics
+from manipulator.kinematics import POSE_NUMBERS, Kinematics
 from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
 from manipulator.planning.plan import MotionState
@@ -97,8 +97,10 @@ def plan_joint_move(
     """The quickest move from joints `begin`, at pose `start`, to joints `goal` (n,).
 
     slowdown k ≥ 1 makes it take k times as long. Raises Refused where the joints between fix no
-    pose, as beyond a platform's forward singularities.
+    pose, as beyond a platform's forward singularities, and for a machine with more joints than a
+    pose has numbers: setpoints are poses, and other joints than these would follow from them.
     """
+    refuse_rule(len(begin))
     rows = between(begin, goal, np.linspace(0.0, 1.0, KNOTS + 1))
     try:
         knots = machine.kinematics.forward_along(rows, start)
@@ -107,6 +109,15 @@ def plan_joint_move(
     steps = knots[:-1].twist_to(knots[1:]) * KNOTS
     profile = profile_within(_bounds(machine.motion.for_plans, goal - begin, steps), slowdown)
     return JointMove(machine.kinematics, frozen(begin), frozen(goal), knots, profile)
+
+
+def refuse_rule(joints: int) -> None:
+    """Refused for a machine with so many joints that a rule chooses them for each pose."""
+    if joints > POSE_NUMBERS:
+        raise Refused(
+            f'{joints} joints cannot be commanded one by one: a rule gives them for each pose; '
+            'command a pose, along a line'
+        )
 
 
 def _bounds(limits: MotionLimits, change: Array, steps: Array) -> tuple[float, float, float]:

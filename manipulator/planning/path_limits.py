@@ -19,6 +19,7 @@ import numpy as np
 
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused
+from manipulator.kinematics import POSE_NUMBERS, chosen_rates
 from manipulator.machine import Machine
 from manipulator.motion_limits import SPEED_NAMES, Derivatives, JointDerivatives, MotionLimits
 from manipulator.planning.check import first_fault
@@ -136,14 +137,27 @@ def path_limits(machine: Machine, path: Path, nodes: Array, near: Array) -> Path
 
 
 def _joint_rates(machine: Machine, path: Path, nodes: Array, joints: Array, twist: Array) -> Array:
-    """The joints' q' (m + 1, n) by the Jacobian; Refused where it is singular."""
+    """The joints' q' (m + 1, n) by the Jacobian; Refused where it is singular.
+
+    Of a machine with more joints than a pose has numbers: of those that its inverse chooses.
+    """
     pose = path.at(nodes).pose
+    if joints.shape[-1] > POSE_NUMBERS:
+        return _chosen(machine, path, nodes, joints, twist)
     try:
         jacobian = machine.kinematics.jacobian(pose, joints)
         return np.asarray(np.linalg.solve(jacobian, twist[..., None])[..., 0], dtype=np.float64)
     except (np.linalg.LinAlgError, NoSolution):
         worst = int(np.argmin(machine.kinematics.sigma_min(pose, joints)))
         raise Refused(f'{path.where(nodes[worst])}: the machine is singular there') from None
+
+
+def _chosen(machine: Machine, path: Path, nodes: Array, joints: Array, twist: Array) -> Array:
+    rates = chosen_rates(machine.kinematics, path.at(nodes).pose, joints, twist)
+    lost = np.flatnonzero(~np.isfinite(rates).all(axis=-1))
+    if len(lost):
+        raise Refused(f'{path.where(float(nodes[lost[0]]))}: the end of the reach')
+    return rates
 
 
 def _axis_limits(twist: Array, limits: MotionLimits) -> Iterator['_AxisLimit']:

@@ -11,11 +11,12 @@ from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
 from manipulator.planning.check import check_plan
 from manipulator.planning.cycle import Cycle
-from manipulator.planning.goal import Goal, Motion
+from manipulator.planning.goal import Flow, Goal, Motion
 from manipulator.planning.joint_move import KNOTS, plan_joint_move
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import MotionState, Plan
 from manipulator.planning.point_to_point import plan_line_move, plan_move_in_motion
+from manipulator.planning.stream import SHORTEST, STILL, plan_stream_move
 from manipulator.planning.worker import Effort, TooLong
 from manipulator.pose import Pose
 from manipulator.unit_hints import hint_at_metres
@@ -42,11 +43,15 @@ SAME_JOINTS = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Where a plan begins: a state of motion, the joints (n,) there; dt is a tick (s)."""
+    """Where a plan begins: a state of motion, the joints (n,) there; dt is a tick (s).
+
+    time is when, on the clock of `Flow.due`.
+    """
 
     state: MotionState
     joints: Array
     dt: float
+    time: float = 0.0
 
 
 def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Plan:
@@ -55,9 +60,14 @@ def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pla
     Raises Unreachable when the goal itself is out of reach, and Refused when the path there is,
     cannot be slowed down enough, or costs more `effort` than a plan may.
     """
-    _refuse_absurd(machine, goal.pose)
-    if goal.motion is Motion.JOINT:
+    refuse_absurd(machine, goal.pose)
+    if goal.motion in (Motion.JOINT, Motion.UNWIND):
         return _plan_joints(machine, start, goal, effort)
+    flowing = (
+        None if goal.flow is None else _plan_stream(machine, start, goal.pose, goal.flow, effort)
+    )
+    if flowing is not None:
+        return flowing
     try:
         return _plan_line(machine, start, goal, effort)
     except Refused as refusal:
@@ -102,7 +112,7 @@ def compared(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Comp
     return ComparedPlan(plan, durations, float(rated.max()))
 
 
-def _refuse_absurd(machine: Machine, pose: Pose) -> None:
+def refuse_absurd(machine: Machine, pose: Pose) -> None:
     """Refused for a pose, finite as it is, that is farther away than any machine is large."""
     kinematics = machine.kinematics
     away = float(np.abs(pose.position - kinematics.home.position).max())
@@ -130,6 +140,22 @@ def plan_to(machine: Machine, start: Start, pose: Pose, effort: Effort | None = 
         raise
 
 
+def _plan_stream(
+    machine: Machine, start: Start, pose: Pose, flow: Flow, effort: Effort
+) -> Plan | None:
+    """The move that follows a stream, None where it would pass a limit, or nothing moves."""
+    if start.state.is_at_rest and np.abs(flow.twist).max() < STILL:
+        return None
+    seconds = max(flow.due - start.time, SHORTEST / 2.0)
+    try:
+        move = plan_stream_move(start.state, pose, flow, seconds, machine.motion.for_plans)
+        if move is not None and check_plan(move, machine, start.joints, start.dt, effort).fits:
+            return move
+    except Refused:
+        pass
+    return None
+
+
 def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Plan:
     """A joint move from rest to a goal's joints, by default the nearest of its pose."""
     if not start.state.is_at_rest:
@@ -138,7 +164,8 @@ def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> 
     joints = goal.joints
     if joints is None:
         check_goal(machine, goal.pose, start.joints)
-        joints = machine.kinematics.inverse(goal.pose, start.joints)
+        near = None if goal.motion is Motion.UNWIND else start.joints
+        joints = machine.kinematics.inverse(goal.pose, near)
     joints = _off_the_stops(machine, joints)
 
     def move(limits: MotionLimits, slowdown: float) -> Plan:

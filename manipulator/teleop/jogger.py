@@ -6,6 +6,7 @@ A commanded twist is always that of the pivot; the frame of its axes can be chos
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from operator import truediv
 from typing import Protocol
 
 import numpy as np
@@ -52,15 +53,11 @@ def within_speed(twist: Array, motion: MotionLimits) -> tuple[Array, float]:
     Raises InvalidInput unless it is six finite numbers.
     """
     target = np.asarray(twist, dtype=np.float64)
-    parts = target.ravel().tolist()
-    if target.shape != (6,) or not all(map(math.isfinite, parts)):
-        raise InvalidInput(f'twist {parts} is not six finite numbers')
-    part = max(
-        math.hypot(*parts[:3]) / motion.linear.speed,
-        math.hypot(*parts[3:]) / motion.angular.speed,
-        *(abs(part) / most for part, most in zip(parts, motion.axis_speeds.tolist(), strict=True)),
-        1.0,
-    )
+    linear, angular = _sizes(target) if target.shape == (6,) else (math.nan, 0.0)
+    if not math.isfinite(linear + angular):
+        raise InvalidInput(f'twist {target.ravel().tolist()} is not six finite numbers')
+    axes = map(truediv, map(abs, target.tolist()), motion.axis_speeds.tolist())
+    part = max(linear / motion.linear.speed, angular / motion.angular.speed, *axes, 1.0)
     return target / part, 1.0 / part
 
 
@@ -76,9 +73,15 @@ def towards(twist: Array, target: Array, motion: MotionLimits, dt: float) -> Arr
 
 def ticks_for(change: Array, motion: MotionLimits, dt: float) -> float:
     """How many times dt a change of twist (6,) takes at full acceleration."""
-    parts = change.tolist()
-    linear = math.hypot(*parts[:3]) / motion.linear.acceleration
-    return max(linear, math.hypot(*parts[3:]) / motion.angular.acceleration) / dt
+    linear, angular = _sizes(change)
+    slowest = max(linear / motion.linear.acceleration, angular / motion.angular.acceleration)
+    return slowest / dt
+
+
+def _sizes(twist: Array) -> tuple[float, float]:
+    """How fast a twist (6,) moves, in m/s and rad/s."""
+    x, y, z, roll, pitch, yaw = twist.tolist()
+    return math.hypot(x, y, z), math.hypot(roll, pitch, yaw)
 
 
 STRAIGHT = frozen(np.zeros(6))

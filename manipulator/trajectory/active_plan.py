@@ -12,12 +12,14 @@ from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
 from manipulator.planning.point_to_point import LineMove, MoveInMotion
+from manipulator.planning.stream import StreamMove
 from manipulator.states import MotionMode
 
 MODES: dict[type, MotionMode] = {
     Hold: MotionMode.HOLD,
     LineMove: MotionMode.MOVE,
     MoveInMotion: MotionMode.MOVE,
+    StreamMove: MotionMode.MOVE,
     JointMove: MotionMode.MOVE,
     Cycle: MotionMode.CYCLE,
     TimedPath: MotionMode.PATH,
@@ -30,10 +32,11 @@ TIMED = TimedPath, JointTrajectory
 
 @dataclass
 class ActivePlan:
-    """A plan, the stamp of the goal that it came from, and how far its own time has come."""
+    """A plan, stamp and note of the goal that it came from, and how far its own time has come."""
 
     plan: Plan
     stamp: float = 0.0
+    note: str = ''
     time: float = 0.0
 
     @property

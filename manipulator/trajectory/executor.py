@@ -68,6 +68,11 @@ class Executor:
         return self._active.state
 
     @property
+    def active(self) -> ActivePlan:
+        """The plan that is executed, a hold plan at rest."""
+        return self._active
+
+    @property
     def newest_stamp(self) -> float:
         """The stamp of the newest goal, active or waiting."""
         waiting = self._planning.goal or self._next
@@ -157,7 +162,7 @@ class Executor:
         Refused during a jog. The active plan continues until the new one is ready.
         """
         self._refuse_while_jogged()
-        self._planning.request(goal)
+        self._planning.request(goal, self.state.pose, self.joints)
         self._drop_path(OVERTAKEN)
 
     def expect(self, stamp: float) -> None:
@@ -317,14 +322,14 @@ class Executor:
         """Switches to a plan that begins at this tick, or has begun within it."""
         since = 0.0 if self._active.is_hold else self._active.time - planned.begin
         self._next = planned.goal.then
-        self._begin(planned.job.result(), planned.goal.stamp)
+        self._begin(planned.job.result(), planned.goal.stamp, planned.goal.note)
         self._active.time = since
 
-    def _begin(self, plan: Plan, stamp: float) -> None:
-        self._active, self._planning.ready = ActivePlan(plan, stamp), None
+    def _begin(self, plan: Plan, stamp: float, note: str = '') -> None:
+        self._active, self._planning.ready = ActivePlan(plan, stamp, note), None
         self.is_waiting = False
         if not self._active.is_hold:
-            self._report(MotionResult.MOVING, stamp)
+            self._report(MotionResult.MOVING, stamp, note)
 
     def _report(self, result: MotionResult, stamp: float, reason: str = '') -> None:
         self.status = MotionStatus(self._active.mode, result, stamp, reason)
@@ -349,7 +354,7 @@ class Executor:
     def _settle(self, result: MotionResult) -> None:
         """The plan has ended: hold its last pose, or begin the waiting goal."""
         waiting, self._next = self._next, None
-        stamp, own = self._active.stamp, self.own_joints
+        stamp, note, own = self._active.stamp, self._active.note, self.own_joints
         if own is not None:
             self.joints = own
         self._begin(Hold(self.state.pose), stamp)
@@ -362,9 +367,9 @@ class Executor:
                 self._scaling.factor = 0.0
         elif isinstance(waiting, Goal):
             if self._planning.goal is None:
-                self._planning.request(waiting)
+                self._planning.request(waiting, self.state.pose, self.joints)
         else:
-            self._report(result, stamp, self._reason if result == MotionResult.STOPPED else '')
+            self._report(result, stamp, self._reason if result == MotionResult.STOPPED else note)
 
     @property
     def _reason(self) -> str:

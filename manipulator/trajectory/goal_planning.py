@@ -14,10 +14,13 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused, Unreachable
 from manipulator.machine import Machine
-from manipulator.planning.goal import Goal
+from manipulator.planning.goal import Goal, OnUnreachable
+from manipulator.planning.nearest_goal import NearestGoal
 from manipulator.planning.plan import MotionState, Plan
 from manipulator.planning.planner import Start, plan_goal
+from manipulator.planning.stream import Stream
 from manipulator.planning.worker import Effort, InPlace, Job, TooLong, Worker
+from manipulator.pose import Pose
 from manipulator.trajectory.active_plan import ActivePlan
 
 LEADS = (3, 12, 50)
@@ -79,6 +82,9 @@ class Planning:
     def __init__(self, machine: Machine, dt: float, worker: Worker) -> None:
         self._machine, self._dt, self._worker = machine, dt, worker
         self._quick = InPlace(TICK_POSES) if machine.kinematics.is_explicit else None
+        self._stream = Stream(0.0 if self._quick else LEADS[0] * dt)
+        self._nearest = NearestGoal(machine)
+        self._now = 0.0
         self._newest: Goal | None = None
         self._request: Planned | None = None
         self.ready: Planned | None = None
@@ -95,9 +101,11 @@ class Planning:
         """Whether a plan has just become worth a report, by how long it takes."""
         return self._request is not None and self._ticks == NOTABLE
 
-    def request(self, goal: Goal) -> None:
-        """Plans a goal at the next `step`."""
-        self._newest = goal
+    def request(self, goal: Goal, pose: Pose, joints: Array) -> None:
+        """Plans a goal at the next `step`; the machine is at `pose`, with joints (n,)."""
+        if goal.on_unreachable is OnUnreachable.NEAREST:
+            goal = self._nearest.reached(goal, pose, joints)
+        self._newest = self._stream.continued(goal, self._now)
 
     def cancel(self) -> None:
         """Gives up all plans that have not begun."""
@@ -110,6 +118,7 @@ class Planning:
 
         Afterwards a plan is `ready`, or has failed, or was too late and is made again.
         """
+        self._now += self._dt
         if self._newest is not None and self._request is None and self.ready is None:
             goal, self._newest = self._newest, None
             self._attempts = self._ticks = 0
@@ -157,25 +166,31 @@ class Planning:
         lead = LEADS[self._attempts] if worker.is_beside and not active.is_hold else 0
         begin = min(active.time + lead * self._dt, active.plan.duration)
         times = np.linspace(active.time, begin, lead + 1)
-        ahead = _Ahead(active.plan, times, active.plan.at(begin), joints)
+        at = self._now + lead * self._dt
+        ahead = _Ahead(active.plan, times, active.plan.at(begin), joints, at)
         job = worker.submit(partial(self._plan, goal, ahead))
         return Planned(goal, ahead.state, active, begin, job)
 
     def _plan(self, goal: Goal, ahead: '_Ahead', effort: Effort) -> Plan:
         """Runs in the worker, with the inverse kinematics up to the plan's start."""
         effort.spend(len(ahead.times))
-        start = Start(ahead.state, ahead.joints_at_end(self._machine), self._dt)
+        joints = ahead.joints_at_end(self._machine)
+        start = Start(ahead.state, joints, self._dt, ahead.at)
         return plan_goal(self._machine, start, goal, effort)
 
 
 @dataclass(frozen=True, eq=False)
 class _Ahead:
-    """Times (k,) of a plan, with the state at the last and the joints (n,) at the first."""
+    """Times (k,) of a plan, with the state at the last and the joints (n,) at the first.
+
+    at: when the last one is, on the clock of `Planning`.
+    """
 
     plan: Plan
     times: Array
     state: MotionState
     joints: Array
+    at: float
 
     def joints_at_end(self, machine: Machine) -> Array:
         """The joints (n,) at the last of the times."""

@@ -16,6 +16,7 @@ from manipulator.machine import Machine
 from manipulator.planning.worker import Worker
 from manipulator.pose import Pose
 from manipulator.states import MachineState, MotionMode, MotionResult
+from manipulator.trajectory.active_plan import ActivePlan
 from manipulator.trajectory.closed_loop import ClosedLoop
 from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.following_error import (
@@ -122,6 +123,16 @@ class MotionSupervisor:
     def requested_joints(self) -> Array | None:
         """The joints (n,) of a motion of joints, None for motions of poses."""
         return None if self._executor is None else self._executor.own_joints
+
+    @property
+    def reported_joints(self) -> Array | None:
+        """The joints (n,) that were reported last."""
+        return self._joints
+
+    def executed(self, stamp: float) -> ActivePlan | None:
+        """The plan that is executed for the goal of that stamp, None where it is not."""
+        active = None if self._executor is None else self._executor.active
+        return active if active is not None and active.stamp == stamp else None
 
     @property
     def is_measured(self) -> bool:

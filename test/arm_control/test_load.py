@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from arm_control.closed_forms import ParallelAxes, SphericalWrist
-from arm_control.geometry import ArmLimits
+from arm_control.joint_limits import ArmLimits
 from arm_control.load import arm, jogging, serial_arm
 from arm_control.numerical import Numerical
 from bridge.servo_config import BoardConfig

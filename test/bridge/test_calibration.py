@@ -140,7 +140,7 @@ def test_a_park_pose_out_of_reach_is_a_config_error():
         ([servo()], {'speed_deg_s': None}, 'speed_deg_s: missing'),
         ([servo(centre_us=1.5)], {}, r'centre_us: 1.5 outside \[100, 30000\]'),
         ([{**servo(), 'us_per_degree': 3.0}], {}, "unknown key, did you mean 'us_per_deg'"),
-        ([], {}, '0 joints, 1 to 8 fit'),
+        ([], {}, '0 joints, 1 to 18 fit'),
     ],
 )
 def test_what_is_wrong_with_the_servos_is_reported(joints, changes, problem):

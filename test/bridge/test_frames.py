@@ -134,7 +134,7 @@ def framed(code, payload=b''):
         (0x01, b'\1', 'frame type 0x01: '),  # no deadline
         (0x01, b'\1\0', 'frame type 0x01: '),  # no joints
         (0x01, b'\1\0\2', 'frame type 0x01: '),  # half a count
-        (0x02, b'\1\0' * 9, 'frame type 0x02: '),  # nine joints
+        (0x02, b'\1\0' * 19, 'frame type 0x02: '),  # 19 joints
         (0x03, b'\0', 'frame type 0x03: '),  # payload where none belongs
         (0x83, b'\1\0\x63', 'frame type 0x83: '),  # unknown result
     ],
@@ -160,7 +160,7 @@ def test_a_content_too_short_for_a_frame_is_damage_though_its_crc_is_right(body)
         (Setpoint(200, (70000,) * 6), 1),
         (Setpoint(-1, PARK), 1),
         (Setpoint(200, ()), 1),
-        (Arm((1,) * 9), 1),
+        (Arm((1,) * 19), 1),
         (Stop(), 65536),
     ],
 )

@@ -93,6 +93,37 @@ def test_a_stop_is_latched_until_it_is_cleared_whatever_comes(bridged):
     bridged.command(START)
 
 
+@pytest.mark.parametrize('interruption', ['disabled', 'stopped'])
+def test_after_every_interruption_it_begins_where_the_joints_are_by_then(bridged, interruption):
+    bridged.enable()
+    bridged.command(START)
+    assert bridged.driver.is_followed
+    if interruption == 'stopped':
+        bridged.driver.stop()
+    else:
+        bridged.driver.enable(False, bridged.now)
+    assert bridged.state == ('stopped' if interruption == 'stopped' else 'disarmed')
+    assert not bridged.driver.is_followed
+    with pytest.raises(Refused):
+        bridged.command(START)
+    bridged.now += 0.05
+    bridged.report(START + 0.3)
+    if interruption == 'stopped':
+        bridged.driver.clear_fault(bridged.now)
+    else:
+        bridged.enable()
+    with pytest.raises(Refused, match='from the reported position'):
+        bridged.command(START)
+    bridged.command(START + 0.3)
+
+
+def test_refusals_are_counted_for_the_diagnostics(bridged):
+    assert not bridged.driver.is_followed
+    bridged.driver.refuse('one')
+    bridged.driver.refuse('two')
+    assert (bridged.driver.refusals, bridged.driver.last_refusal) == (2, 'two')
+
+
 def test_a_stop_before_enabling_counts_too(bridged):
     bridged.driver.stop()
     with pytest.raises(Refused, match='stopped'):

@@ -42,6 +42,15 @@ def test_a_spark_on_the_stop_wire_stops_nothing(armed):
     assert armed.state().mode in (Mode.ARMED, Mode.HOLDING)
 
 
+def test_sparks_do_not_add_up(armed):
+    for _ in range(20):
+        armed.board.is_stop_open = True
+        armed.board.step(0.001)
+        armed.board.is_stop_open = False
+        armed.board.step(0.002)
+    assert armed.state().mode in (Mode.ARMED, Mode.HOLDING)
+
+
 def test_a_contact_that_has_just_closed_may_open_again(armed):
     """A stop that was cleared while the contact bounces would be none."""
     armed.board.is_stop_open = True

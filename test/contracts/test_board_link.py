@@ -44,6 +44,12 @@ def test_silent_while_it_boots_then_announces_itself_disarmed(driver):
     assert driver.board.pulses == (None,) * 6
 
 
+def test_it_says_how_long_it_has_been_up(driver):
+    """Since its program began, after the boot."""
+    uptimes = [hello.uptime_ms for hello in driver.hellos(1.3)]
+    assert uptimes == pytest.approx([250 * k for k in range(len(uptimes))], abs=30)
+
+
 def test_bytes_during_the_boot_are_lost(driver):
     driver.run(0.1)
     driver.send(Arm(PARK))
@@ -150,6 +156,32 @@ def test_unknown_and_malformed_frames_are_refused_and_counted(armed):
         armed.board.feed(cobs.encode(body + checksum(body).to_bytes(2, 'little')) + b'\0')
         assert [f.code.name for f in armed.faults()] == [fault]
     assert armed.state().refused == 3
+    assert armed.state().mode is Mode.ARMED
+
+
+@pytest.mark.parametrize(
+    ('code', 'lengths'),
+    [
+        (0x02, (0, 1, 11, 17)),  # ARM: two bytes a joint
+        (0x03, (1,)),
+        (0x04, (1, 2)),
+        (0x05, (1,)),
+        (0x06, (10, 12)),
+        (0x07, (3, 5)),
+        (0x08, (2, 3, 19)),
+        (0x09, (1, 3)),
+        (0x0A, (1, 3)),
+        (0x0B, (1,)),
+    ],
+)
+def test_a_command_of_another_length_is_refused_by_name_and_not_answered(armed, code, lengths):
+    for count, length in enumerate(lengths, start=1):
+        body = bytes([code, 9, 9]) + bytes(length)
+        armed.board.feed(cobs.encode(body + checksum(body).to_bytes(2, 'little')) + b'\0')
+        heard = armed.run(0.04)
+        assert Fault(FaultCode.MALFORMED, NO_JOINT, code) in heard
+        assert not [m for m in heard if isinstance(m, Ack)]
+        assert armed.state().refused == count
     assert armed.state().mode is Mode.ARMED
 
 

@@ -25,6 +25,18 @@ def test_arming_energises_servo_by_servo_at_park(driver):
     assert driver.counts() == PARK
 
 
+def test_an_interval_of_whole_periods_is_kept_to_the_period(make_driver):
+    driver = make_driver(arm_interval_us=40_000)
+    driver.run(0.4)
+    driver.send(Arm(PARK))
+    lit = []
+    for _ in range(20):
+        driver.run(0.02)
+        lit.append(sum(pulse is not None for pulse in driver.board.pulses))
+    starts = [lit.index(number) for number in range(1, 7)]
+    assert np.diff(starts).tolist() == [2] * 5
+
+
 def test_setpoints_are_refused_while_it_arms_and_before(driver):
     driver.run(0.4)
     for mode in (Mode.DISARMED, Mode.ARMING):

@@ -8,11 +8,10 @@ import pytest
 
 from bridge.calibration import COUNTS_PER_US, Calibration
 from bridge.fake.board_settings import BoardSettings
-from bridge.protocol import MAX_JOINTS
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board import build as firmware_build
-from hexarm.board.header import WIDEST_COUNT, header, header_of
+from hexarm.board.header import CHANNELS, WIDEST_COUNT, header, header_of
 from hexarm.cli.main import main
 from manipulator.errors import ConfigError
 
@@ -77,10 +76,15 @@ def test_every_servo_machine_has_a_program_that_fits_a_quarter_of_the_chip(machi
     assert sections.ram <= 8192 - 1024
 
 
+def test_more_joints_than_the_chip_has_channels_are_refused():
+    with pytest.raises(ConfigError, match='18 joints, the board has 8 channels'):
+        header_of('stack_6_6')
+
+
 def test_the_page_of_actuators_tells_what_the_board_emits():
     root = Path(__file__).parents[2]
     page = (root / 'docs' / 'actuators.md').read_text()
-    assert (MAX_JOINTS, WIDEST_COUNT / COUNTS_PER_US, COUNTS_PER_US) == (8, 18_000, 2)
+    assert (CHANNELS, WIDEST_COUNT / COUNTS_PER_US, COUNTS_PER_US) == (8, 18_000, 2)
     for words in ('eight outputs', 'at most 18 ms', 'steps of half a microsecond'):
         assert words in page
     for name in ('README.md', 'docs/wiring.md'):

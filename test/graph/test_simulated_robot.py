@@ -4,9 +4,11 @@ import json
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from hexarm import ManipulatorError, Refused, Robot
+from hexarm.machines import load
 
 pytestmark = pytest.mark.graph
 NOTEBOOK = Path(__file__).resolve().parents[2] / 'examples' / 'first_steps.ipynb'
@@ -35,6 +37,21 @@ def test_an_arm_is_simulated_and_nothing_of_it_is_left(processes_left, monkeypat
             robot.move(z=z - 0.02, speed=0.05)
             assert robot.pose.position[2] == pytest.approx(z - 0.02, abs=3e-3)
             assert robot.limits.joints.keys() <= robot.joints.keys()  # and a gripper
+
+    persist(drive)
+    assert processes_left() == {}
+
+
+def test_a_stack_of_18_joints_is_driven_like_any_machine(processes_left, monkeypatch):
+    monkeypatch.delenv('ROS_DOMAIN_ID', raising=False)
+    kinematics = load('stack_6_6').kinematics
+
+    def drive():
+        with Robot.simulated('stack_6_6', '/stack') as robot:
+            robot.enable()
+            robot.move(x=0.02, yaw=0.1)
+            measured = np.array([robot.joints[name] for name in kinematics.joint_names])
+            assert np.abs(measured - kinematics.inverse(robot.pose)).max() < 1e-3
 
     persist(drive)
     assert processes_left() == {}

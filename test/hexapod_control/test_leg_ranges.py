@@ -122,3 +122,15 @@ def test_another_number_of_ranges_is_refused(robocake_content, ranges):
     robocake_content['limits']['crank_range_deg'] = ranges
     with pytest.raises(ConfigError, match=r'limits\.crank_range_deg'):
         load(robocake_content)
+
+
+def test_cranks_that_are_bent_the_other_way_are_told_each_range_to_write(reachy_mini):
+    geometry, limits = reachy_mini['geometry'], reachy_mini['limits']
+    ranges = limits['crank_range_deg']
+    mirrored = {'crank_tangents': [[-c for c in t] for t in geometry['crank_tangents']]}
+    turned = {'crank_range_deg': [[180.0 - high, 180.0 - low] for low, high in ranges]}
+    there = {'geometry': geometry | mirrored, 'limits': limits | turned}
+    with pytest.raises(ConfigError) as caught:
+        load(reachy_mini | there)
+    written = ', '.join(f'[{low:g}, {high:g}]' for low, high in ranges)
+    assert f'crank_range_deg: [{written}], centre_deg' in caught.value.problems[0]

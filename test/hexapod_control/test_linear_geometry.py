@@ -104,3 +104,11 @@ def test_the_servos_of_machine_files_reach_every_stroke(name):
         ]
         assert min(ends) <= limits.stroke_range_mm[0]
         assert max(ends) >= limits.stroke_range_mm[1]
+
+
+def test_plates_face_each_other_below_the_base_as_above_it():
+    above = PlatesConfig(100, 50, 50, 10, 7, 5, 180).geometry()
+    below = PlatesConfig(100, 50, 50, 10, 7, 5, -180).geometry()
+    upside_down = np.diag([1.0, 1.0, -1.0])
+    np.testing.assert_allclose(below.base_points, above.base_points @ upside_down)
+    np.testing.assert_allclose(below.platform_points, above.platform_points @ upside_down)

@@ -1,12 +1,19 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hexapod_control import load
 from hexapod_control.geometry import HexagonConfig, RotaryGeometry
 from hexapod_control.rotary import RotaryHexapod
-from manipulator.config import build
+from hexapod_control.workspace import sample
+from leg_kinds import FLAT_CRANKS, TILTED_CRANKS
+from manipulator import rotation
+from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
+from manipulator.machine import MachineFile
 from manipulator.pose import Pose
 
 
@@ -17,6 +24,21 @@ def rod_lengths(hexapod, pose, joints):
     tips = g.crank_centres + g.crank_lengths[:, None] * turned
     ends = np.einsum('...ij,kj->...ki', pose.rotation, g.platform_points)
     return np.linalg.norm(ends + pose.position[..., None, :] - tips, axis=-1)
+
+
+@pytest.mark.parametrize('path', [TILTED_CRANKS, FLAT_CRANKS])
+def test_cranks_turn_about_the_axes_of_the_file_by_the_right_hand(path):
+    """From the numbers of the file alone: the tangent turned about the axis ends where rods do."""
+    content = parse_yaml(Path(path).read_text())
+    g = {key: np.array(value) for key, value in content['geometry'].items()}
+    machine = load.hexapod(build(MachineFile, content))
+    poses = sample(machine, 300, np.random.default_rng(1))
+    for pose, joints in zip(poses, machine.kinematics.inverse(poses), strict=True):
+        turned = rotation.exp(joints[:, None] * g['crank_axes'])
+        arms = g['crank_length_mm'] * np.einsum('lij,lj->li', turned, g['crank_tangents'])
+        ends = pose.transform(1e-3 * g['platform_joints_mm'])
+        gaps = np.linalg.norm(1e3 * ends - g['crank_centres_mm'] - arms, axis=1)
+        np.testing.assert_allclose(gaps, g['rod_length_mm'], atol=2e-5)
 
 
 def moved_by(dx=0.0, dy=0.0, dz=0.0, roll=0.0, pitch=0.0, yaw=0.0):

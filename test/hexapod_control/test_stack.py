@@ -128,21 +128,8 @@ def test_no_other_way_to_the_same_end_is_nearer_to_home(stack, twist):
             assert stack.distance(others) > found.distance
 
 
-def test_a_limit_moves_the_share_to_the_other_section(stewart_content, stewart):
-    content = stewart_content('stewart_6_6')
-    content['limits']['stroke_range_mm'] = [175.0, 238.0]
-    short = load.hexapod(build(MachineFile, content))
-    stack = Stack((short, stewart), (Pose.identity(), Pose.identity()))
-    down = stack.home.moved([0.0, 0.0, -0.045, 0.0, 0.0, 0.0])
-    found = stack.inverse(down)
-    assert found.joints[0].min() >= 0.175
-    assert found.joints[0].max() < 0.178
-    assert found.joints[1].max() < 0.165
-    assert np.abs(down.twist_to(found.end)).max() < 1e-12
-
-
 def test_a_tilt_beyond_one_section_is_in_reach_of_two(stewart, twins):
-    tilt = np.array([0.0, 0.0, 0.0, 0.9, 0.0, 0.0])
+    tilt = np.array([0.0, 0.0, 0.0, 0.85, 0.0, 0.0])
     kinematics = stewart.kinematics
     alone = kinematics.home.moved(tilt)
     assert not stewart.constraints.admits(alone, kinematics.inverse(alone))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from arm_control.urdf_chain import arm_of
-from arm_control.urdf_file import read_urdf
+from arm_control.urdf_file import read_urdf, with_right_angles
 from hexarm import machines
 from hexarm.arm_import import Wishes, machine_text
 from hexarm.cli.main import main
@@ -67,6 +67,7 @@ def random_urdf(rng):
 
     def place():
         angles = rng.choice(QUARTERS, 3) if rng.random() < 0.5 else rng.uniform(-4, 4, 3)
+        angles = angles + rng.choice([0.0, 1e-6, 5e-12, 2e-15])  # as in 1.5708 and 1.57079632679
         return {'xyz': rng.uniform(-0.4, 0.4, 3), 'rpy': angles}
 
     for i in range(6):
@@ -266,7 +267,38 @@ REFUSED = {
         plain().replace('effort="7"/>', 'effort="7"/><mimic joint="joint_1"/>', 1),
         "joint 'joint_0' mimics 'joint_1', an arm has a drive for each",
     ),
-    'seven': (plain(count=7), None),
+    'seven': (
+        plain(joint('jaw', 'link_7', 'left', 'prismatic'), links=['left'], count=7),
+        "to tip 'left'|joint 'jaw' is prismatic",
+    ),
+    'seven axes': (
+        plain(count=7),
+        "to tip 'link_7': 7 axes, arms with 6 .*a gripper follows, --tip",
+    ),
+    'seven and tool0': (
+        plain(joint('t', 'link_7', 'tool0', 'fixed'), links=['tool0'], count=7),
+        "to tip 'tool0': 7 axes",
+    ),
+    'five and fingers': (
+        plain(
+            joint('left', 'link_5', 'left', 'prismatic'),
+            joint('turning', 'link_5', 'turned'),
+            links=['left', 'turned'],
+            count=5,
+        ),
+        "to tip 'link_5': 5 axes",
+    ),
+    'two arms': (
+        robot(
+            ['torso', *(f'{side}_{i}' for side in 'lr' for i in range(6))],
+            [
+                joint(f'{side}{i}', f'{side}_{i - 1}' if i else 'torso', f'{side}_{i}')
+                for side in 'lr'
+                for i in range(6)
+            ],
+        ),
+        'the tip is not clear, --tip: l_5, r_5',
+    ),
     'five': (
         plain(count=5),
         "to tip 'link_5': 5 axes, arms with 6 are supported; 5 and 7 are planned",
@@ -298,21 +330,75 @@ REFUSED = {
 @pytest.mark.parametrize('fault', REFUSED)
 def test_what_is_no_arm_is_refused_by_name(fault):
     text, said = REFUSED[fault]
-    if said is None:
-        assert arm_of(read_urdf(text)).tip == 'link_6'
-        return
     with pytest.raises(ConfigError, match=said) as caught:
         arm_of(read_urdf(text))
     assert len(str(caught.value)) < 1000
 
 
+def test_an_arm_ends_at_what_carries_its_fingers():
+    fingers = [joint('f', 'link_6', 'left'), joint('g', 'link_6', 'right', 'prismatic')]
+    assert arm_of(read_urdf(plain(*fingers, links=['left', 'right']))).tip == 'link_6'
+    mimic = joint('f', 'link_6', 'left', rest='<mimic joint="joint_1"/>')
+    assert arm_of(read_urdf(plain(mimic, links=['left']))).tip == 'link_6'
+    single = plain(joint('f', 'link_6', 'left'), links=['left'])
+    with pytest.raises(ConfigError, match='7 axes'):
+        arm_of(read_urdf(single))
+    assert arm_of(read_urdf(single), tip='link_6').tip == 'link_6'
+
+
+def test_right_angles_that_the_file_rounds_are_exact_on_request(tmp_path, capsys):
+    rows = [
+        ((0.0, 0.0, 0.3), (0.0, 0.0, 0.0)),
+        ((0.05, 0.0, 0.0), (1.5708, 0.0, 0.0)),
+        ((0.4, 0.0, 0.0), (6.2832, 0.0, 0.0)),
+        ((0.02, 0.0, 0.0), (-1.5708, 0.0, 0.0)),
+        ((0.0, 0.0, 0.35), (1.5708, 0.0, 0.0)),
+        ((0.0, 0.0, 0.0), (-1.5708, 0.0, 0.0)),
+    ]
+    links = [f'l{i}' for i in range(7)]
+    pairs = zip(SIX, links, links[1:], rows, strict=False)
+    joints = [joint(name, a, b, xyz=xyz, rpy=rpy) for name, a, b, (xyz, rpy) in pairs]
+    text = robot(links, joints)
+    source = saved(tmp_path, text, 'a.urdf')
+    files = {option: str(tmp_path / f'{len(option)}.yaml') for option in ('', '--right-angles')}
+    for option, file in files.items():
+        assert main(['import', source, '--output', file, *option.split()]) == 0
+        assert ('with --right-angles' in capsys.readouterr().out) == (option == '')
+        assert machines.load(file).kinematics.is_explicit == (option != '')
+    angles = np.array([0.3, -0.4, 0.2, 0.5, -0.6, 0.7])
+    for rounded, right in (('1.5708', np.pi / 2), ('6.2832', 2 * np.pi)):
+        text = text.replace(rounded, repr(right))
+    expected = tool_of(text, 'l0', 'l6', dict(zip(SIX, angles, strict=True)))
+    pose = machines.load(files['--right-angles']).kinematics.forward(angles).pose
+    assert np.abs(pose.position - expected[:3, 3]).max() < 1e-12
+
+
+def test_angles_that_are_meant_are_kept():
+    for angles in ((1.57, 0.3, 0.0), (1.57, 0.0, 0.0), (0.0, 0.0, 2e-4)):
+        text = plain().replace('rpy="0.0 0.0 0.0"', f'rpy="{numbers(angles)}"')
+        kept = with_right_angles(read_urdf(text)).joints[0].origin.rotation
+        assert np.abs(kept - from_rpy(angles)).max() < 1e-12
+
+
 def test_command_writes_a_file_that_is_good_and_never_over_another(tmp_path, capsys):
     source, output = saved(tmp_path, weighed(), 'arm.urdf'), tmp_path / 'mine.yaml'
-    words = ['import', source, '--tip', 'tool', '--output', str(output), '--json']
+    words = [
+        'import',
+        source,
+        '--tip',
+        'tool',
+        '--prefix',
+        'l/',
+        '--output',
+        str(output),
+        '--json',
+    ]
     assert main(words) == 0
     answer = json.loads(capsys.readouterr().out)
     assert answer['tip'] == 'tool'
     assert any('acceleration' in line for line in answer['assumed'])
+    assert machines.load(str(output)).kinematics.joint_names == tuple(answer['joints'])
+    assert answer['joints'][0] == 'l/joint_0'
     assert main(['check', str(output)]) == 0
     capsys.readouterr()
     before = output.read_text()

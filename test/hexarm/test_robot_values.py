@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from hexarm import machines
-from hexarm.robot_values import Limits, moved_to, pose_from, poses_from, share_done
+from hexarm.robot_values import (
+    Limits,
+    moved_to,
+    numbers_by_name,
+    pose_from,
+    poses_from,
+    share_done,
+)
 from manipulator.errors import InvalidInput
 from manipulator.pose import Pose
 
@@ -74,3 +81,14 @@ def test_limits_name_every_joint(name):
     assert tuple(limits.joints) == machine.kinematics.joint_names == tuple(limits.joint_speeds)
     assert all(low < high for low, high in limits.joints.values())
     assert min(limits.speed, limits.turning_speed, *limits.joint_speeds.values()) > 0
+
+
+def test_numbers_by_name_come_from_both_places_and_must_be_some():
+    assert numbers_by_name({'joint_1': 1}, {'joint_2': 0.5}, 'joint') == {
+        'joint_1': 1.0,
+        'joint_2': 0.5,
+    }
+    with pytest.raises(InvalidInput, match='no joint is named'):
+        numbers_by_name(None, {}, 'joint')
+    with pytest.raises(InvalidInput, match="joint_1: 'far' is not a finite number"):
+        numbers_by_name({'joint_1': 'far'}, {}, 'joint')

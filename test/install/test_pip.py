@@ -56,6 +56,7 @@ def test_machine_files_are_found_in_the_environment(scratch, machines, run, nowh
     assert {entry['path'] for entry in answer['machines']} == {
         str(config / f'{name}.yaml') for name in machines
     }
+    assert (config / 'machine.schema.json').is_file()
 
 
 def test_profile_of_discovery_is_installed(scratch, run, nowhere):

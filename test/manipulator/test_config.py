@@ -4,7 +4,7 @@ from typing import Literal
 
 import pytest
 
-from manipulator import config
+from manipulator import strict_yaml
 from manipulator.config import build, build_both, parse_yaml, quantity
 from manipulator.errors import ConfigError
 
@@ -47,7 +47,7 @@ def test_a_mistake_of_syntax_is_shown_in_its_line():
 @pytest.mark.parametrize('path', sorted(CONFIG.glob('*.yaml')), ids=lambda path: path.stem)
 def test_files_hold_the_same_with_libyaml_and_without(path, monkeypatch):
     found = parse_yaml(path.read_text())
-    monkeypatch.setattr(config, '_QuickLoader', config._StrictLoader)
+    monkeypatch.setattr(strict_yaml, 'QuickLoader', strict_yaml.StrictLoader)
     assert parse_yaml(path.read_text()) == found
 
 
@@ -55,7 +55,7 @@ def test_numbers_may_have_powers_of_ten_without_a_point(monkeypatch):
     text = 'a: [3e6, -1E-3, +2e+5, 3000000, 1.5e3, 12, 0x10, 1e, e5, 1_000, "3e6"]'
     found = {'a': [3e6, -1e-3, 2e5, 3000000, 1500.0, 12, 16, '1e', 'e5', 1000, '3e6']}
     assert parse_yaml(text) == found
-    monkeypatch.setattr(config, '_QuickLoader', config._StrictLoader)
+    monkeypatch.setattr(strict_yaml, 'QuickLoader', strict_yaml.StrictLoader)
     assert parse_yaml(text) == found
 
 

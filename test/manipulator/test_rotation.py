@@ -99,3 +99,13 @@ def test_functions_broadcast():
     matrices = so3.exp(w)
     for f in (so3.log, so3.to_quaternion, so3.to_rpy):
         np.testing.assert_allclose(f(matrices)[1, 2], f(matrices[1, 2]), atol=1e-15)
+
+
+@pytest.mark.parametrize('away', [0.0, 1e-15, 1e-13, 1e-11, 1e-8, 1e-5])
+def test_angles_for_files_lead_back_to_the_rotation_however_near_pitch_is_to_a_quarter(away):
+    rng = np.random.default_rng(4)
+    for roll, yaw in rng.uniform(-np.pi, np.pi, (20, 2)):
+        for pitch in (np.pi / 2 - away, away - np.pi / 2):
+            matrix = so3.from_rpy((roll, pitch, yaw))
+            back = so3.from_rpy(so3.to_rpy(matrix, so3.EXACTLY))
+            assert np.abs(back - matrix).max() < 1e-13

@@ -176,3 +176,35 @@ def test_what_the_drives_stay_behind_by_is_commanded_on_top():
     np.testing.assert_allclose(
         check.command(HOME, 0.0), MACHINE.kinematics.inverse(HOME) + deflection
     )
+
+
+def in_line(machine):
+    """Joints of an arm whose axes 4 and 6 are in line."""
+    joints = machine.kinematics.inverse(machine.kinematics.home)
+    joints[4] = 0.0
+    return joints
+
+
+def test_requested_joints_decide_where_a_pose_fixes_none():
+    machine = load('arm_6r')
+    check, joints = SetpointValidator(machine), in_line(machine)
+    check.note_joints(joints)
+    for k in range(20):
+        joints[3] += 0.002
+        check.note_requested(joints.copy(), 0.01 * k)
+        found = check.admit(machine.kinematics.forward(joints).pose, 0.01 * k)
+        assert np.abs(found - joints).max() < 1e-6
+
+
+def test_a_setpoint_that_stays_the_same_moves_no_joint_where_a_pose_fixes_none():
+    machine = load('arm_6r')
+    check, joints = SetpointValidator(machine), in_line(machine)
+    check.note_joints(joints)
+    for k in range(10):
+        joints[3] += 0.002
+        check.note_requested(joints.copy(), 0.01 * k)
+        pose = machine.kinematics.forward(joints).pose
+        check.admit(pose, 0.01 * k)
+    for k in range(10, 40):
+        found = check.admit(pose, 0.01 * k)
+    assert np.abs(found - joints).max() < 1e-6

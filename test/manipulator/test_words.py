@@ -1,6 +1,6 @@
 import pytest
 
-from manipulator.formatting import counted, length, reason
+from manipulator.formatting import counted, decimals, length, reason, told_apart
 
 
 @pytest.mark.parametrize(
@@ -41,3 +41,19 @@ def test_files_that_cannot_be_read_are_reported_without_error_numbers(tmp_path):
         (tmp_path / 'picture').read_text(encoding='utf-8')
     assert reason(binary.value) == 'it is no text (byte 1)'
     assert reason(ValueError('not a number')) == 'not a number'
+
+
+def test_values_that_differ_look_different():
+    assert told_apart([500.0001, 500.0, 3.0]) == ['500.0001', '500', '3']
+    assert told_apart([0.1 + 0.2, 0.3]) == ['0.3', '0.3']
+    assert told_apart([142.01, 142.0], fewest=2) == ['142.01', '142']
+
+
+def test_small_numbers_get_the_decimals_that_show_them():
+    assert [decimals(largest) for largest in (250.0, 0.2, 0.0053, 0.0, float('nan'))] == [
+        4,
+        4,
+        6,
+        4,
+        4,
+    ]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from manipulator.planning.check import TOLERANCE
+from manipulator.planning.goal import Goal, Motion
 
 DEAD_BAND = 4e-3
 """rad or m by which the dead bands of the servos may miss a goal."""
@@ -52,6 +53,18 @@ def test_a_turn_more_is_unwound(make_world):
     assert arm.end_of(arm.send_goal_joints(joint_6=home)).result == 'reached'
     arm.run(0.3)
     assert arm.joints[5] == pytest.approx(home, abs=DEAD_BAND)
+
+
+def test_a_pose_is_reached_with_the_turns_of_home_where_that_is_asked_for(make_world):
+    arm = make_world('ur5')
+    home = arm.joints
+    named = {'joint_6': home[5] + 2 * np.pi, 'joint_1': home[0] + 0.2}
+    assert arm.end_of(arm.send_goal_joints(**named)).result == 'reached'
+    goal = Goal(arm.machine.kinematics.home, arm.user.stamp, motion=Motion.UNWIND)
+    arm.controller.core.pursue(goal, lambda error: None, arm.now)
+    assert arm.end_of(goal.stamp).result == 'reached'
+    arm.run(0.3)
+    assert np.abs(arm.joints - home).max() < DEAD_BAND
 
 
 def test_the_named_joint_moves_where_its_axis_is_in_line_with_another(make_world):
@@ -101,3 +114,14 @@ def test_a_goal_of_joints_in_motion_brakes_first_and_keeps_the_end_of_the_other(
     assert arm.end_of(arm.send_goal_joints(joint_6=0.3)).result == 'reached'
     arm.run(0.5)
     assert arm.joints[[0, 5]] == pytest.approx([0.5, 0.3], abs=DEAD_BAND)
+
+
+def test_joints_that_a_rule_chooses_are_refused_one_by_one(make_world):
+    stack = make_world('stack_6_6')
+    since, name = stack.now, joint(stack, 1)
+    refused = stack.end_of(stack.send_goal_joints(**{name: stack.joints[0] + 0.001}))
+    assert 'joints cannot be commanded one by one' in refused.reason
+    stack.links['joint_rates'].send(stack.user.stamp, 'cmd_vel', {name: 0.001})
+    stack.run(0.1)
+    assert 'joints cannot be commanded' in stack.controller.on_joint_rates.refusals[-1][1]
+    assert stack.moved(since) <= 1.0

@@ -3,6 +3,7 @@
 import json
 import re
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from unittest.mock import ANY
 
@@ -12,7 +13,8 @@ import pytest
 from hexapod_control.geometry import HexagonConfig
 from hexarm.cli.main import main
 from hexarm.machine_check import problems_of, report_of
-from hexarm.machines import load
+from hexarm.machines import content_of, load
+from leg_kinds import TILTED_CRANKS
 from manipulator.config import build, parse_yaml
 
 CONFIG = Path(__file__).parents[3] / 'config'
@@ -21,6 +23,8 @@ ROBOCAKE = (CONFIG / 'robocake.yaml').read_text()
 ARM = (CONFIG / 'arm_6r.yaml').read_text()
 STEWART = (CONFIG / 'stewart_6_3.yaml').read_text()
 UR5 = (CONFIG / 'ur5.yaml').read_text()
+STACK = (CONFIG / 'stack_6_6.yaml').read_text()
+BY_COORDINATES = (CONFIG / 'reachy_mini.yaml').read_text()
 
 
 def changed(text, *replacements):
@@ -47,7 +51,7 @@ def section_without(text, name):
 @pytest.mark.parametrize('file', sorted(CONFIG.glob('*.yaml')), ids=lambda file: file.stem)
 def test_shipped_files_are_good(file):
     if 'kind:' in file.read_text():
-        report = report_of(parse_yaml(file.read_text()))
+        report = report_of(content_of(file))
         assert (report.problems, report.warnings) == ((), ())
 
 
@@ -84,6 +88,7 @@ def test_rod_shorter_than_its_gap_reports_by_how_much():
         (ROBOCAKE, 'rod_length_mm: 58.0', 0.058),
         (ROBOCAKE, 'rod_length_mm: 58.0', 58000.0),
         (ROBOCAKE, 'home_height_mm: 41.19', 41190.0),
+        (BY_COORDINATES, 'home_height_mm: 177.0', 0.177),
         (ROBOCAKE, 'characteristic_length_mm: 70.0', 0.07),
         (STEWART, 'base_radius_mm: 100.0', 0.1),
         (STEWART, 'stroke_range_mm: [142.0, 238.0]', [0.142, 0.238]),
@@ -210,6 +215,8 @@ def test_servos_that_are_too_narrow_alike_are_one_line():
     (found,) = problems_of(changed(ROBOCAKE, ('[550.0, 2450.0]', '[700.0, 2300.0]')))
     assert found.startswith('servos.joints: crank_1, crank_2, crank_3, crank_4, crank_5, crank_6 ')
     assert found.endswith('reach [43.81, 196.2] deg, their range in limits is [30, 210] deg')
+    report = report_of(parse_yaml(changed(ROBOCAKE, ('[30.0, 210.0]', '[-30.0, 210.0]'))))
+    assert (len(report.problems), report.warnings) == (1, ())
 
 
 def test_ranges_that_differ_are_not_written_alike_and_less_than_a_count_is_no_difference():
@@ -246,7 +253,8 @@ def test_command_prints_each_problem_on_a_line_and_fails(tmp_path, capsys):
     assert main(['check', str(bad)]) == 2
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == f'{bad}: 1 problem'
-    assert len(lines) == 2
+    assert lines[1].startswith('geometry.rod_lenght_mm: unknown key')
+    assert lines[2].startswith('joints at home: ')
 
 
 def test_command_answers_programs(tmp_path, capsys):
@@ -280,6 +288,47 @@ def test_file_that_is_no_machine_file_is_one_line_with_its_name(tmp_path, capsys
             assert said.count('\n') == 1, said
             assert f'{path}: {reason}' in said
             assert len(said) - len(str(path)) < 300, said
+
+
+def hobby_platform(is_hanging):
+    """By docs/machine-files.md: horns that point along a hexagon's sides, level at home."""
+    content = parse_yaml(BY_COORDINATES)
+    at, joint = (np.radians(a) for a in ([40.0, 80.0, 160.0, 200.0, 280.0, 320.0],
+                                         [10.0, 110.0, 130.0, 230.0, 250.0, 350.0]))  # fmt: skip
+    along = at + np.radians([90.0, -90.0] * 3)  # β, where each leg's horn points
+    axes, ends = (radius * np.stack([np.cos(a), np.sin(a), 0 * a], 1)
+                  for radius, a in ((80.0, at), (50.0, joint)))  # fmt: skip
+    horns = np.stack([np.cos(along), np.sin(along), 0 * along], 1)
+    across = np.linalg.norm(axes + 20.0 * horns - ends, axis=1)
+    height = float(np.sqrt(140.0**2 - across[0] ** 2))
+    content['geometry'] = {
+        'crank_centres_mm': axes.tolist(),
+        'crank_tangents': (horns if is_hanging else -horns).tolist(),
+        'platform_joints_mm': ends.tolist(),
+        'crank_length_mm': 20.0,
+        'rod_length_mm': 140.0,
+        'home_height_mm': -height if is_hanging else height,
+    }
+    level = 0.0 if is_hanging else 180.0
+    content['limits'] |= {
+        'crank_range_deg': [level - 80.0, level + 80.0],
+        'minimum_height_mm': -1000.0,
+        'characteristic_length_mm': 50.0,
+    }
+    content['servos']['park_deg'] = [level] * 6
+    for servo in content['servos']['joints']:
+        servo['centre_deg'] = level
+    return content, axes + 20.0 * horns
+
+
+@pytest.mark.parametrize('is_hanging', [False, True])
+def test_a_hobby_platform_by_the_page_has_its_horns_where_they_are(is_hanging):
+    content, tips = hobby_platform(is_hanging)
+    report = report_of(content)
+    assert (report.problems, report.warnings) == ((), ())
+    kinematics = report.machine.kinematics
+    found = kinematics.crank_tips(kinematics.inverse(kinematics.home))
+    np.testing.assert_allclose(1e3 * found, tips, atol=1e-6)
 
 
 def test_long_values_and_names_are_not_repeated_whole():
@@ -332,6 +381,17 @@ def test_home_on_the_wrong_bend_is_a_warning_with_both_values():
     (warning,) = report.warnings
     assert 'crank_1, crank_2, crank_3, crank_4, crank_5, crank_6 at 109.9°' in warning
     assert 'on the other branch: 0.0°, 0.0°' in warning
+
+
+def test_tangents_that_rise_without_axes_are_a_warning_that_says_which_plane_was_taken():
+    text = Path(TILTED_CRANKS).read_text()
+    assert report_of(parse_yaml(text)).warnings == ()
+    content = parse_yaml(text)
+    del content['geometry']['crank_axes']
+    (warning,) = report_of(content).warnings
+    assert warning.startswith('geometry.crank_tangents: crank_1, crank_2')
+    assert '14.1°' in warning
+    assert 'vertical plane' in warning
 
 
 def test_tilted_home_in_the_middle_of_its_range_is_no_warning():
@@ -387,9 +447,6 @@ def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
     assert '0.190000  0.190000 m' in capsys.readouterr().out
 
 
-BY_COORDINATES = (CONFIG / 'reachy_mini.yaml').read_text()
-
-
 def bent_the_other_way(content):
     """The same machine with its tangents along the horns, as they are published; undoes itself."""
     low, high = content['limits']['crank_range_deg']
@@ -413,13 +470,20 @@ def test_horns_as_hobbyists_enter_them_are_told_what_to_write():
     assert report_of(bent_the_other_way(naive)).problems == ()
 
 
+def test_ranges_of_each_leg_are_turned_each():
+    naive = bent_the_other_way(parse_yaml(BY_COORDINATES))
+    naive['limits']['crank_range_deg'] = [[-80.0, 80.0]] * 5 + [[-80.0, 70.0]]
+    (problem,) = (p for p in report_of(naive).problems if 'the other way' in p)
+    assert f'crank_range_deg: [{"[100, 260], " * 5}[110, 260]], ' in problem
+
+
 def test_one_wrong_word_in_every_entry_of_a_list_is_one_line():
     assert problems_of(changed(ROBOCAKE, ('centre_deg', 'center_deg'))) == [
         "servos.joints[0, 1, 2, 3, 4, 5].center_deg: unknown key, did you mean 'centre_deg'?"
     ]
 
 
-@pytest.mark.parametrize('text', [ROBOCAKE, STEWART, ARM, UR5, BY_COORDINATES])
+@pytest.mark.parametrize('text', [ROBOCAKE, STEWART, UR5, STACK])
 def test_one_wrong_letter_is_one_line(text):
     text = re.sub('#.*|^description.*', '', re.sub('".*?"', 'x', text), flags=re.MULTILINE)
     for word in sorted({*re.findall(r'(\w{4,}):', text), *re.findall(r'^kind: (\w+)', text)}):
@@ -431,6 +495,38 @@ def test_the_kind_of_another_machine_is_one_line():
     assert problems_of(changed(STEWART, ('kind: linear_hexapod', 'kind: serial_arm'))) == [
         "kind: 'serial_arm', but geometry has the keys of a linear_hexapod"
     ]
+
+
+@pytest.mark.parametrize('kind', ['kind: rotary_hexpod', 'kind: 7', '', 'kind: serial_arm'])
+def test_what_else_is_wrong_is_found_whatever_the_kind_says(kind):
+    found = problems_of(
+        changed(ROBOCAKE, ('kind: rotary_hexapod', kind), ('[30.0, 210.0]', '[130.0, 210.0]'))
+    )
+    assert found[0].startswith('kind: ')
+    assert found[1:] == ['limits: home has crank angle 120° on all legs, outside [130, 210]°']
+
+
+MISTAKES = (
+    ('kind: rotary_hexapod', 'kind: rotry_hexapod'),
+    ('rod_length_mm: 58.0', 'rod_lenght_mm: 58.0'),
+    ('singularity_margin: 0.3', 'singularity_margin: 2.0'),
+    ('name: crank_3', 'name: crnk_3'),
+    ('on_link_loss: hold', 'on_link_loss: hope'),
+    ('hysteresis_deg', 'histeresis_deg'),
+    ('joint_speed_deg_s: 480', 'joint_speed_deg_s: 700'),
+    ('thickness_mm: 4.0', 'thicknes_mm: 4.0'),
+    ('speed_deg_s: 600.0', 'sped_deg_s: 600.0'),
+    ('link:\n', 'lnk:\n'),
+)
+
+
+def test_no_mistake_hides_another():
+    alone = {mistake: set(problems_of(changed(ROBOCAKE, mistake))) for mistake in MISTAKES}
+    for first, second in combinations(MISTAKES, 2):
+        found = problems_of(changed(ROBOCAKE, first, second))
+        assert set(found) == alone[first] | alone[second], (first, second)
+    whole = problems_of(changed(ROBOCAKE, *MISTAKES))
+    assert set(whole) == set().union(*alone.values())
 
 
 def test_faults_of_servos_and_a_home_beyond_limits_come_together():

@@ -145,3 +145,24 @@ def test_degrees_are_distinguished_from_radians(machine, capsys):
     assert main(['fk', machine, '0', '0', '90', '0', '0', '0']) == 2
     assert '90 rad is more than a turn' in capsys.readouterr().err
     assert main(['fk', 'ur5', '0', '-6.28', '0', '0', '0', '0']) == 0
+
+
+def test_near_selects_the_branch_and_the_turns(ask):
+    kinematics = load('ur5').kinematics
+    home = kinematics.inverse(kinematics.home)
+    x, y, z = map(str, kinematics.home.position)
+    rpy = [str(angle) for angle in kinematics.home.rpy]
+    pose = ['--xyz', x, y, z, '--rpy', *rpy]
+    for branch in ask('ik', 'ur5', *pose, '--all')['branches']:
+        if branch['violations']:
+            continue
+        near = np.array(branch['positions'])
+        near[5] += 2 * np.pi if near[5] < 0 else -2 * np.pi
+        found = ask('ik', 'ur5', *pose, '--near', *map(str, near))['joints']['positions']
+        np.testing.assert_allclose(found, near, atol=1e-6)
+    assert ask('ik', 'ur5', *pose)['joints']['positions'] == pytest.approx(home.tolist())
+
+
+def test_near_needs_a_number_for_each_joint(capsys):
+    assert main(['ik', 'ur5', '--xyz', '0.4', '0', '0.4', '--near', '1', '2']) == 2
+    assert '--near: 2 numbers, needs 6: joint_1, joint_2' in capsys.readouterr().err

@@ -12,15 +12,23 @@ from hexarm.cli.main import main
 
 
 @pytest.mark.parametrize(
-    ('machine', 'freedoms'),
-    [('robocake', 24), ('stewart_6_3', 24), ('stewart_6_6', 24), ('arm_6r', 6), ('ur5', 6)],
+    ('machine', 'freedoms', 'drives'),
+    [
+        ('robocake', 24, 6),
+        ('stewart_6_3', 24, 6),
+        ('stewart_6_6', 24, 6),
+        ('linear_rails', 24, 6),
+        ('stack_6_6', 72, 18),
+        ('arm_6r', 6, 6),
+        ('ur5', 6, 6),
+    ],
 )
-def test_file_is_read_by_mujoco(tmp_path, capsys, machine, freedoms):
+def test_file_is_read_by_mujoco(tmp_path, capsys, machine, freedoms, drives):
     path = tmp_path / 'machine.xml'
     assert main(['mjcf', machine, '--output', str(path)]) == 0
     assert f'{freedoms} freedoms' in capsys.readouterr().out
     model = mujoco.MjModel.from_xml_path(str(path))
-    assert (model.nv, model.nu) == (freedoms, 6)
+    assert (model.nv, model.nu) == (freedoms, drives)
 
 
 def test_without_output_it_is_printed(capsys):

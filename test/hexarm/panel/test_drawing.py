@@ -34,15 +34,29 @@ def test_a_bar_reaches_from_its_start_to_its_end():
         np.testing.assert_allclose(start + turn @ [0, 0, size[2]], end, atol=1e-8)
 
 
-@pytest.mark.parametrize('name', ['robocake', 'stewart_6_6', 'arm_6r', 'puma560'])
-def test_every_leg_or_joint_shows_its_margin(name):
+@pytest.mark.parametrize(
+    ('name', 'count'),
+    [('robocake', 6), ('stewart_6_6', 6), ('stack_6_6', 18), ('arm_6r', 6), ('puma560', 6)],
+)
+def test_every_leg_or_joint_shows_its_margin(name, count):
     machine = load(name)
     home = machine.kinematics.home
     joints = machine.kinematics.inverse(home)
     found = pieces(machine.kinematics.skeleton(home, joints))
     owners = {o for o in (*found.owners, *found.ball_owners) if o}
-    assert len(owners) == 6
+    assert len(owners) == count
     assert owners <= set(shares(machine, home, joints))
+
+
+def test_every_joint_of_a_stack_has_a_curve():
+    curves = []
+
+    class Gui:
+        def add_uplot(self, data, series, **words):
+            curves.append(len(series) - 1)
+
+    Plots(Gui(), load('stack_6_6').kinematics.joint_names, 'm')
+    assert 18 in curves
 
 
 def test_margins_shrink_towards_a_limit():

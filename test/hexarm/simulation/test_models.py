@@ -12,10 +12,11 @@ from hexarm.simulation.model import dynamics_of, mechanism
 from hexarm.simulation.rigid_body import plate, rod
 from hexarm.simulation.simulation import DoesNotAssemble, Simulation
 from hexarm.simulation.static_load import static_load
+from leg_kinds import FLAT_CRANKS, RAILS, TILTED_CRANKS
 from manipulator.errors import ConfigError
 from sampling import enough
 
-PLATFORMS = ('robocake', 'stewart_6_3', 'stewart_6_6')
+PLATFORMS = ('robocake', 'stewart_6_3', 'stewart_6_6', TILTED_CRANKS, FLAT_CRANKS, RAILS)
 ARMS = ('arm_6r', 'ur5')
 
 

@@ -179,7 +179,7 @@ def test_a_goal_of_zeros_for_its_quaternion_is_a_point_where_no_orientation_is_a
         pose_of(message, is_oriented=False)
 
 
-@pytest.mark.parametrize('name', ['goal_motion', 'goal_orientation'])
+@pytest.mark.parametrize('name', ['goal_motion', 'goal_orientation', 'on_unreachable'])
 @pytest.mark.parametrize('value', ['', 'straight', 3, HUGE])
 def test_an_unknown_choice_is_refused_with_the_known_ones(name, value):
     with pytest.raises(Refused, match=f'parameter {name}: .* is not one of ') as raised:

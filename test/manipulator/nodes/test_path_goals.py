@@ -22,10 +22,9 @@ from manipulator.nodes.path_goals import (
     PathGoals,
     path_message,
     path_of,
-    raw_path,
 )
 from manipulator.nodes.qos import COMMAND
-from manipulator.nodes.subscriptions import decoded
+from manipulator.nodes.subscriptions import decoded, raw_message
 from manipulator.planning.orientation import OrientationRule
 from manipulator.pose import Pose
 
@@ -172,7 +171,10 @@ def test_header_of_a_huge_message_is_read_and_nothing_else(monkeypatch):
         return deserialize_message(serialized, kind)
 
     monkeypatch.setattr('manipulator.nodes.subscriptions.deserialize_message', decode)
-    assert raw_path(serialize_message(written()) + bytes(10_000_000)).header.stamp == STAMP
+    assert (
+        raw_message(serialize_message(written()) + bytes(10_000_000), MOST_BYTES).header.stamp
+        == STAMP
+    )
     assert lengths == [MOST_BYTES]
 
 
@@ -188,6 +190,6 @@ def test_bytes_that_are_no_path_are_refused_and_nothing_else_happens():
             one[k] = rng.integers(0, 256)
         broken.append(bytes(one))
     for one in broken:
-        raw_path(one)
+        raw_message(one, MOST_BYTES)
         with suppress(InvalidInput):
             path_of(decoded(one, Path, MOST_BYTES))

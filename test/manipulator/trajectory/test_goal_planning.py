@@ -305,10 +305,27 @@ def test_a_goal_during_a_joint_move_is_planned_from_the_joints_that_the_move_has
     for time in np.arange(DT, move.duration - LEADS[0] * DT, DT):
         active.time = time
         planning = Planning(replace(arm, kinematics=Costly(arm.kinematics)), DT, worker)
-        planning.request(Goal(arm.kinematics.home, 1.0))
+        planning.request(Goal(arm.kinematics.home, 1.0), move.at(time).pose, move.joints_at(time))
         planning.step(active, move.joints_at(time))
         _, task, *_ = worker.waiting[-1]
         _, ahead = task.args
         assert ahead.joints_at_end(arm) == pytest.approx(
             move.joints_at(time + LEADS[0] * DT), abs=1e-6
         )
+
+
+def test_what_three_plans_were_too_late_for_may_still_be_planned_from_rest():
+    arm = load('arm_6r')
+    begin = arm.kinematics.inverse(arm.kinematics.home)
+    move = plan_joint_move(arm, arm.kinematics.home, begin, begin + 1.5 * np.eye(6)[0])
+    active, worker = ActivePlan(move), Later(LEADS[-1] + 1)
+    planning = Planning(replace(arm, kinematics=Costly(arm.kinematics)), DT, worker)
+    planning.request(Goal(arm.kinematics.home, 1.0), arm.kinematics.home, begin)
+    failures = []
+    for time in np.arange(DT, move.duration - DT, DT):
+        active.time = time
+        worker.tick()
+        failures.append(planning.step(active, move.joints_at(time)))
+    (failed,) = filter(None, failures)
+    assert 'too late' in str(failed.error)
+    assert not failed.is_final

@@ -4,7 +4,7 @@ from concurrent.futures import Future
 from threading import Event
 
 from manipulator.errors import ManipulatorError
-from manipulator.planning.goal import Goal
+from manipulator.planning.goal import Goal, OnUnreachable
 from manipulator.planning.worker import Effort, Job
 from manipulator.trajectory.controller import MotionController
 from world.filtered_callback import FilteredCallback
@@ -52,6 +52,7 @@ class ControllerProcess(Process):
         self.core = MotionController(machine, DT, worker=self.thread)
         self.statuses, self.ages = [], []
         self.pause_in_next_tick = 0.0
+        self.on_unreachable = OnUnreachable.REFUSE
         self._setpoints, self._requested = setpoints, requested
         self.requested = []
         self.on_goal = FilteredCallback(self, self._take_goal, self._refuse)
@@ -82,7 +83,8 @@ class ControllerProcess(Process):
 
     def _take_goal(self, stamp, pose):
         refuse = self._later(self.on_goal, stamp)
-        self.core.pursue(Goal(pose, stamp), refuse, self.now)
+        goal = Goal(pose, stamp, on_unreachable=self.on_unreachable)
+        self.core.pursue(goal, refuse, self.now)
 
     def _take_path(self, stamp, path):
         self.core.follow(path, self._later(self.on_path, stamp), self.now)

@@ -1,0 +1,251 @@
+"""Joint space through the graph: the topics, and the action by which MoveIt drives an arm."""
+
+import json
+import os
+import sys
+
+import control_messages
+import numpy as np
+import pytest
+from builtin_interfaces.msg import Duration
+from rclpy.action import ActionClient
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from hexarm import Robot
+from hexarm.cli.main import main
+from hexarm.client import time_message
+from hexarm.machines import load
+from manipulator.errors import Refused
+from manipulator.nodes.messages import joints_of
+from manipulator.nodes.qos import COMMAND
+
+pytestmark = pytest.mark.graph
+
+KINEMATICS = load('arm_6r_stepper').kinematics
+NAMES = KINEMATICS.joint_names
+HOME = KINEMATICS.inverse(KINEMATICS.home).tolist()
+NEAR = 2e-3
+SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+
+
+@pytest.fixture(scope='module', autouse=True)
+def control_msgs(request):
+    """In the environment of the graph, and here."""
+    missing = control_messages.missing()
+    if missing and os.environ.get('REQUIRE_ALL') != '1':
+        pytest.skip(f'needs {missing}')
+    folder = str(control_messages.built(request.config.cache.mkdir('control_msgs')))
+    with pytest.MonkeyPatch.context() as patch:
+        known = os.environ.get('PYTHONPATH', '')
+        patch.setenv('PYTHONPATH', os.pathsep.join(filter(None, [folder, known])))
+        patch.setattr(sys, 'path', [folder, *sys.path])
+        yield
+
+
+def duration(seconds):
+    return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))
+
+
+def trajectory(*points, names=NAMES):
+    """Points are (time, positions of joints 1 and 6), with velocities of zero."""
+    still = [0.0] * len(names)
+    points = [(time, [first, *HOME[1:5], last]) for time, (first, last) in points]
+    return JointTrajectory(
+        joint_names=list(names),
+        points=[
+            JointTrajectoryPoint(
+                positions=positions, velocities=still, time_from_start=duration(time)
+            )
+            for time, positions in points
+        ],
+    )
+
+
+def joints(arm):
+    received = []
+    subscription = arm.node.create_subscription(
+        JointState, 'joint_states', received.append, COMMAND
+    )
+    arm.wait('joints', lambda: len(received) > 2)
+    arm.node.destroy_subscription(subscription)
+    return joints_of(received[-1], NAMES)
+
+
+def are_at(arm, **named):
+    measured = joints(arm)
+    return all(abs(measured[NAMES.index(name)] - at) < NEAR for name, at in named.items())
+
+
+@pytest.fixture
+def publish(arm):
+    """Publishes one message on a topic, stamped now where `is_stamped`; its stamp."""
+
+    def send(kind, topic, message, is_stamped=True):
+        publisher = arm.node.create_publisher(kind, topic, COMMAND)
+        arm.wait(topic, lambda: arm.reaches(publisher))
+        stamp = arm.node.get_clock().now().nanoseconds * 1e-9
+        if is_stamped:
+            message.header.stamp = time_message(stamp)
+        publisher.publish(message)
+        arm.spin(0.05)
+        arm.node.destroy_publisher(publisher)
+
+    return send
+
+
+def test_goal_joints_moves_the_named_joints_and_a_bad_one_is_refused(arm, publish):
+    def go():
+        publish(JointState, 'goal_joints', JointState(name=['joint_9'], position=[0.1]))
+        arm.wait('refusal', lambda: "joint 'joint_9' is unknown" in arm.motion('reason'))
+        named = JointState(name=['joint_6', 'joint_1'], position=[0.3, -0.1])
+        publish(JointState, 'goal_joints', named)
+        arm.wait_while_driven('the joints', lambda: are_at(arm, joint_1=-0.1, joint_6=0.3))
+
+    arm.persist(go)
+
+
+def test_cmd_joints_turns_a_joint_while_it_is_published(arm):
+    publisher = arm.node.create_publisher(JointState, 'cmd_joints', COMMAND)
+    arm.wait('cmd_joints', lambda: arm.reaches(publisher))
+
+    def has_turned():
+        message = JointState(name=['joint_6'], velocity=[0.3])
+        message.header.stamp = arm.node.get_clock().now().to_msg()
+        publisher.publish(message)
+        arm.spin(0.02)
+        return arm.motion('mode') == 'jog' and joints(arm)[5] > 0.05
+
+    def jog():
+        arm.wait_while_driven('the joint', has_turned)
+        arm.wait_while_driven('rest', lambda: arm.motion('mode') == 'hold')
+
+    arm.persist(jog)
+
+
+def test_joint_trajectory_is_executed_and_a_bad_one_is_refused(arm, publish):
+    def go():
+        back = trajectory((1.0, [0.1, 0.1]), (0.5, [0.2, 0.2]))
+        publish(JointTrajectory, 'joint_trajectory', back, is_stamped=False)
+        arm.wait('refusal', lambda: 'it must increase' in arm.motion('reason'))
+        good = trajectory((1.5, [0.1, -0.2]))
+        publish(JointTrajectory, 'joint_trajectory', good, is_stamped=False)
+        arm.wait_while_driven('the joints', lambda: are_at(arm, joint_1=0.1, joint_6=-0.2))
+
+    arm.persist(go)
+
+
+class Actions:
+    """A client of the action, like MoveIt's."""
+
+    def __init__(self, arm):
+        from control_msgs.action import FollowJointTrajectory  # noqa: PLC0415 (made by a fixture)
+
+        self.kind, self.arm, self.feedback = FollowJointTrajectory, arm, []
+        self.client = ActionClient(
+            arm.node, FollowJointTrajectory, 'trajectory/follow_joint_trajectory'
+        )
+        arm.wait('the action', self.client.server_is_ready)
+
+    def send(self, points, **rest):
+        goal = self.kind.Goal(trajectory=points, **rest)
+        future = self.client.send_goal_async(goal, lambda m: self.feedback.append(m.feedback))
+        self.arm.wait('acceptance', future.done)
+        return future.result()
+
+    def result(self, handle):
+        future = handle.get_result_async()
+        self.arm.wait('result', future.done)
+        return future.result().status, future.result().result
+
+    def tolerance(self, name, position):
+        from control_msgs.msg import JointTolerance  # noqa: PLC0415
+
+        return [JointTolerance(name=name, position=position)]
+
+
+@pytest.fixture
+def actions(arm):
+    made = Actions(arm)
+    yield made
+    made.client.destroy()
+
+
+def test_an_action_reports_feedback_and_succeeds_at_its_end(arm, actions):
+    def go():
+        actions.feedback.clear()
+        handle = actions.send(trajectory((1.5, [0.2, 0.1])))
+        status, result = actions.result(handle)
+        if status != SUCCEEDED:
+            raise Refused(result.error_string)
+        assert (result.error_code, result.error_string) == (actions.kind.Result.SUCCESSFUL, '')
+
+    arm.persist(go)
+    assert are_at(arm, joint_1=0.2, joint_6=0.1)
+    assert len(actions.feedback) > 5
+    for one in actions.feedback:
+        assert one.joint_names == list(NAMES)
+        error = np.array(one.desired.positions) - np.array(one.actual.positions)
+        assert np.abs(error - one.error.positions).max() < 1e-12
+        assert np.abs(error).max() < 0.1
+
+
+def test_a_canceled_action_brakes_and_the_next_one_works(arm, actions):
+    def go():
+        handle = actions.send(trajectory((4.0, [0.6, 0.0])))
+        arm.wait_while_driven('motion', lambda: arm.motion('mode') == 'path')
+        arm.spin(0.5)
+        future = handle.cancel_goal_async()
+        arm.wait('the answer', future.done)
+        status, _ = actions.result(handle)
+        if status != CANCELED:
+            raise Refused('not canceled')
+        assert joints(arm)[0] < 0.5
+        assert actions.result(actions.send(trajectory((2.0, [0.0, 0.0]))))[0] == SUCCEEDED
+
+    arm.persist(go)
+
+
+def test_what_ends_an_action_is_told_by_its_code(arm, actions):
+    code = actions.kind.Result
+
+    def go():
+        unknown = actions.result(
+            actions.send(trajectory((1.0, [0.1, 0.1]), names=('elbow', *NAMES[1:])))
+        )
+        assert (unknown[0], unknown[1].error_code) == (ABORTED, code.INVALID_JOINTS)
+        assert "joint 'elbow' is unknown" in unknown[1].error_string
+        fast = actions.result(actions.send(trajectory((0.1, [1.0, 1.0]))))
+        assert (fast[0], fast[1].error_code) == (ABORTED, code.INVALID_GOAL)
+        tight = actions.tolerance('joint_1', 1e-6)
+        strict = actions.send(trajectory((2.0, [0.4, 0.0])), path_tolerance=tight)
+        left = actions.result(strict)
+        assert (left[0], left[1].error_code) == (ABORTED, code.PATH_TOLERANCE_VIOLATED)
+        assert 'joint_1 is' in left[1].error_string
+        first = actions.send(trajectory((4.0, [0.0, 0.0])))
+        second = actions.send(trajectory((4.0, [0.1, 0.0])))
+        replaced = actions.result(first)
+        assert (replaced[0], replaced[1].error_code) == (ABORTED, code.INVALID_GOAL)
+        assert replaced[1].error_string == 'replaced by a newer trajectory'
+        assert actions.result(second)[0] == SUCCEEDED
+
+    arm.persist(go)
+
+
+def test_a_program_and_the_command_line_move_and_jog_joints(arm, capsys):
+    def go():
+        with Robot('/arm') as robot:
+            robot.move_joints({'joint_6': 0.2}, joint_1=-0.1)
+            assert robot.joints['joint_6'] == pytest.approx(0.2, abs=NEAR)
+            robot.jog_joints(joint_6=-0.3, seconds=0.5)
+            assert robot.joints['joint_6'] < 0.15
+            assert robot.joints['joint_1'] == pytest.approx(-0.1, abs=NEAR)
+            with pytest.raises(Refused, match='joint_2: joint angle 3 rad outside'):
+                robot.move_joints(joint_2=3.0)
+        assert main(['joints', 'arm', '--set', 'joint_6=10', '--units', 'mm', '--json']) == 0
+        measured = json.loads(capsys.readouterr().out)['joints']
+        assert measured['positions'][5] == pytest.approx(np.radians(10.0), abs=NEAR)
+        assert main(['joints', 'arm', '--set', 'elbow=1']) == 2
+        assert "--set 'elbow=1': needs NAME=Q, with one of joint_1" in capsys.readouterr().err
+
+    arm.persist(go)

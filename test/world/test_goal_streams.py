@@ -1,0 +1,127 @@
+"""Streams of goals, 15 to 100 a second: followed as smoothly as they come."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from world.controller import DT
+
+SMOOTH = 1.3
+"""Times the acceleration of the stream itself, at most."""
+
+SETTLED = 1.2
+"""Seconds after which the stream swings with its full amplitude."""
+
+
+class Commanded:
+    """Setpoints of a world from now on, beside the user's sine along or about one axis."""
+
+    def __init__(self, world, axis, amplitude, frequency):
+        self.world, self.axis = world, axis
+        self.home = world.machine.kinematics.home
+        self.begin = world.now
+        self.amplitude, self.frequency = amplitude, frequency
+        self.poses, self.times = [], []
+        send = world.controller._setpoints.send
+
+        def keep(stamp, pose):
+            self.poses.append(pose)
+            self.times.append(world.now - self.begin)
+            send(stamp, pose)
+
+        world.controller._setpoints.send = keep
+
+    def sine(self, times):
+        share = np.clip(np.asarray(times), 0.0, 1.0)
+        rise = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+        return self.amplitude * rise * np.sin(2 * np.pi * self.frequency * np.asarray(times))
+
+    def stream(self, seconds, rate, late=0.0):
+        """Goals, each up to `late` periods later than it should be; its stamp is when it is."""
+        rng, count = np.random.default_rng(1), 0
+        while self.world.now < self.begin + seconds:
+            now = self.world.now - self.begin
+            self.world.send_goal(self.home.moved(self.sine(now) * np.eye(6)[self.axis]))
+            count += 1
+            due = (count + late * rng.uniform()) / rate
+            self.world.run(max(due - now, 1e-3))
+
+    @property
+    def twists(self):
+        return np.array([a.twist_to(b) for a, b in itertools.pairwise(self.poses)]) / DT
+
+    @property
+    def accelerations(self):
+        """Along or about the axis, once the stream has its full amplitude."""
+        changes = np.diff(self.twists[:, self.axis]) / DT
+        return changes[np.array(self.times)[2:] > SETTLED]
+
+    def distance(self, lag):
+        """The largest from the stream as it was `lag` seconds ago."""
+        late = np.array(self.times) > SETTLED
+        found = np.array([self.home.twist_to(pose)[self.axis] for pose in self.poses])
+        return np.abs(found - self.sine(np.array(self.times) - lag))[late].max()
+
+
+@pytest.mark.parametrize(
+    ('name', 'axis', 'amplitude', 'frequency', 'rate', 'late', 'lag'),
+    [
+        ('robocake', 0, 0.005, 1.0, 60.0, 0.0, 0.04),
+        ('robocake', 0, 0.005, 0.3, 60.0, 0.6, 0.04),
+        ('robocake', 5, 0.05, 0.7, 30.0, 0.0, 0.07),
+        ('robocake', 0, 0.005, 0.5, 15.0, 0.0, 0.154),
+        ('stewart_6_6', 2, 0.002, 0.5, 100.0, 0.0, 0.04),
+        ('arm_6r', 0, 0.02, 0.5, 60.0, 0.3, 0.04),
+    ],
+)
+def test_a_smooth_stream_is_followed_as_smoothly(
+    make_world, name, axis, amplitude, frequency, rate, late, lag
+):
+    commanded = Commanded(make_world(name), axis, amplitude, frequency)
+    commanded.stream(2.6, rate, late)
+    ideal = amplitude * (2 * np.pi * frequency) ** 2
+    assert np.abs(commanded.accelerations).max() < SMOOTH * ideal
+    assert commanded.distance(lag) < 0.06 * amplitude
+
+
+@pytest.mark.parametrize('frequency', [0.3, 1.0])
+def test_a_stream_without_stamps_is_followed_as_smoothly_however_late_its_goals_come(
+    world, frequency
+):
+    commanded, rng = Commanded(world, 0, 0.005, frequency), np.random.default_rng(1)
+    link = world.links['goals']
+    for k in range(156):
+        link.delay = 0.005 * rng.uniform()
+        now = world.now - commanded.begin
+        link.send(0.0, commanded.home.moved(commanded.sine(now) * np.eye(6)[0]))
+        world.run(commanded.begin + (k + 1) / 60 - world.now)
+    ideal = 0.005 * (2 * np.pi * frequency) ** 2
+    assert np.abs(commanded.accelerations).max() < SMOOTH * ideal
+    assert commanded.distance(0.04) < 0.06 * 0.005
+
+
+@pytest.mark.parametrize('name', ['robocake', 'arm_6r'])
+def test_a_stream_that_ends_in_motion_is_reached_within_the_limits(make_world, name):
+    world = make_world(name)
+    motion = world.machine.motion
+    speed = 0.8 * motion.linear.speed
+    commanded = Commanded(world, 0, 0.5 * speed, 0.3)
+    commanded.stream(1.6, 60.0)
+    last = commanded.home.moved(commanded.sine(world.now - commanded.begin) * np.eye(6)[0])
+    assert world.go_to(last).result == 'reached'
+    assert np.abs(commanded.poses[-1].twist_to(last)).max() < 1e-9
+    twists = commanded.twists
+    changes = np.diff(twists, axis=0) / DT
+    assert np.linalg.norm(twists[:, :3], axis=1).max() <= 1.01 * motion.linear.speed
+    assert np.linalg.norm(changes[:, :3], axis=1).max() <= 1.01 * motion.linear.acceleration
+
+
+def test_a_stream_that_is_too_fast_is_pursued_within_the_limits(world):
+    motion = world.machine.motion
+    commanded = Commanded(world, 0, 0.008, 2.0)
+    commanded.stream(2.6, 60.0)
+    changes = np.diff(commanded.twists, axis=0) / DT
+    assert np.linalg.norm(commanded.twists[:, :3], axis=1).max() <= 1.01 * motion.linear.speed
+    assert np.linalg.norm(changes[:, :3], axis=1).max() <= 1.01 * motion.linear.acceleration
+    assert np.abs(commanded.accelerations).max() > 0.5 * motion.linear.acceleration
