@@ -48,17 +48,6 @@ def test_every_leg_or_joint_shows_its_margin(name, count):
     assert owners <= set(shares(machine, home, joints))
 
 
-def test_every_joint_of_a_stack_has_a_curve():
-    curves = []
-
-    class Gui:
-        def add_uplot(self, data, series, **words):
-            curves.append(len(series) - 1)
-
-    Plots(Gui(), load('stack_6_6').kinematics.joint_names, 'm')
-    assert 18 in curves
-
-
 def test_margins_shrink_towards_a_limit():
     machine = load('robocake')
     home = machine.kinematics.home

@@ -14,7 +14,7 @@ from manipulator.pose import Pose
 from manipulator.states import MachineState
 
 ROBOCAKE = load('robocake')
-HOME = ROBOCAKE.kinematics.home
+HOME, JOINTS = ROBOCAKE.kinematics.home, np.zeros(6)
 
 
 def state(**known):
@@ -38,7 +38,7 @@ def test_braking_is_offered_while_something_moves_and_saving_while_the_pose_is_k
     moving = state(
         machine_state='enabled',
         mode='move',
-        measured=Stance(HOME, np.zeros(6)),
+        measured=Stance(HOME, JOINTS),
         saved={'up': None},
     )
     assert {'brake', 'save'} <= set(moving['can'])
