@@ -76,25 +76,29 @@ class PanelPage:
     @property
     def said(self):
         """The line below the joystick."""
-        return self.page.frame_locator('iframe').locator('#said').inner_text()
+        return self.page.frame_locator('#joystick').locator('#said').inner_text()
 
     def says(self, words):
         """Waits until the joystick says so."""
-        self.page.frame_locator('iframe').get_by_text(words).wait_for()
+        self.page.frame_locator('#joystick').get_by_text(words).wait_for()
 
-    def values(self):
-        """What stands in the fields beside the sliders: speed, then x, y, z …"""
-        return [field.input_value() for field in self.page.get_by_role('textbox').all()]
+    def field(self, label):
+        """The number beside the slider of this label."""
+        return self.page.get_by_role('spinbutton', name=label)
 
-    def type(self, field, text):
-        """Types into the field with this number."""
-        box = self.page.get_by_role('textbox').nth(field)
+    def value(self, label):
+        """What stands in it."""
+        return float(self.field(label).input_value() or 'nan')
+
+    def type(self, label, text):
+        """Types into it."""
+        box = self.field(label)
         box.fill(text)
         box.press('Enter')
 
     def centre(self, pad):
         """Of a pad of the joystick, on the page, and half of its width and height."""
-        box = self.page.frame_locator('iframe').locator(pad).bounding_box()
+        box = self.page.frame_locator('#joystick').locator(pad).bounding_box()
         right, up = box['width'] / 2, box['height'] / 2
         return np.array([box['x'] + right, box['y'] + up]), np.array([right, up])
 
@@ -108,7 +112,7 @@ class PanelPage:
 
     def press_stop(self):
         """Presses STOP and stays on it; when the browser had the press, in s (time.time)."""
-        button = self.page.get_by_role('button', name='STOP').bounding_box()
+        button = self.page.locator('#stop').bounding_box()
         self.page.mouse.move(button['x'] + button['width'] / 2, button['y'] + button['height'] / 2)
         self.page.mouse.down()
         return self.page.evaluate('pressedAt') / 1000
