@@ -44,7 +44,7 @@ def with_cycle():
 def open_page(browser):
     """Opens the page of a panel, with few pixels where nobody looks at them."""
 
-    def opened(panel, size=(760, 760), pixels=SMALL):
+    def opened(panel, size=(1000, 760), pixels=SMALL):
         view = {'width': size[0], 'height': size[1]}
         page = browser.new_context(viewport=view, has_touch=True).new_page()
         page.set_default_timeout(PATIENCE)
@@ -105,6 +105,7 @@ class PanelPage:
     def hold(self, pad, right, up):
         """Presses the mouse on a pad of the joystick and pushes it."""
         self.page.bring_to_front()
+        self.page.locator('#panel').evaluate('panel => panel.scrollTo(0, 0)')
         centre, half = self.centre(pad)
         self.page.mouse.move(*centre)
         self.page.mouse.down()
