@@ -62,7 +62,7 @@ class IntraProcess:
         topic = self._topics[node.resolve_topic_name(name)]
 
         def receive(serialized: bytes) -> None:
-            if serialized in topic.sent:
+            if _without_padding(serialized) in topic.sent:
                 return  # it was handed over
             try:
                 message = decoded(serialized, kind, MOST_BYTES)
@@ -98,10 +98,15 @@ class IntraProcessPublisher:
         elif topic.takers:
             self._crossing.put(message)
         if self._publisher.get_subscription_count() > len(topic.takers):
-            serialized = serialize_message(message)
+            sent = _without_padding(serialize_message(message))
             # Of ours, a reader of the middleware keeps as many as its depth, the newest.
-            topic.sent = (*topic.sent, serialized)[-self._publisher.qos_profile.depth :]
-            self._publisher.publish(serialized)
+            topic.sent = (*topic.sent, sent)[-self._publisher.qos_profile.depth :]
+            self._publisher.publish(message)
+
+
+def _without_padding(serialized: bytes) -> bytes:
+    """rclpy encodes into a buffer that may be longer than what is sent."""
+    return serialized.rstrip(b'\0')
 
 
 class _Crossing:
