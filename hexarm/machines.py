@@ -84,7 +84,7 @@ def find(name_or_path: str) -> Path:
     near = difflib.get_close_matches(name_or_path, list(known), n=1)
     hint = f', did you mean {near[0]!r}?' if near else ''
     raise ConfigError(
-        [f'no machine is called {shown(name_or_path)}{hint} (shipped: {sorted(known)})']
+        [f'no machine is called {shown(name_or_path)}{hint} (shipped: {", ".join(sorted(known))})']
     )
 
 
