@@ -26,7 +26,7 @@ static real gap(const real a[3], const real b[3])
 {
     real vector[3];
     between(a, b, vector);
-    return sqrt(dot3(vector, vector));
+    return real_sqrt(dot3(vector, vector));
 }
 
 static real clamped(real share)
@@ -96,7 +96,7 @@ static real outside(const real point[3], const struct box *box)
         most = beyond > most ? beyond : most;
         squares += beyond > 0 ? beyond * beyond : 0;
     }
-    return most > 0 ? sqrt(squares) : most;
+    return most > 0 ? real_sqrt(squares) : most;
 }
 
 static real outside_at(const real segment[6], real share, const struct box *box)

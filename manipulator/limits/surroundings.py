@@ -41,6 +41,11 @@ class Obstacle:
         object.__setattr__(self, 'corners', frozen(self.corners))
 
     @property
+    def is_endless(self) -> bool:
+        """Whether it has a side alone, as a floor, and so is no box to draw."""
+        return bool(np.ptp(self.corners, axis=0).max() >= FAR)
+
+    @property
     def numbers(self) -> Array:
         """As `struct box` of kernel/capsules.h (7,)."""
         return np.concatenate([[self.side], self.corners.ravel()])
