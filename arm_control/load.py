@@ -56,15 +56,24 @@ class ArmJogger:
         if twist.any():
             part, name = self._part_before_limits(motion, twist, dt)
         after = self._within_joints(motion, part * twist, dt)
-        if self._goes_further_out(motion, after):
+        passed = self._passed(motion, after)
+        if passed:
             still = JogMotion.at_rest(motion.pose, motion.joints)
-            return replace(still, scale=0.0, held_by=name)
+            return replace(still, scale=0.0, held_by=passed)
         return replace(after, scale=part * after.scale, held_by=name or after.held_by)
 
-    def _goes_further_out(self, before: JogMotion, after: JogMotion) -> bool:
-        """Whether a step leads beyond a limit: what braking in time could not foresee."""
+    def _passed(self, before: JogMotion, after: JogMotion) -> str:
+        """Beyond which limit a step leads, that braking in time could not foresee; or ''."""
         out = self._excess(after)
-        return bool((out > 0.0).any() and (out > self._excess(before) + STILL).any())
+        if not out.any():
+            return ''
+        further = out - self._excess(before)
+        worst = int(np.argmax(further))
+        return self._name(worst) if further[worst] > STILL else ''
+
+    def _name(self, index: int) -> str:
+        quantity, owner, _ = self.of_pose.names[index]
+        return quantity or owner
 
     def _excess(self, motion: JogMotion) -> Array:
         """How far (k,) the limited values are beyond their limits, 0 inside."""
@@ -88,8 +97,7 @@ class ArmJogger:
         braking = float(ticks_for(twist, self.jog.motion, dt)) * dt / SHARE_BEFORE_STOPS
         parts = 2.0 * time / (dt + np.sqrt(dt**2 + 2.0 * braking * np.minimum(time, LONG)))
         worst = int(np.argmin(parts))
-        name = limits.names[worst][0] or limits.names[worst][1]
-        return (float(parts[worst]), name) if parts[worst] < 1.0 else (1.0, '')
+        return (float(parts[worst]), self._name(worst)) if parts[worst] < 1.0 else (1.0, '')
 
     def _joint_rates(self, motion: JogMotion, twist: Array) -> Array:
         """Those (6,) of a twist of the pivot, damped in singular postures."""

@@ -9,6 +9,7 @@ from hexapod_control.geometry import LEGS
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.parallel_platform import ParallelPlatform
 from hexapod_control.rotary import RotaryHexapod
+from hexapod_control.stack_kinematics import StackKinematics
 from manipulator import _kernel
 from manipulator.arrays import Array, frozen
 from manipulator.limits.surroundings import Bodies, BodiesConfig
@@ -60,6 +61,35 @@ def platform_bodies(kinematics: ParallelPlatform, config: BodiesConfig) -> Bodie
         return _segments(kinematics, pose, joints)
 
     return Bodies(tuple(part.name for part in parts), frozen(radii), pairs, moving, segments)
+
+
+def stack_bodies(kinematics: StackKinematics, config: BodiesConfig) -> Bodies:
+    """The parts of all sections, of which those of one section may not meet each other."""
+    sections = [platform_bodies(platform, config) for platform in kinematics.platforms]
+    starts = np.cumsum([0, *(len(section.names) for section in sections)])
+
+    def segments(pose: Pose, joints: Array) -> Array:
+        turn, place, pieces = np.eye(3), np.zeros(3), []
+        for i, at in enumerate(kinematics.sections_or_nan(joints)):
+            own = sections[i].segments(at, joints[..., LEGS * i : LEGS * (i + 1)])
+            ends = own.reshape(*own.shape[:-2], -1, 3) @ np.swapaxes(turn, -1, -2)
+            pieces.append((ends + place[..., None, :]).reshape(own.shape))
+            for step in (at, kinematics.stack.transforms[i]):
+                place = place + (turn @ step.position[..., None])[..., 0]
+                turn = turn @ step.rotation
+        return np.concatenate(pieces, axis=-2)
+
+    return Bodies(
+        tuple(f'section {i} {name}' for i, part in enumerate(sections, 1) for name in part.names),
+        frozen(np.concatenate([section.radii for section in sections])),
+        tuple(
+            (int(a + start), int(b + start))
+            for start, section in zip(starts, sections, strict=False)
+            for a, b in section.pairs
+        ),
+        (*sections[0].moving, *range(int(starts[1]), int(starts[-1]))),
+        segments,
+    )
 
 
 def _segments(kinematics: ParallelPlatform, pose: Pose, joints: Array) -> Array:

@@ -144,30 +144,50 @@ class ClearGroup:
         return start.moved(free * way)
 
     def first_free_path(self, ranges: Array, paths: BrakingPaths) -> tuple[int, Array]:
-        """See `LimitGroup`: the first path that `inner` lets by, of those that meet nothing."""
-        inner, least = self._parted(ranges)
-        met = self._met(least, paths)
-        clear = np.flatnonzero(np.isnan(met[:, 0]))
-        if not clear.size:
-            return len(met), met
-        rest = replace(paths, twists=np.ascontiguousarray(paths.twists[clear]))
-        free, found = self.inner.first_free_path(inner, rest)
-        met[clear] = found
-        return int(clear[free]) if free < clear.size else len(met), met
+        """See `LimitGroup`: the first path that `inner` lets by, of those that meet nothing.
 
-    def _met(self, least: Array, paths: BrakingPaths) -> Array:
-        """Where each path first meets something, as `braking_path` of kernel/braking.h; or NaN."""
-        poses = paths.poses()
+        Paths are for the parts of one twist, from the largest: smaller parts meet less.
+        """
+        inner, least = self._parted(ranges)
+        count, met = len(paths.twists), np.zeros((len(paths.twists), 14 + len(paths.joints)))
+        first = self._first_clear(least, paths, met)
+        if first == count:
+            return count, met
+        free, met[first:] = self.inner.first_free_path(
+            inner, replace(paths, twists=paths.twists[first:])
+        )
+        found = first + free
+        is_checked = found in (first, count) or self._is_clear(least, paths, found, met)
+        return (found if is_checked else count), met
+
+    def _first_clear(self, least: Array, paths: BrakingPaths, met: Array) -> int:
+        """The largest of the twists with a path that meets nothing, by bisection; or how many."""
+        if self._is_clear(least, paths, 0, met):
+            return 0
+        blocked, free = 0, len(paths.twists) - 1
+        if free == 0 or not self._is_clear(least, paths, free, met):
+            return len(paths.twists)
+        while free - blocked > 1:
+            middle = (blocked + free) // 2
+            if self._is_clear(least, paths, middle, met):
+                free = middle
+            else:
+                blocked = middle
+        return free
+
+    def _is_clear(self, least: Array, paths: BrakingPaths, index: int, met: Array) -> bool:
+        """Whether a path meets nothing; where it does, as `braking_path`, is put into `met`."""
+        poses = paths.poses(paths.twists[index])
         own = paths.of_platform(poses)
         joints = self.kinematics.inverse_or_nan(own, paths.joints)
         clear: Mask = np.logical_and.reduce(self.clearance.values(own, joints) >= least, axis=-1)
-        found = np.full((len(clear), 14 + len(paths.joints)), np.nan)
-        for k in np.flatnonzero(~np.logical_and.reduce(clear, axis=-1)):
-            tick = int(np.argmin(clear[k]))
-            at = poses[int(k), tick]
-            parts = [A_LIMIT, 0.0], at.position, at.rotation.ravel(), joints[k, tick]
-            found[k] = np.concatenate(parts)
-        return found
+        if clear.all():
+            return True
+        tick = int(np.argmin(clear))
+        at = poses[tick]
+        parts = [A_LIMIT, 0.0], at.position, at.rotation.ravel(), joints[tick]
+        met[index] = np.concatenate(parts)
+        return False
 
     def _parted(self, ranges: Array) -> tuple[Array, Array]:
         count = len(self.clearance.owners)

@@ -117,16 +117,13 @@ class BrakingPaths:
     twists: Array
     frame: Array | None = None
 
-    def poses(self) -> Pose:
-        """Those at every tick of every path (k, ticks), of the pivot in the work frame."""
+    def poses(self, twist: Array) -> Pose:
+        """Those at the ticks of one of the paths (N,), of the pivot in the work frame."""
         dt, linear, angular = self.bounds[:3]
-        most = np.maximum(
-            np.linalg.norm(self.twists[:, :3], axis=1) / linear,
-            np.linalg.norm(self.twists[:, 3:], axis=1) / angular,
-        )
-        ticks = np.ceil(np.maximum(most / dt - ROUNDING, 1.0))
-        shares = np.maximum(1.0 - np.arange(int(ticks.max())) / ticks[:, None], 0.0)
-        return self.pose.moved(dt * np.cumsum(shares, axis=1)[..., None] * self.twists[:, None])
+        longest = max(np.linalg.norm(twist[:3]) / linear, np.linalg.norm(twist[3:]) / angular) / dt
+        ticks = int(np.ceil(max(longest - ROUNDING, 1.0)))
+        shares = np.cumsum(1.0 - np.arange(ticks) / ticks)
+        return self.pose.moved(dt * shares[:, None] * twist)
 
     def of_platform(self, poses: Pose) -> Pose:
         """Those of the platform in the base frame, for poses of the pivot in the work frame."""

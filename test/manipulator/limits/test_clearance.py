@@ -34,9 +34,9 @@ SHARES = np.linspace(0.0, 1.0, 101)
 FRAMES = Frames(Pose.from_xyz_rpy([0.01, 0.02, 0.0], [0.0, 0.0, 0.6])).with_pivot(
     [0.0, 0.01, 0.03]
 )
-AXES = {'arm_6r': 1, 'robocake': 2, 'stewart_6_6': 2}
+AXES = {'arm_6r': 1, 'robocake': 2, 'stewart_6_6': 2, 'stack_6_6': 2}
 """Of the base frame, along which a wall stands before the machine."""
-GAPS = {'arm_6r': 0.04, 'robocake': 0.003, 'stewart_6_6': 0.003}
+GAPS = {'arm_6r': 0.04, 'robocake': 0.003, 'stewart_6_6': 0.003, 'stack_6_6': 0.006}
 """Metres from the machine at home to it."""
 
 
