@@ -202,6 +202,7 @@ def load(name_or_path: str) -> Machine:
     try:
         machine = loader(machine_file.kind)(machine_file)
         machine = machine.within(machine_file.task_space)
+        machine = machine.among(machine_file.surroundings, machine_file.bodies)
         machine = replace(machine, deflection=_deflection(machine_file, machine.kinematics))
         machine = replace(machine, frames=frames_of(machine_file, machine.kinematics))
     except ConfigError as error:
