@@ -182,7 +182,7 @@ def _merged(problems: Sequence[str]) -> tuple[str, ...]:
         where, colon, what = problem.partition(': ')
         groups.setdefault(INDEX.sub('[]', where, count=1) + colon + what, []).append(where)
     return tuple(
-        text.replace('[]', f'[{", ".join(INDEX.findall(" ".join(places)))}]', 1)
+        text.replace('[]', f'[{", ".join(n for p in places for n in INDEX.findall(p)[:1])}]', 1)
         for text, places in groups.items()
     )
 
