@@ -20,6 +20,7 @@ from manipulator.formatting import reason, shortened, shown
 from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
+from manipulator.pose import Pose
 from manipulator.static_deflection import StaticDeflection
 from manipulator.unit_hints import check_pivot, check_tool
 
@@ -204,7 +205,9 @@ def load(name_or_path: str) -> Machine:
         machine = loader(machine_file.kind)(machine_file)
         machine = machine.within(machine_file.task_space)
         machine = replace(machine, deflection=_deflection(machine_file, machine.kinematics))
-        machine = replace(machine, frames=frames_of(machine_file, machine.kinematics))
+        frames = frames_of(machine_file, machine.kinematics)
+        frames = replace(frames, is_load_fixed=machine.deflection is not None)
+        machine = replace(machine, frames=frames)
     except ConfigError as error:
         raise ConfigError(error.problems, str(find(name_or_path))) from error
     return _with_servos(machine, machine_file)
@@ -219,6 +222,12 @@ def frames_of(machine_file: MachineFile, kinematics: Kinematics) -> Frames:
         problems += _doubt('frames.pivot_xyz_mm', check)
     for i, tool in enumerate(frames.tools):
         problems += _doubt(f'tools[{i}].xyz_mm', partial(check_tool, kinematics, tool))
+        centre = Pose.from_xyz_rpy(1e-3 * np.array(tool.load[1:]), (0.0, 0.0, 0.0))
+        name = f'centre of tool {tool.name!r}'
+        if machine_file.tools[i].centre_mm is not None:
+            problems += _doubt(
+                f'tools[{i}].centre_mm', partial(check_pivot, kinematics, centre, name)
+            )
     if problems:
         raise ConfigError(problems)
     return frames

@@ -40,25 +40,38 @@ class ToolConfig:
     rpy_deg: tuple[float, float, float] = quantity(
         *TURN_DEG, 'roll, pitch and yaw of its axes', default=ORIGIN
     )
+    mass_g: float = quantity(
+        0, 1e9, 'with what it holds; beside the payload of `dynamics`', default=0.0
+    )
+    centre_mm: tuple[float, float, float] | None = quantity(
+        *PLACE_MM, 'of mass, platform frame; else half-way to its point', default=None
+    )
 
     def __post_init__(self) -> None:
         """Raises ConfigError for what is no name."""
         if NAME.fullmatch(self.name) is None:
             raise ConfigError([f'name: {shown(self.name)} is not a name of a tool: {NAME_RULE}'])
 
+    @property
+    def load(self) -> tuple[float, float, float, float]:
+        """Its mass (g), and the centre of that (mm, platform frame); zeros without mass."""
+        x, y, z = self.centre_mm or [0.5 * c for c in self.xyz_mm]
+        return (self.mass_g, x, y, z) if self.mass_g > 0.0 else (0.0, 0.0, 0.0, 0.0)
+
 
 @dataclass(frozen=True, eq=False)
 class Tool:
-    """A tool by name, and its frame on the platform."""
+    """A tool by name, its frame on the platform, and its load as in `ToolConfig`."""
 
     name: str
     T_platform_tool: Pose
+    load: tuple[float, float, float, float]
 
     @classmethod
     def from_config(cls, config: ToolConfig) -> 'Tool':
         """In metres and radians."""
         position, turn = 1e-3 * np.array(config.xyz_mm), np.radians(config.rpy_deg)
-        return cls(config.name, Pose.from_xyz_rpy(position, turn))
+        return cls(config.name, Pose.from_xyz_rpy(position, turn), config.load)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,14 +79,17 @@ class Frames:
     """T_base_work, and T_platform_pivot: the frame of the tool in force, or a point.
 
     tools: those that can be chosen; tool: the name of the one in force, NO_TOOL where the pivot is
-    a point with the platform's axes. are_plain: work is base and the pivot is the platform's
-    frame. arm (3,): from the platform's origin to the pivot, in the pivot's axes.
+    a point with the platform's axes. is_load_fixed: only tools of the first one's load can be
+    chosen, because the static deflection under that one is compensated. are_plain: work is base
+    and the pivot is the platform's frame. arm (3,): from the platform's origin to the pivot, in
+    the pivot's axes.
     """
 
     T_base_work: Pose = field(default_factory=Pose.identity)
     T_platform_pivot: Pose = field(default_factory=Pose.identity)
     tools: tuple[Tool, ...] = ()
     tool: str = NO_TOOL
+    is_load_fixed: bool = False
     are_plain: bool = field(init=False)
     arm: Array = field(init=False)
 
@@ -115,15 +131,26 @@ class Frames:
     def with_tool(self, name: str) -> 'Frames':
         """Another tool in force, NO_TOOL: none, the platform's own frame.
 
-        InvalidInput for a name that no tool has.
+        InvalidInput for a name that no tool has, or that of one whose load is not compensated.
         """
         if name == NO_TOOL:
             return self.with_pivot(ORIGIN)
         for tool in self.tools:
             if tool.name == name:
+                self._check_load(tool)
                 return replace(self, T_platform_pivot=tool.T_platform_tool, tool=name)
         known = ', '.join(tool.name for tool in self.tools) or 'none'
         raise InvalidInput(f'no tool is called {shown(name)} (of this machine: {known})')
+
+    def _check_load(self, tool: Tool) -> None:
+        first = self.tools[0]
+        if self.is_load_fixed and tool.load != first.load:
+            mass, *centre = tool.load
+            raise InvalidInput(
+                f'tool {tool.name!r} has {mass:g} g at {centre} mm, and dynamics.compensation is '
+                f'for {first.name!r}, {first.load[0]:g} g at {list(first.load[1:])} mm: list it '
+                'first, and start again'
+            )
 
     def platform(self, T_work_pivot: Pose) -> Pose:
         """T_base_platform when the pivot is there."""

@@ -249,11 +249,13 @@ tools:
   - {name: far, xyz_mm: [0.0, 0.0, 9000.0]}
   - {name: near, xyz_mm: [0.0, 0.0, 20.0]}
   - {name: huge, xyz_mm: [20000.0, 0.0, 20.0]}
+  - {name: lever, xyz_mm: [0.0, 0.0, 20.0], mass_g: 20.0, centre_mm: [0.0, 9e3, 0.0]}
 """
     found = problems_of(ROBOCAKE + tools)
     assert [problem.partition(' [')[0] for problem in found] == [
         "tools[0].xyz_mm: tool 'far'",
         "tools[2].xyz_mm: tool 'huge'",
+        "tools[3].centre_mm: centre of tool 'lever'",
     ]
     (endless,) = problems_of(ROBOCAKE + 'tools: [{name: laser, xyz_mm: [0.0, .nan, 0.0]}]\n')
     assert endless == 'tools[0].xyz_mm[1]: nan is not finite'
