@@ -105,6 +105,8 @@ def test_the_nearest_pose_is_the_same_whatever_the_tools_axes(name):
         machine = in_frames(bare, frames)
         start = frames.pivot(bare.kinematics.home)
         search = Search(start.moved([4e-3, 0, 3e-3, 0.02, 0.05, 0]), 1e-6, 20)
+        unmoved = machine.constraints.descended(replace(search, most_steps=0), start)
+        assert np.abs(unmoved.twist_to(start)).max() < 1e-12
         end = machine.constraints.descended(search, start)
         assert np.abs(end.twist_to(search.target)).max() < 1e-5
         found.append(end @ turn.inverse())
