@@ -4,9 +4,9 @@ import argparse
 import re
 from pathlib import Path
 
-from arm_control.urdf_chain import arm_of
-from arm_control.urdf_file import MAX_CHARACTERS, read_urdf
-from hexarm.arm_import import Wishes, machine_text
+from arm_control.urdf_chain import UrdfArm, arm_of
+from arm_control.urdf_file import MAX_CHARACTERS, UrdfRobot, read_urdf
+from hexarm.arm_import import Imported, Wishes, machine_text
 from hexarm.cli.answers import Answer, answering, with_negatives
 from manipulator.errors import ConfigError, InvalidInput
 from manipulator.formatting import counted, reason
@@ -37,31 +37,38 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 def answer(arguments: argparse.Namespace) -> Answer:
     """Where the machine file is, and what it assumes; an existing file is not written over."""
     source: Path = arguments.file
-    try:
-        robot = read_urdf(_text_of(source))
-        arm = arm_of(robot, arguments.base, arguments.tip)
-        wishes = Wishes(arguments.home, arguments.acceleration)
-        imported = machine_text(arm, robot.name or source.stem, source.name, wishes)
-    except ConfigError as error:
-        raise ConfigError(error.problems, str(source)) from error
+    wishes = Wishes(arguments.home, arguments.acceleration)
+    robot, arm, made = imported(source, arguments.base, arguments.tip, wishes)
     stem = re.sub(r'\W+', '_', robot.name or source.stem).strip('_') or 'arm'
     output: Path = arguments.output or Path(f'{stem}.yaml')
     try:
         with output.open('x', encoding='utf-8') as file:
-            file.write(imported.text)
+            file.write(made.text)
     except FileExistsError:
         raise InvalidInput(f'{output} exists: another name with --output') from None
     except OSError as error:
         raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
     lines = [
         f'{output}: {arm.base} to {arm.tip}, {", ".join(joint.name for joint in arm.joints)}',
-        f'{counted(len(imported.assumed), "line")} with assumed values: look for "assumed"',
+        f'{counted(len(made.assumed), "line")} with assumed values: look for "assumed"',
         *(['visual meshes are not imported'] if robot.has_meshes else []),
         f'next: hexarm check {output}; hexarm up {output} --panel',
     ]
     names = [joint.name for joint in arm.joints]
     answer = {'output': str(output), 'base': arm.base, 'tip': arm.tip, 'joints': names}
-    return answer | {'assumed': list(imported.assumed)}, lines
+    return answer | {'assumed': list(made.assumed)}, lines
+
+
+def imported(
+    source: Path, base: str | None, tip: str | None, wishes: Wishes
+) -> tuple[UrdfRobot, UrdfArm, Imported]:
+    """The robot of a URDF file, its arm from base to tip, and the machine file of that."""
+    try:
+        robot = read_urdf(_text_of(source))
+        arm = arm_of(robot, base, tip)
+        return robot, arm, machine_text(arm, robot.name or source.stem, source.name, wishes)
+    except ConfigError as error:
+        raise ConfigError(error.problems, str(source)) from error
 
 
 def _text_of(path: Path) -> str:
