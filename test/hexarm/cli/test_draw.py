@@ -4,17 +4,16 @@ import json
 
 import pytest
 
-plt = pytest.importorskip('matplotlib.pyplot')
 from hexarm.cli.main import main
-from hexarm.pictures import style
 
 
 @pytest.fixture
 def figures(monkeypatch):
     """The figures that are saved, open."""
-    saved = []
-    monkeypatch.setattr(style.plt, 'close', saved.append)
-    yield saved
+    plt, saved = pytest.importorskip('matplotlib.pyplot'), []
+    with monkeypatch.context() as changed:
+        changed.setattr(plt, 'close', saved.append)
+        yield saved
     plt.close('all')
 
 
