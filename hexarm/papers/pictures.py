@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 
 from hexarm.papers import arm_method, arm_modes, crank_pictures, linear_platforms, plates
 from hexarm.papers.finding import Missing
-from hexarm.pictures.leg_motion import COLOURS
+from hexarm.pictures.style import AXES as COLOURS
 
 if TYPE_CHECKING:
     from hexarm.simulation.experiment import Recording

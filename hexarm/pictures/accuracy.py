@@ -35,6 +35,7 @@ def draw(machine: Machine, errors: JointErrors, picture: Path, name: str) -> Non
         axes = figure.add_axes((0.06 + 0.3 * column, 0.11, 0.24, 0.68))
         drawn = draw_section(axes, plane, value, (f'{style.MAP}_r', *limits), machine)
     figure.colorbar(drawn, cax=figure.add_axes((0.94, 0.15, 0.012, 0.6)))
+    picture.parent.mkdir(parents=True, exist_ok=True)
     style.save(figure, picture)
 
 

@@ -21,7 +21,7 @@ from manipulator.formatting import reason
 
 INK, SOFT, LIGHT, PAPER = '#22313f', '#4a5a6a', '#9aa5b1', '#ffffff'
 LIMIT = '#b3261e'
-AXES = ('#0b4f78', '#d1703d', '#8fb94b')
+AXES = ('#0b4f78', '#c75b28', '#8fb94b')
 """Of x, y and z: dark, middle and light, so that they differ in grey, too."""
 JOINTS = ('#0b3d5c', '#2f7fb0', '#79b8c9', '#8a3b12', '#d1703d', '#e8ab6a')
 DASHES = ('-', (0, (6, 2)), (0, (1.5, 1.5)))
@@ -92,7 +92,7 @@ def limits(axes: Axes, limit: float, unit: str) -> None:
     if not math.isfinite(limit):
         return
     furthest = max(abs(end) for end in axes.get_ylim())
-    text = f'limit ±{limit:.4g} {unit}'.replace(' °', '°')
+    text = f'limit ±{limit:.4g} {unit}'
     if limit > NEAR_LIMIT * furthest:
         axes.set_title(f'{text}, outside of the plot', loc='right', size=8, color=LIMIT)
         return
@@ -106,7 +106,6 @@ def save(figure: Figure, picture: Path) -> Path:
     """Writes the picture whole or not at all, and closes the figure; InvalidInput if it cannot."""
     part = picture.with_name(f'.{picture.stem}.part{picture.suffix}')
     try:
-        picture.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(part)
         os.replace(part, picture)
     except (OSError, ValueError) as error:

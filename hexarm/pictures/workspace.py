@@ -33,6 +33,7 @@ def draw(machine: Machine, found: Survey, path: Path, name: str) -> list[Path]:
         files = [path, path.with_name(f'{path.stem}_{SPEEDS}{path.suffix}')]
     else:
         files = [path / f'{SHAPE}.png', path / f'{SPEEDS}.png']
+    files[0].parent.mkdir(parents=True, exist_ok=True)
     shape = _shape(machine, found.box, found.constant_orientation, name)
     return [style.save(shape, files[0]), style.save(_speeds(machine, found, name), files[1])]
 
