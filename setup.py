@@ -32,7 +32,7 @@ setup(
     ],
     cmdclass={'build_ext': BuildLibraries},
     options={'bdist_wheel': {'py_limited_api': 'cp310'}},
-    package_data={'hexarm': ['*.xml', 'panel/joystick.html']},
+    package_data={'hexarm': ['*.xml', 'panel/page/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),

@@ -167,15 +167,19 @@ class HexagonConfig:
     def geometry(self) -> RotaryGeometry:
         """The joints by Prokopovich 2019, eqs (5) and (6), in closed form.
 
-        Leg i stands at (i − 1)·60°; even legs mirror the odd ones (σ = −1, +1, −1 …).
+        Leg i stands at (i − 1)·60°; even legs mirror the odd ones (σ = −1, +1, −1 …). A platform
+        that hangs is that machine upside down, with the same crank angles.
         """
         sigma = np.array([-1.0, 1.0] * 3)
         zero, one = np.zeros(LEGS), np.ones(LEGS)
         outer = (self.body_radius_mm + self.crank_offset_mm) * one
         inner = (self.body_radius_mm - self.joint_inset_mm) * one
+        tangents = _around(zero, -sigma, zero)
+        up = np.copysign([0.0, 0.0, 1.0], self.home_height_mm)
         return RotaryGeometry(
             crank_centres=_around(outer, sigma * self.crank_shift_mm, zero) * 1e-3,
-            tangents=_around(zero, -sigma, zero),
+            tangents=tangents,
+            normals=np.cross(tangents, up),
             platform_points=_around(inner, -sigma * self.joint_shift_mm, zero) * 1e-3,
             crank_lengths=np.asarray(self.crank_length_mm) * 1e-3,
             rod_lengths=np.asarray(self.rod_length_mm) * 1e-3,

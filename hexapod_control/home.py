@@ -11,7 +11,7 @@ PAGE = 'docs/machine-files.md, Cranks bent the other way'
 
 
 def home_problems(machine: Machine, has_tangents: bool = True) -> list[str]:
-    """One sentence for each limit that home is beyond, and one for cranks bent the other way.
+    """One sentence for each limit that home is beyond, and what to write for the other bend.
 
     has_tangents: the file has the key crank_tangents.
     """
@@ -19,7 +19,7 @@ def home_problems(machine: Machine, has_tangents: bool = True) -> list[str]:
     home = kinematics.home
     found = machine.constraints.violations(home, kinematics.inverse(home))
     problems = [f'limits: home has {words}' for words in in_words(found)]
-    if isinstance(kinematics, RotaryHexapod) and problems:
+    if isinstance(kinematics, RotaryHexapod) and len({v.quantity for v in found}) == 1:
         problems[0] += _other_bend(machine, kinematics, has_tangents)
     if isinstance(kinematics, RailPlatform) and problems:
         problems[0] += _other_side(machine, kinematics)

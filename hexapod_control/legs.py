@@ -63,14 +63,6 @@ class Legs:
         """The largest |gain| that each joint can have, (6,) m/rad or m/m."""
         return np.abs(self.numbers[CRANKS])
 
-    def inverse(self, pose: Pose, near: Array | None) -> tuple[Array, int]:
-        """Joints (..., 6), NaN for each leg that does not close, and how many do not."""
-        position = pose.position
-        joints = np.empty(LEGS if position.ndim == 1 else (*position.shape[:-1], LEGS))
-        if near is not None:
-            near = stretched(near, joints.shape)
-        return joints, _kernel.leg_inverse(self.numbers, position, pose.rotation, near, joints)
-
     def branches(self, pose: Pose) -> tuple[Array, Array]:
         """The joints (6,) of one pose, as at home and the other way; NaN where a leg is open."""
         home, other = np.empty(LEGS), np.empty(LEGS)

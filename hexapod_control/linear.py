@@ -43,6 +43,10 @@ class LinearPlatform(ParallelPlatform):
         """Leg lengths (..., 6), Lapikov et al. 2014, section 2.1; no leg fails to close."""
         return self.inverse_or_nan(pose, near)
 
+    def inverse_all(self, pose: Pose) -> Array:
+        """The one set of lengths, (1, 6): a leg that changes its length does not bend."""
+        return self.inverse(pose)[None]
+
     def rod_lengths(self, joints: Array) -> Array:
         """The joints themselves; NoSolution where one is not above 0."""
         if not (joints > 0.0).all():

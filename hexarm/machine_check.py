@@ -1,33 +1,28 @@
 """Everything that is wrong with a machine file: in each section, and between them."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
-
-import numpy as np
 
 from bridge.calibration import Calibration
 from bridge.servo_config import ServosConfig
 from hexapod_control import load as hexapods
 from hexapod_control.home import home_problems
 from hexapod_control.load_stack import StackConfig
-from hexapod_control.stack_kinematics import StackKinematics
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
 from hexarm.machine_spelling import corrected
 from hexarm.machine_warnings import warnings_of
 from hexarm.machines import frames_of, loader, with_sections
+from hexarm.servo_check import contradictions
 from hexarm.simulation.dynamics_config import SCHEMAS
-from manipulator.arrays import Array
-from manipulator.config import build, forms_of, nearest, parse_yaml
-from manipulator.errors import ConfigError, ManipulatorError, NoSolution
-from manipulator.formatting import shown, told_apart
-from manipulator.limits.wording import in_words
+from manipulator.config import build, forms_of, parse_yaml
+from manipulator.errors import ConfigError, ManipulatorError
+from manipulator.formatting import shown
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionConfig
-from manipulator.pose import Pose
 
 T = TypeVar('T')
 ROOM = ('geometry', 'limits')
@@ -37,10 +32,6 @@ INDEX = re.compile(r'\[(\d+)\]')
 
 STAND_IN = MotionConfig(1.0, 1.0, 10.0, 1.0, 1.0, 10.0)
 """For a motion section with faults of its own, so that the others are looked at all the same."""
-
-
-PARK_SHARE = 1e-4
-"""m or rad by which a stack's park position may be off the rule that shares its motion."""
 
 
 class Findings:
@@ -72,27 +63,20 @@ class Report:
 def problems_of(text: str, folder: Path = Path()) -> list[str]:
     """All problems of the text of a machine file in a folder, none for a good one."""
     try:
-        return list(report_of(with_sections(parse_yaml(text), folder)).problems)
+        return list(report_of(parse_yaml(text), folder).problems)
     except ConfigError as error:
         return list(error.problems)
 
 
-def report_of(content: Mapping[str, Any]) -> Report:
-    """Of a machine file that could be read.
+def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
+    """Of a machine file that could be read; folder: where it is, unless `with_sections` was there.
 
     The sections first, each as far as it is there; then what one contains about another, as far
     as both are good: home, names, units, ranges, speeds and the park position.
     """
     found = Findings()
-    content = dict(corrected(MachineFile, content, '', found.problems))
-    kind = _kind(found, content)
+    kind, content, whole = _as_meant(found, content, folder)
     schemas = sections_of(kind) if kind else BRIDGE
-    content = content | {
-        name: corrected(schema, content[name], name, found.problems)
-        for name, schema in schemas.items()
-        if name in content
-    }
-    whole = found.of(lambda: build(MachineFile, content))
     unfit = _unfit(kind, content)
     if unfit:
         return Report(unfit)
@@ -114,9 +98,27 @@ def report_of(content: Mapping[str, Any]) -> Report:
         home = _home_problems(kind, machine, content)
         found.problems += home
         if calibration is not None:
-            found.problems += _between(machine, calibration, is_home_good=not home)
+            found.problems += contradictions(machine, calibration, is_home_good=not home)
     doubts = [] if machine is None else warnings_of(machine, calibration, content['geometry'])
     return Report(_merged(found.problems), tuple(doubts), machine)
+
+
+def _as_meant(
+    found: Findings, content: Mapping[str, Any], folder: Path | None
+) -> tuple[str, dict[str, Any], MachineFile | None]:
+    """The kind, the content without misspelt keys, and the sections where they are all right."""
+    content = dict(corrected(MachineFile, content, '', found.problems))
+    kind = _kind(found, content)
+    content = content | {
+        name: corrected(schema, content[name], name, found.problems)
+        for name, schema in (sections_of(kind) if kind else BRIDGE).items()
+        if name in content
+    }
+    whole = found.of(lambda: build(MachineFile, content))
+    if folder is not None:
+        full = found.of(partial(with_sections, content | {'kind': kind}, folder))
+        content = content | {'geometry': None} if full is None else full
+    return kind, content, whole
 
 
 def _kind(found: Findings, content: Mapping[str, Any]) -> str:
@@ -199,84 +201,3 @@ def _check_sections(found: Findings, geometry: object) -> None:
         if section.dynamics is not None and section.kind in SCHEMAS:
             where = f'geometry.sections[{i}].dynamics'
             found.of(partial(build, SCHEMAS[section.kind], section.dynamics, where))
-
-
-def _between(machine: Machine, calibration: Calibration, is_home_good: bool) -> Iterator[str]:
-    """Contradictions between servos and machine; where home is wrong, park can hardly be right."""
-    expected, names = machine.kinematics.joint_names, list(calibration.names)
-    for name in (name for name in expected if name not in names):
-        near = nearest(name, [other for other in names if other not in expected])
-        yield f'servos.joints: none is called {name!r}{f", but {near!r}" if near else ""}'
-        if near:
-            names[names.index(near)] = name
-    if calibration.unit != machine.kinematics.joint_unit:
-        unit = 'millimetres' if calibration.unit == 'm' else 'degrees'
-        yield f'servos.joints: in {unit}, which are not what the joints of this kind are in'
-        return
-    yield from _slow_servos(machine, calibration)
-    if {*expected} <= {*names}:
-        order = [names.index(name) for name in expected]
-        yield from _narrow_servos(machine, calibration, order)
-        if is_home_good:
-            yield from _park_problems(machine, calibration, order)
-
-
-def _narrow_servos(machine: Machine, calibration: Calibration, order: list[int]) -> Iterator[str]:
-    factor, unit = _file_unit(calibration)
-    narrow: dict[tuple[str, str], list[str]] = {}
-    for i, low, high in zip(order, *machine.joint_ranges, strict=True):
-        lowest, highest = calibration.range_of(i)
-        count = 1.0 / abs(float(calibration.scale[i]))
-        if lowest > low + count or highest < high - count:
-            ends = told_apart(np.array([lowest, highest, low, high]) * factor, fewest=4)
-            reach, span = (f'[{low}, {high}] {unit}' for low, high in (ends[:2], ends[2:]))
-            narrow.setdefault((reach, span), []).append(calibration.names[i])
-    for (reach, span), some in narrow.items():
-        reaches, whose = ('reach', 'their') if len(some) > 1 else ('reaches', 'its')
-        names = ', '.join(some)
-        yield f'servos.joints: {names} {reaches} {reach}, {whose} range in limits is {span}'
-
-
-def _park_problems(machine: Machine, calibration: Calibration, order: list[int]) -> Iterator[str]:
-    _, unit = _file_unit(calibration)
-    park = calibration.park[order]
-    try:
-        pose = machine.kinematics.forward(park).pose
-    except NoSolution as error:
-        yield f'servos.park_{unit}: no pose that can be trusted: {error}'
-        return
-    for words in in_words(machine.constraints.violations(pose, park)):
-        yield f'servos.park_{unit}: {words}'
-    if isinstance(machine.kinematics, StackKinematics):
-        yield from _unshared_park(machine.kinematics, pose, park, unit)
-
-
-def _unshared_park(
-    kinematics: StackKinematics, pose: Pose, park: Array, unit: str
-) -> Iterator[str]:
-    """Of a stack, whose joints at a pose are those of a rule: it would jump when it is enabled."""
-    joints = kinematics.inverse_or_nan(pose, park)
-    worst = int(np.argmax(np.abs(joints - park)))
-    if not np.abs(joints - park)[worst] < PARK_SHARE:
-        yield (
-            f'servos.park_{unit}: not where the sections share the pose of the end '
-            f'(docs/kinematics.md, 9): {kinematics.joint_names[worst]} would be at '
-            f'{joints[worst]:.5g} {kinematics.joint_unit}'
-        )
-
-
-def _slow_servos(machine: Machine, calibration: Calibration) -> Iterator[str]:
-    factor, unit = _file_unit(calibration)
-    expected = float(np.max(machine.motion.joint.speed)) * factor
-    rated = calibration.speed * factor
-    if np.isfinite(expected) and expected > rated * (1 + 1e-9):
-        asked, most = told_apart([expected, rated])
-        yield (
-            f'motion.joint_speed_{unit}_s: {asked} is more than the servos do '
-            f'(servos.speed_{unit}_s: {most})'
-        )
-
-
-def _file_unit(calibration: Calibration) -> tuple[float, str]:
-    """The unit of the file, and how many of it make one of ours."""
-    return (1e3, 'mm') if calibration.unit == 'm' else (float(np.degrees(1.0)), 'deg')

@@ -97,7 +97,7 @@ def _is_doubtful(geometry: RotaryGeometry, home: Array, other: Array, limit: Joi
     )
     is_level = (slope < LEVEL) & (aside > ASIDE) | (slope < NEARLY_LEVEL) & (aside > FAR)
     is_central = (other_aside < NEAR) & (aside > FAR) & (2 * half <= WIDEST)
-    doubtful: Mask = (tilt > TILTED) & (is_level | is_central)
+    doubtful: Mask = (aside <= 1.0) & (tilt > TILTED) & (is_level | is_central)
     return doubtful
 
 
@@ -124,7 +124,9 @@ def _pulses(machine: Machine, calibration: Calibration) -> Iterator[str]:
     scale = calibration.scale[order] / COUNTS_PER_US
     ends = centre_us + scale * (np.stack([limit.low, limit.high]) - calibration.centre[order])
     is_servo = (centre_us > PULSES_US[0]) & (centre_us < PULSES_US[1])
-    low, high = ends.min(axis=0), ends.max(axis=0)
+    # Pulses that leave pulse_range_us are a problem already.
+    own = (np.array(c)[order] / COUNTS_PER_US for c in (calibration.lowest, calibration.highest))
+    low, high = np.clip((ends.min(axis=0), ends.max(axis=0)), *own)
     beyond = is_servo & ((low < PULSES_US[0]) | (high > PULSES_US[1]))
     for joints in _alike(beyond, low, high):
         yield (

@@ -6,15 +6,6 @@
 
 static const struct frame UNMOVED = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 
-/* A B. */
-static void product9(const real a[9], const real b[9], real product[9])
-{
-    for (int row = 0; row < 9; row += 3)
-        for (int column = 0; column < 3; column++)
-            product[row + column] =
-                a[row] * b[column] + a[row + 1] * b[3 + column] + a[row + 2] * b[6 + column];
-}
-
 /* The rotation by an angle about a unit axis: the upper left of (1.1). */
 static void rotation_about(const real w[3], real angle, real rotation[9])
 {
@@ -61,6 +52,22 @@ void chain_displacements(const struct chain *chain, const real joints[JOINTS],
         for (int k = 0; k < 3; k++)
             moved[i].position[k] -= turned[k];
     }
+}
+
+void displacement(const struct chain *chain, const struct frame *pose, struct frame *moved)
+{
+    real home[3];
+    product9_back(pose->rotation, chain->tool.rotation, moved->rotation);
+    rotate3(moved->rotation, chain->tool.position, home);
+    for (int i = 0; i < 3; i++)
+        moved->position[i] = pose->position[i] - home[i];
+}
+
+void moved_point(const struct frame *moved, const real point[3], real there[3])
+{
+    rotate3(moved->rotation, point, there);
+    for (int i = 0; i < 3; i++)
+        there[i] += moved->position[i];
 }
 
 void chain_posture(const struct chain *chain, const real joints[JOINTS], posture *turned)

@@ -26,6 +26,10 @@ typedef struct chain posture;
 void chain_displacements(const struct chain *chain, const real joints[JOINTS],
                          struct frame moved[JOINTS + 1]);
 
+/* D = T M^-1: how far the pose displaces what the last joint carries; a point displaced so. */
+void displacement(const struct chain *chain, const struct frame *pose, struct frame *moved);
+void moved_point(const struct frame *moved, const real point[3], real there[3]);
+
 /* Axes, points and tool where the joints take them. */
 void chain_posture(const struct chain *chain, const real joints[JOINTS], posture *turned);
 

@@ -8,24 +8,6 @@ static void difference3(const real a[3], const real b[3], real difference[3])
         difference[i] = a[i] - b[i];
 }
 
-/* D = T M^-1: how far the pose displaces what the last joint carries. */
-static void displacement(const struct chain *chain, const struct frame *pose, struct frame *moved)
-{
-    for (int row = 0; row < 9; row += 3)
-        for (int i = 0; i < 3; i++)
-            moved->rotation[row + i] = dot3(pose->rotation + row, chain->tool.rotation + 3 * i);
-    real home[3];
-    rotate3(moved->rotation, chain->tool.position, home);
-    difference3(pose->position, home, moved->position);
-}
-
-static void moved_point(const struct frame *moved, const real point[3], real there[3])
-{
-    rotate3(moved->rotation, point, there);
-    for (int i = 0; i < 3; i++)
-        there[i] += moved->position[i];
-}
-
 /* Joint 1, both turns of the arm's plane with `tip` in it towards the target: section 4, 1. */
 static int joint_1(const struct chain *chain, const real tip[3], const real target[3],
                    struct turn free, struct turn q1[2])

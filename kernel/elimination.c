@@ -5,23 +5,16 @@
 static void displaced(const struct frame *moved, const struct axis *axis, struct axis *there)
 {
     rotate3(moved->rotation, axis->direction, there->direction);
-    rotate3(moved->rotation, axis->point, there->point);
-    for (int i = 0; i < 3; i++)
-        there->point[i] += moved->position[i];
+    moved_point(moved, axis->point, there->point);
 }
 
 /* The joints after `first`, displaced by the pose, then those before. */
 static void make_loop(const struct chain *chain, real length, int first, const struct frame *pose,
                       struct loop *loop)
 {
-    real home[3];
-    for (int row = 0; row < 3; row++)
-        for (int i = 0; i < 3; i++)
-            loop->moved.rotation[3 * row + i] =
-                dot3(pose->rotation + 3 * row, chain->tool.rotation + 3 * i);
-    rotate3(loop->moved.rotation, chain->tool.position, home);
+    displacement(chain, pose, &loop->moved);
     for (int i = 0; i < 3; i++)
-        loop->moved.position[i] = (pose->position[i] - home[i]) / length;
+        loop->moved.position[i] /= length;
     for (int n = 0; n < JOINTS; n++) {
         int k = (first + n) % JOINTS;
         struct axis axis;

@@ -1,5 +1,6 @@
 #include "line_keeping.h"
 
+#include "matrix6.h"
 #include "vector.h"
 
 /* Part of a twist that may be missing in a direction that is being lost. */
@@ -12,14 +13,6 @@
 #define LOST REAL(1e-6)
 /* Part of the largest below which another number is rounding. */
 #define NOISE REAL(1e-9)
-
-static real dot6(const real a[6], const real b[6])
-{
-    real sum = 0;
-    for (int k = 0; k < 6; k++)
-        sum += a[k] * b[k];
-    return sum;
-}
 
 static real largest(const real a[6])
 {

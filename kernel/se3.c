@@ -74,22 +74,17 @@ void se3_move(const real twist[6], real position[3], real rotation[9])
     real turn[9], before[9];
     rotation_exp(twist + 3, turn);
     memcpy(before, rotation, sizeof before);
-    for (int i = 0; i < 3; i++) {
+    product9(turn, before, rotation);
+    for (int i = 0; i < 3; i++)
         position[i] += twist[i];
-        for (int j = 0; j < 3; j++)
-            rotation[3 * i + j] = turn[3 * i] * before[j] + turn[3 * i + 1] * before[3 + j] +
-                                  turn[3 * i + 2] * before[6 + j];
-    }
 }
 
 void se3_twist(const real from_position[3], const real from_rotation[9],
                    const real to_position[3], const real to_rotation[9], real twist[6])
 {
     real turn[9];
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         twist[i] = to_position[i] - from_position[i];
-        for (int j = 0; j < 3; j++)
-            turn[3 * i + j] = dot3(to_rotation + 3 * i, from_rotation + 3 * j);
-    }
+    product9_back(to_rotation, from_rotation, turn);
     rotation_log(turn, twist + 3);
 }

@@ -23,4 +23,21 @@ static inline void rotate3(const real rotation[9], const real v[3], real turned[
         turned[i] = dot3(rotation + 3 * i, v);
 }
 
+/* A B. */
+static inline void product9(const real a[9], const real b[9], real product[9])
+{
+    for (int row = 0; row < 9; row += 3)
+        for (int column = 0; column < 3; column++)
+            product[row + column] =
+                a[row] * b[column] + a[row + 1] * b[3 + column] + a[row + 2] * b[6 + column];
+}
+
+/* A B'. */
+static inline void product9_back(const real a[9], const real b[9], real product[9])
+{
+    for (int row = 0; row < 9; row += 3)
+        for (int column = 0; column < 3; column++)
+            product[row + column] = dot3(a + row, b + 3 * column);
+}
+
 #endif

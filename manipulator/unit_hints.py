@@ -74,7 +74,8 @@ def _lengths(place: str, section: Any) -> Iterable[tuple[str, float, bool]]:
         if field.name.endswith('_mm') and value is not None:
             are_points = np.ndim(value) == 2
             points = np.asarray(value) if are_points else np.reshape(value, (-1, 1))
-            is_size = are_points or field.metadata['range'][0] > 0.0
+            is_height = field.name == 'home_height_mm' and value != 0.0
+            is_size = are_points or is_height or field.metadata['range'][0] > 0.0
             yield f'{place}.{field.name}', float(np.linalg.norm(points, axis=1).max()), is_size
 
 

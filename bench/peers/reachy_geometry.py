@@ -6,6 +6,8 @@ reachy_mini, Apache-2.0), which spells the same machine out to single micrometre
 
 import numpy as np
 
+from hexapod_control.geometry import JointsConfig
+from hexapod_control.leg_limits import RotaryLimits
 from hexapod_control.load import rotary_hexapod
 from hexapod_control.rotary import RotaryHexapod
 
@@ -45,5 +47,4 @@ def reachy_mini() -> RotaryHexapod:
         'rod_length_mm': ROD,
         'home_height_mm': HOME_HEIGHT,
     }
-    kinematics, _ = rotary_hexapod(geometry, LIMITS)
-    return kinematics
+    return rotary_hexapod(JointsConfig(**geometry), RotaryLimits(**LIMITS))[0]

@@ -55,8 +55,10 @@ def geometry_lines(geometry: RotaryGeometry | LinearGeometry | RailGeometry) -> 
             f'  carriages: [{sides}]',
             *home,
         ]
-    are_vertical = np.abs(geometry.normals[:, 2]).max() < 10.0**-DIGITS
-    axes = [] if are_vertical else _points('crank_axes', geometry.normals, DIGITS)
+    level = np.cross(geometry.tangents, [0.0, 0.0, 1.0])
+    off = level - np.linalg.norm(level, axis=1, keepdims=True) * geometry.normals
+    are_as_assumed = np.abs(off).max() < 10.0**-DIGITS
+    axes = [] if are_as_assumed else _points('crank_axes', geometry.normals, DIGITS)
     return [
         *_points('crank_centres_mm', 1e3 * geometry.crank_centres),
         *_points('crank_tangents', geometry.tangents, DIGITS),

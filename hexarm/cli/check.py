@@ -7,10 +7,11 @@ from typing import Any
 from hexarm.cli.answers import Answer, Units, add_units, answering, units_of
 from hexarm.cli.statuses import REFUSED
 from hexarm.machine_check import Report, report_of
-from hexarm.machines import content_of, find, read, shipped
+from hexarm.machines import find, read, shipped, text_of
 from manipulator.analysis.inside import AXES, ranges
 from manipulator.analysis.reach import smallest_margins
 from manipulator.analysis.readings import LimitReading
+from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError
 from manipulator.formatting import counted
 from manipulator.machine import Machine
@@ -49,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Prints problems and warnings, one a line, and what home is like; status 2 for problems."""
     try:
         path = find(arguments.file)
-        report = report_of(content_of(path))
+        report = report_of(parse_yaml(text_of(path), str(path)), path.parent)
         lines = _in_words(arguments.file, report, units_of(arguments))
     except ConfigError as error:
         report = Report(error.problems)

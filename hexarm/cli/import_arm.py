@@ -2,14 +2,21 @@
 
 import argparse
 import re
+from dataclasses import replace
 from pathlib import Path
 
-from arm_control.urdf_chain import UrdfArm, arm_of
-from arm_control.urdf_file import MAX_CHARACTERS, UrdfRobot, read_urdf
-from hexarm.arm_import import Imported, Wishes, machine_text
+from arm_control.closed_forms import closed_form
+from arm_control.urdf_chain import arm_of
+from arm_control.urdf_file import MAX_CHARACTERS, read_urdf, with_right_angles
+from hexarm.arm_import import Wishes, machine_text
 from hexarm.cli.answers import Answer, answering, with_negatives
 from manipulator.errors import ConfigError, InvalidInput
 from manipulator.formatting import counted, reason
+
+HINT = (
+    'its right angles are rounded (1.5708): with --right-angles its inverse kinematics has a '
+    'closed form, which takes microseconds'
+)
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -19,6 +26,12 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser.add_argument('--base', metavar='LINK', help='default: the root')
     parser.add_argument(
         '--tip', metavar='LINK', help='default: the last link that six axes move, or tool0'
+    )
+    parser.add_argument(
+        '--right-angles', action='store_true', help='right angles that the file rounds, as 1.5708'
+    )
+    parser.add_argument(
+        '--prefix', default='', metavar='TEXT', help='before the name of each joint, as in left_'
     )
     parser.add_argument(
         '--home', nargs=6, type=float, metavar='DEG', help='the joints at home; default: chosen'
@@ -37,41 +50,45 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 def answer(arguments: argparse.Namespace) -> Answer:
     """Where the machine file is, and what it assumes; an existing file is not written over."""
     source: Path = arguments.file
-    wishes = Wishes(arguments.home, arguments.acceleration)
-    robot, arm, made = imported(source, arguments.base, arguments.tip, wishes)
+    try:
+        robot = read_urdf(urdf_text(source))
+        robot = with_right_angles(robot) if arguments.right_angles else robot
+        arm = arm_of(robot, arguments.base, arguments.tip)
+        named = (replace(joint, name=arguments.prefix + joint.name) for joint in arm.joints)
+        arm = replace(arm, joints=tuple(named))
+        exact = arm_of(with_right_angles(robot), arm.base, arm.tip)
+        wishes = Wishes(arguments.home, arguments.acceleration)
+        imported = machine_text(arm, robot.name or source.stem, source.name, wishes)
+    except ConfigError as error:
+        raise ConfigError(error.problems, str(source)) from error
     stem = re.sub(r'\W+', '_', robot.name or source.stem).strip('_') or 'arm'
     output: Path = arguments.output or Path(f'{stem}.yaml')
-    try:
-        with output.open('x', encoding='utf-8') as file:
-            file.write(made.text)
-    except FileExistsError:
-        raise InvalidInput(f'{output} exists: another name with --output') from None
-    except OSError as error:
-        raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
+    _write(output, imported.text)
+    is_rounded = closed_form(arm.chain) is None and closed_form(exact.chain) is not None
     lines = [
         f'{output}: {arm.base} to {arm.tip}, {", ".join(joint.name for joint in arm.joints)}',
-        f'{counted(len(made.assumed), "line")} with assumed values: look for "assumed"',
+        f'{counted(len(imported.assumed), "line")} with assumed values: look for "assumed"',
         *(['visual meshes are not imported'] if robot.has_meshes else []),
+        *([HINT] if is_rounded else []),
         f'next: hexarm check {output}; hexarm up {output} --panel',
     ]
     names = [joint.name for joint in arm.joints]
     answer = {'output': str(output), 'base': arm.base, 'tip': arm.tip, 'joints': names}
-    return answer | {'assumed': list(made.assumed)}, lines
+    return answer | {'assumed': list(imported.assumed)}, lines
 
 
-def imported(
-    source: Path, base: str | None, tip: str | None, wishes: Wishes
-) -> tuple[UrdfRobot, UrdfArm, Imported]:
-    """The robot of a URDF file, its arm from base to tip, and the machine file of that."""
+def _write(output: Path, text: str) -> None:
+    """InvalidInput where it cannot be written, or is there."""
     try:
-        robot = read_urdf(_text_of(source))
-        arm = arm_of(robot, base, tip)
-        return robot, arm, machine_text(arm, robot.name or source.stem, source.name, wishes)
-    except ConfigError as error:
-        raise ConfigError(error.problems, str(source)) from error
+        with output.open('x', encoding='utf-8') as file:
+            file.write(text)
+    except FileExistsError:
+        raise InvalidInput(f'{output} exists: another name with --output') from None
+    except OSError as error:
+        raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
 
 
-def _text_of(path: Path) -> str:
+def urdf_text(path: Path) -> str:
     """ConfigError for what cannot be read as text, or is huge."""
     try:
         with path.open(encoding='utf-8') as file:

@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from hexarm.arm_import import Wishes
+from arm_control.urdf_chain import arm_of
+from arm_control.urdf_file import read_urdf
+from hexarm import arm_import
 from hexarm.cli import check
 from hexarm.cli.answers import refuse
-from hexarm.cli.import_arm import imported
+from hexarm.cli.import_arm import urdf_text
 from hexarm.cli.statuses import INTERRUPTED
 from hexarm.machine_check import report_of
 from hexarm.machines import load, text_of
@@ -109,8 +111,7 @@ def _described(path: Path) -> str:
 def machine_text(measures: Mapping[str, Any]) -> str:
     """The text of the machine file; InvalidInput or ConfigError for what no machine has."""
     if measures.get('given_by') == 'urdf':
-        tip = None if measures['tip'] == 'auto' else measures['tip']
-        return imported(Path(measures['urdf']), None, tip, Wishes())[2].text
+        return _of_urdf(Path(measures['urdf']).expanduser(), measures['tip'])
     lines = [*TEXTS[measures['kind']](measures), '', '# Measures given to hexarm new:']
     for key in dict.fromkeys(q.key for q in QUESTIONS if q.key in measures):
         lines.append(f'#   {key}: {json.dumps(measures[key], ensure_ascii=False)}')
@@ -119,6 +120,16 @@ def machine_text(measures: Mapping[str, Any]) -> str:
     if report.problems:
         raise ConfigError(report.problems)
     return text
+
+
+def _of_urdf(source: Path, tip: str) -> str:
+    try:
+        robot = read_urdf(urdf_text(source))
+        arm = arm_of(robot, None, None if tip == 'auto' else tip)
+        name = robot.name or source.stem
+        return arm_import.machine_text(arm, name, source.name, arm_import.Wishes()).text
+    except ConfigError as error:
+        raise ConfigError(error.problems, str(source)) from error
 
 
 def asked(ask: Ask, tell: Callable[[str], None], description: str) -> str:

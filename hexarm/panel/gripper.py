@@ -1,8 +1,6 @@
-"""The gripper at the tool: how far it is open, the lines that show it, and its slider."""
+"""The gripper at the tool: how far it is open, and the lines that show it."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -54,27 +52,3 @@ def fingers(tool: Pose, opening: float, size: float) -> tuple[Stroke, ...]:
         [[-aside, 0.0, tip], [-aside, 0.0, root], [aside, 0.0, root], [aside, 0.0, tip]]
     )
     return (Stroke(PART, tool.transform(outline)),)
-
-
-STEP = 1
-"""Percent."""
-
-
-class GripperSlider:
-    """Shows where the gripper is; a hand's move calls `request` with 0 (closed) to 1 (open)."""
-
-    def __init__(self, gui: Any, request: Callable[[float], None]) -> None:
-        self._request = request
-        marks = ((0, 'closed'), (100, 'open'))
-        self._slider = gui.add_slider('gripper [%]', 0, 100, STEP, 50, marks=marks)
-        self._slider.on_update(self._on_update)
-
-    def follow(self, opening: float) -> None:
-        """Shows an opening without a request."""
-        percent = round(100 * opening)
-        if self._slider.value != percent:
-            self._slider.value = percent
-
-    def _on_update(self, event: Any) -> None:
-        if event.client_id is not None:  # a hand's, not `follow`'s
-            self._request(event.target.value / 100)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hexarm.panel.readout import colour
+from hexarm.panel.room import colour
 from manipulator.arrays import Array
 from manipulator.links import Stroke
 from manipulator.pose import Pose

@@ -10,7 +10,7 @@ import numpy as np
 
 from hexarm.panel.body import Body
 from hexarm.panel.pieces import hull, wxyz_of
-from hexarm.panel.readout import shares
+from hexarm.panel.room import shares
 from hexarm.panel.view import Stance, View
 from manipulator.arrays import Array
 from manipulator.machine import Machine
@@ -34,6 +34,7 @@ class Scene:
     """What a viser server shows in three dimensions."""
 
     def __init__(self, server: Any, machine: Machine, has_gripper: bool) -> None:
+        server.gui.configure_theme(dark_mode=True)
         self._scene = server.scene
         self._machine = machine
         kinematics = machine.kinematics

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from manipulator.arrays import Array
 from manipulator.frames import Frames
 from manipulator.pose import Pose
+from manipulator.saved_poses import SavedPose
 from manipulator.states import UNKNOWN
 
 
@@ -34,7 +35,7 @@ class NodeReport:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """Measured and commanded stance (None while nothing fresh is known) and all texts."""
+    """Measured and commanded stance (None while nothing fresh is known), texts, saved poses."""
 
     measured: Stance | None = None
     commanded: Stance | None = None
@@ -44,3 +45,4 @@ class View:
     mode: str = ''
     motion: str = ''
     nodes: tuple[NodeReport, ...] = ()
+    saved: Mapping[str, SavedPose] = field(default_factory=dict)

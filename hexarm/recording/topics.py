@@ -12,7 +12,9 @@ SHARED = ('/diagnostics', '/rosout', '/tf', '/tf_static')
 COMMANDS = frozenset(
     (
         *('goal_pose', 'goal_path', 'jog_mode', 'look_at', 'speed_override', 'pivot'),
+        *('goal_joints', 'joint_trajectory'),
         *('cmd_vel', 'cmd_vel/joy', 'cmd_vel/panel', 'cmd_vel/keyboard'),
+        *('cmd_joints', 'cmd_joints/joy', 'cmd_joints/panel', 'cmd_joints/keyboard'),
         *('gripper', 'emergency_stop', 'joint_table', 'joy', 'save_pose', 'delete_pose'),
     )
 )
@@ -21,7 +23,7 @@ COMMANDS = frozenset(
 SETTLED = 5.0
 """Seconds after which a publisher has found all its subscribers."""
 
-GOALS, CAREFUL = ('goal_pose', 'goal_path'), frozenset(('hexarm', 'panel'))
+GOALS, CAREFUL = ('goal_pose', 'goal_path', 'goal_joints'), frozenset(('hexarm', 'panel'))
 """Commands that these nodes publish once they have found the machine, not any subscriber."""
 
 

@@ -140,10 +140,9 @@ class PushingDriveConfig:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DynamicsConfig:
-    """What the section has for every kind of machine."""
+class GravityConfig:
+    """Where gravity pulls, for every kind of machine."""
 
-    compensation: bool = key(COMPENSATION, default=False)
     gravity_direction: Three = quantity(-1000, 1000, GRAVITY_DIRECTION, default=(0.0, 0.0, -1.0))
 
     def __post_init__(self) -> None:
@@ -156,6 +155,13 @@ class DynamicsConfig:
         """The acceleration of free fall, (3,) m/s², base frame."""
         direction = np.array(self.gravity_direction)
         return frozen(GRAVITY * direction / np.linalg.norm(direction))
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicsConfig(GravityConfig):
+    """What the section has for every machine with masses and drives of its own."""
+
+    compensation: bool = key(COMPENSATION, default=False)
 
 
 @dataclass(frozen=True)
@@ -231,8 +237,8 @@ class ArmDynamicsConfig(DynamicsConfig):
 
 
 @dataclass(frozen=True)
-class StackDynamicsConfig:
-    """A stack has no masses and drives but those of its sections."""
+class StackDynamicsConfig(GravityConfig):
+    """A stack has no masses and drives but those of its sections; gravity is its own."""
 
 
 Dynamics = RotaryDynamicsConfig | LinearDynamicsConfig | RailDynamicsConfig | ArmDynamicsConfig

@@ -18,6 +18,7 @@ from hexarm.simulation.dynamics_config import (
     LinearDynamicsConfig,
     RailDynamicsConfig,
     RotaryDynamicsConfig,
+    StackDynamicsConfig,
 )
 from hexarm.simulation.linear_model import linear_model
 from hexarm.simulation.rail_model import rail_model
@@ -80,9 +81,9 @@ def mechanism(
     `dynamics_of`.
     """
     if isinstance(kinematics, StackKinematics):
-        return stack_model(
-            name, kinematics, _sections(machine_file, kinematics, payload_g, torque)
-        )
+        parts = _sections(machine_file, kinematics, payload_g, torque)
+        own = build(StackDynamicsConfig, machine_file.dynamics or {}, 'dynamics')
+        return stack_model(name, kinematics, parts, own.gravity)
     dynamics = dynamics_of(machine_file, payload_g)
     drives = drives_of(dynamics, machine_file)
     if torque is not None:

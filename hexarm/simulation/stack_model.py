@@ -23,9 +23,14 @@ FREE = 7
 """Coordinates of a free body, the first of a section's own model."""
 
 
-def stack_model(name: str, kinematics: StackKinematics, parts: tuple[Mechanism, ...]) -> Mechanism:
-    """The model at home, of the sections' models from the ground up; gravity as of the first."""
-    root = document(name, _gravity(parts[0]))
+def stack_model(
+    name: str, kinematics: StackKinematics, parts: tuple[Mechanism, ...], gravity: Array
+) -> Mechanism:
+    """The model at home, of the models of the sections from the ground up.
+
+    gravity (3,) is the acceleration of free fall in the lowest base's frame, m/s².
+    """
+    root = document(name, gravity)
     below, base = child(root, 'worldbody'), Pose.identity()
     closures = {}
     for i, part in enumerate(parts):
@@ -51,11 +56,6 @@ def stack_model(name: str, kinematics: StackKinematics, parts: tuple[Mechanism, 
         _together([part.drives for part in parts]),
         _seat(kinematics, parts),
     )
-
-
-def _gravity(part: Mechanism) -> Array:
-    option = child(ET.fromstring(part.xml), 'option')
-    return np.array([float(number) for number in option.get('gravity', '').split()])
 
 
 def _put_section(

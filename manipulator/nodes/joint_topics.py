@@ -1,6 +1,7 @@
 """`goal_joints` and `joint_trajectory`: bounded in length before they are decoded."""
 
 import time
+from collections.abc import Callable
 from functools import partial
 
 from builtin_interfaces.msg import Time
@@ -41,10 +42,6 @@ class JointTopics:
         )
         subscribe(JointTrajectory, 'joint_trajectory', self._on_trajectory)
 
-    def begin(self, trajectory: JointTrajectory, stamp: float) -> None:
-        """A trajectory under the name `stamp`; raises ManipulatorError, or refuses it later."""
-        self._begin(trajectory.header.stamp, partial(joint_points_of, trajectory), stamp)
-
     def name_of(self, start: Time) -> float:
         """The stamp by which motion_status knows a trajectory: its own, or that of its receipt."""
         return seconds(start) or self._now()
@@ -70,11 +67,12 @@ class JointTopics:
                     f'a trajectory of {len(serialized):,} bytes, limit {MOST_BYTES:,}: '
                     f'{MOST_POINTS:,} points take less'
                 )
-            self._begin(start, partial(_read, serialized), stamp)
+            self.begin(start, partial(_read, serialized, self.names), stamp)
         except ManipulatorError as error:
             self._refuse(stamp, error)
 
-    def _begin(self, start: Time, read: 'partial[JointPoints]', stamp: float) -> None:
+    def begin(self, start: Time, read: Callable[[], JointPoints], stamp: float) -> None:
+        """A trajectory named `stamp`; raises ManipulatorError, or refuses it later."""
         now, starts_at = time.monotonic(), None
         if seconds(start):
             ahead = seconds(start) - self._now()
@@ -84,8 +82,7 @@ class JointTopics:
                     'is the clock of its sender right?'
                 )
             starts_at = now + ahead
-        names = self.names
-        goal = TrajectoryGoal(stamp, lambda: read(names), self._tolerance, starts_at)
+        goal = TrajectoryGoal(stamp, read, self._tolerance, starts_at)
         self._controller.follow_joints(goal, partial(self._refuse, stamp), now)
 
     def _refuse(self, stamp: float, error: ManipulatorError) -> None:

@@ -165,6 +165,7 @@ class PoseNode(Node):
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         machine = load(name)
         self._kinematics, self._frames = machine.kinematics, machine.frames
+        self._names = machine.kinematics.joint_names
         self._estimate = PoseEstimate(machine, self.get_logger().info)
         self._states = FilteredCallback(self, 'joint_states', self._on_joint_states)
         self._publisher = process.publisher(self, PoseStamped, 'pose', MEASUREMENT)
@@ -178,7 +179,7 @@ class PoseNode(Node):
         self._diagnostics = Diagnostics(self, self._report, ('joint_states', 'pose'))
 
     def _on_joint_states(self, message: JointState) -> None:
-        joints = known_joints(message, self._kinematics.joint_names)
+        joints = known_joints(message, self._names)
         solution = self._estimate.update(joints)
         if solution is None or joints is None:
             return

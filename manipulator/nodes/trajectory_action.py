@@ -18,7 +18,8 @@ from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.machine import Machine
 from manipulator.nodes.joint_topics import JointTopics
-from manipulator.planning.joint_points import InvalidJoints, check_names
+from manipulator.nodes.messages import joint_points_of
+from manipulator.planning.joint_points import InvalidJoints
 from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.states import MotionResult
 from manipulator.trajectory.controller import MotionController
@@ -108,6 +109,8 @@ class TrajectoryAction:
             active.left = 0.0
             if active.is_reached:
                 self._judge(active, active.plan, actual, now)
+            elif supervisor.status.goal_stamp != active.stamp:
+                self._finish('INVALID_GOAL', 'replaced by a newer goal')
 
     def _watch(self, active: _Active, time: float, actual: Array, now: float) -> None:
         """Ends a trajectory that is left by more than its path tolerances; else feedback."""
@@ -145,21 +148,22 @@ class TrajectoryAction:
         return feedback
 
     def _accept(self, handle: Any) -> None:
-        """Begins a goal; the one before it ends."""
+        """Begins a goal, which ends the one before it; a bad one does not."""
         handle.execute()
-        self._finish('INVALID_GOAL', REPLACED)
-        stamp = self._joints.name_of(Time())
-        machine = self._controller.supervisor.machine
-        no_tolerances = TrajectoryTolerances.none(machine)
-        self._active = _Active(handle, stamp, no_tolerances)
+        trajectory, stamp = handle.request.trajectory, self._joints.name_of(Time())
+        before = self._active
         try:
-            self._active.tolerances = tolerances_of(handle.request, machine)
-            check_names(handle.request.trajectory.joint_names, self._joints.names)
-            self._joints.begin(handle.request.trajectory, stamp)
-        except InvalidJoints as error:
-            self._finish('INVALID_JOINTS', str(error))
+            points = joint_points_of(trajectory, self._joints.names)
+            tolerances = tolerances_of(handle.request, self._controller.supervisor.machine)
+            self._active = _Active(handle, stamp, tolerances)
+            self._joints.begin(trajectory.header.stamp, lambda: points, stamp)
         except ManipulatorError as error:
-            self._finish('INVALID_GOAL', str(error))
+            self._active = before
+            is_of_joints = isinstance(error, InvalidJoints)
+            self._send(handle, 'INVALID_JOINTS' if is_of_joints else 'INVALID_GOAL', str(error))
+        else:
+            if before is not None:
+                self._send(before.handle, 'INVALID_GOAL', REPLACED)
 
     def _cancel(self, handle: Any) -> CancelResponse:
         """Brakes along the trajectory; the result follows at rest."""
@@ -171,19 +175,22 @@ class TrajectoryAction:
     def _finish(self, code: str, text: str) -> None:
         """Sends the result of the active goal, if there is one."""
         active, self._active = self._active, None
-        if active is None or self._server is None:
-            return
+        if active is not None:
+            self._send(active.handle, code, text)
+
+    def _send(self, handle: Any, code: str, text: str) -> None:
         result = self._kind.Result(error_string=text)
         result.error_code = getattr(self._kind.Result, code)
-        if active.handle.is_cancel_requested:
+        if handle.is_cancel_requested:
             result.error_code = self._kind.Result.SUCCESSFUL
-            active.handle.canceled()
+            handle.canceled()
         elif code == 'SUCCESSFUL':
-            active.handle.succeed()
+            handle.succeed()
         else:
             self._node.get_logger().warning(f'follow_joint_trajectory: {text}')
-            active.handle.abort()
-        self._server.notify_execute(active.handle, lambda handle: result)
+            handle.abort()
+        if self._server is not None:
+            self._server.notify_execute(handle, lambda _: result)
 
 
 def tolerances_of(goal: Any, machine: Machine) -> TrajectoryTolerances:

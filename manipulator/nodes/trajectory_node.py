@@ -78,6 +78,7 @@ class TrajectoryNode(Node):
         singularity = declare(self, 'jog_singularity', JOG_SINGULARITIES[0], SINGULARITY)
         dt, self._worker = 1.0 / rate, PlanningThread()
         machine = replace(load(name), jog_singularity=singularity)
+        self._names = machine.kinematics.joint_names
         tolerances = Tolerances.of(machine, tolerance, goal_tolerance, distance)
         self._controller = MotionController(machine, dt, tolerances, self._worker, delay)
         self._connect(process)
@@ -122,8 +123,7 @@ class TrajectoryNode(Node):
         self._publish_news()
 
     def _on_joint_states(self, message: JointState) -> None:
-        names = self._controller.supervisor.machine.kinematics.joint_names
-        self._controller.note_joints(known_joints(message, names))
+        self._controller.note_joints(known_joints(message, self._names))
 
     def _on_pose(self, message: PoseStamped) -> None:
         self._controller.note_pose(pose_of(message), time.monotonic())
@@ -174,10 +174,9 @@ class TrajectoryNode(Node):
         self._action.poll(time.monotonic())
 
     def _publish_setpoint(self, pose: Pose, stamp: Time) -> None:
-        supervisor = self._controller.supervisor
-        joints, names = supervisor.requested_joints, supervisor.machine.kinematics.joint_names
+        joints = self._controller.supervisor.requested_joints
         if joints is not None:
-            self._joint_setpoints.publish(joint_message(joints, names, stamp))
+            self._joint_setpoints.publish(joint_message(joints, self._names, stamp))
         self._setpoints.publish(pose_message(pose, stamp))
 
     def _publish_news(self) -> None:

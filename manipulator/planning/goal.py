@@ -48,18 +48,21 @@ class Flow:
 class Goal:
     """A pose to go to, known to its sender by the stamp of the message.
 
-    then: the path or cycle to drive from there, whose first pose it is. joints (n,): those to
-    arrive with, None where any of the pose's will do. orientation: where the pose's comes from.
-    flow: of the stream of goals that it continues, None where it continues none. on_unreachable:
-    see there. note: what is to be said of it while it is pursued, as that it is the nearest pose.
+    then: the path or cycle to drive from there, whose first pose it is, or another goal. joints
+    (n,): those to arrive with, None where any of the pose's will do. orientation: where the
+    pose's comes from. flow: of the stream of goals that it continues, None where it continues
+    none. on_unreachable: see there. received: when, by a monotonic clock, in seconds; 0 where
+    that is not known. note: what is to be said of it while it is pursued, as that it is the
+    nearest pose.
     """
 
     pose: Pose
     stamp: float = 0.0
-    then: TimedPath | Cycle | None = None
+    then: 'TimedPath | Cycle | Goal | None' = None
     motion: Motion = Motion.LINE
     joints: Array | None = None
     orientation: OrientationRule = field(default_factory=OrientationRule)
     flow: Flow | None = None
     on_unreachable: OnUnreachable = OnUnreachable.REFUSE
+    received: float = 0.0
     note: str = ''

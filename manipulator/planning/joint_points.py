@@ -1,7 +1,7 @@
 """The points of a joint trajectory, by the rules of ros2_controllers' joint_trajectory_controller.
 
-Names of some of the machine's joints, and for each point a time, positions, and perhaps velocities
-and accelerations. Joints that are not named stay where they are.
+Names of all joints of the machine, in any order, and for each point a time, positions, and perhaps
+velocities and accelerations.
 """
 
 from collections.abc import Sequence
@@ -39,13 +39,12 @@ class JointPoint:
 
 @dataclass(frozen=True, eq=False)
 class JointPoints:
-    """m points of k joints: times (m,) in s from the start, the others (m, k) in rad or m.
+    """m points: times (m,) in s from the start, the others (m, n) in rad or m, for each joint.
 
     numbers (m,): those by which their sender knows the points, from 1. velocities: None where none
     are given; rows of `accelerations` are NaN where none are.
     """
 
-    names: tuple[str, ...]
     numbers: tuple[int, ...]
     times: Array
     positions: Array
@@ -61,31 +60,11 @@ class JointPoints:
         first = int(np.argmax(is_later))
         velocities = None if self.velocities is None else self.velocities[first:]
         return JointPoints(
-            self.names,
             self.numbers[first:],
             self.times[first:] - time,
             self.positions[first:],
             velocities,
             self.accelerations[first:],
-        )
-
-    def of_all(self, names: Sequence[str], start: Array) -> 'JointPoints':
-        """With every joint of `names`: those that the trajectory lacks stay at `start` (n,)."""
-        columns = [list(names).index(name) for name in self.names]
-        count = len(self.times)
-
-        def spread(rows: Array, rest: Array) -> Array:
-            wide = np.tile(rest, (count, 1))
-            wide[:, columns] = rows
-            return wide
-
-        still = np.zeros(len(names))
-        velocities = None if self.velocities is None else spread(self.velocities, still)
-        accelerations = spread(self.accelerations, still)
-        accelerations[np.isnan(accelerations).any(axis=1)] = np.nan
-        positions = spread(self.positions, start)
-        return JointPoints(
-            tuple(names), self.numbers, self.times, positions, velocities, accelerations
         )
 
 
@@ -98,7 +77,7 @@ def joint_points(
     naming the point, for numbers that are missing, too many or not finite, for times that do not
     increase, and for a motion that does not end at rest.
     """
-    check_names(names, known)
+    check_all_named(names, known)
     if not 1 <= len(points) <= MOST_POINTS:
         count = counted(len(points), 'point')
         raise InvalidInput(f'a trajectory of {count}, needs 1 to {MOST_POINTS:,}')
@@ -114,8 +93,9 @@ def joint_points(
         if len(point.effort):
             raise InvalidInput(f'point {number}: effort is not supported')
     _check_ends(names, velocities)
-    numbers = tuple(range(1, len(points) + 1))
-    return JointPoints(tuple(names), numbers, times, positions, velocities, accelerations)
+    numbers, order = tuple(range(1, len(points) + 1)), [names.index(name) for name in known]
+    velocities = None if velocities is None else velocities[:, order]
+    return JointPoints(numbers, times, positions[:, order], velocities, accelerations[:, order])
 
 
 def check_names(names: Sequence[str], known: Sequence[str]) -> None:
@@ -128,6 +108,14 @@ def check_names(names: Sequence[str], known: Sequence[str]) -> None:
     twice = [name for name in known if list(names).count(name) > 1]
     if twice:
         raise InvalidJoints(f'joint {twice[0]} is named twice')
+
+
+def check_all_named(names: Sequence[str], known: Sequence[str]) -> None:
+    """Raises InvalidJoints unless these are the known joints, each once, in any order."""
+    check_names(names, known)
+    missing = [name for name in known if name not in names]
+    if missing:
+        raise InvalidJoints(f'joint {missing[0]} is missing, needs all of {", ".join(known)}')
 
 
 def _times(points: Sequence[JointPoint]) -> Array:

@@ -121,13 +121,12 @@ def plan_joint_trajectory(
     broken, and where the machine stands elsewhere: times are never changed.
     """
     refuse_rule(len(start.joints))
-    whole = points.of_all(machine.kinematics.joint_names, start.joints)
-    _check_begin(machine, start, whole)
+    _check_begin(machine, start, points)
     if points.times[-1] > MOST_TICKS * start.dt:
         most = MOST_TICKS * start.dt
         raise Refused(f'the trajectory would take {points.times[-1]:.0f} s, at most {most:.0f} s')
-    for curve, ends in _curves(machine, start, whole):
-        plan = _plan(machine, start, curve, ends, whole.numbers, effort)
+    for curve, ends in _curves(machine, start, points):
+        plan = _plan(machine, start, curve, ends, points.numbers, effort)
         try:
             peak = check_plan(plan, machine, start.joints, start.dt, effort)
         except NoSolution as error:
@@ -174,7 +173,8 @@ def _curves(
     elif points.velocities is not None:
         still = np.zeros((1, positions.shape[1]))
         velocities = np.concatenate([still, points.velocities[skipped:]])
-        accelerations = np.concatenate([still, points.accelerations[skipped:]])
+        first = points.accelerations[:1] if skipped else still
+        accelerations = np.concatenate([first, points.accelerations[skipped:]])
         yield splines(times, positions, velocities, accelerations), points.times
         return
     most, limits = room(times), machine.motion.for_plans.joint

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from manipulator.analysis.free_paths import line_between
 from manipulator.analysis.readings import distance, offset, scale
 from manipulator.analysis.slope import nearest_point
 from manipulator.arrays import Array
@@ -22,6 +23,9 @@ CLEARANCE = 1e-3
 """Of the characteristic length: how far inside the limits it stays, as lines between two such
 poses do not bend with the limits."""
 
+SPARE = 1e-5
+"""rad, m or a ratio that a line keeps inside the limits, as it is looked at in steps."""
+
 MOST_STEPS = 30
 LEAST_SIGMA = 0.1
 """σmin of an arm that goes as far as it reaches: it can still be driven there."""
@@ -33,7 +37,9 @@ LONGEST_STEP = 0.3
 """rad of any joint."""
 
 DIFFERENCE, SETTLED = 1e-7, 1e-6
-EASED, DAMPED, MOST_DAMPED = 0.25, 8.0, 1e3
+LEAST_DAMPED, EASED, DAMPED, MOST_DAMPED = 1e-9, 0.25, 8.0, 1e3
+PARTS = (0.5, 0.25, 0.125, 0.06, 0.03)
+"""Of the line to the nearest pose, for poses on the way along curved limits."""
 
 
 class NearestGoal:
@@ -62,7 +68,32 @@ class NearestGoal:
         found = [self._descended(goal.pose, *start) for start in starts]
         nearest = min(found, key=lambda one: float(distance(self._machine, one[0], goal.pose)))
         self._last = nearest
-        return replace(goal, pose=nearest[0], note=_words(nearest[0], goal.pose, reason))
+        note = _words(nearest[0], goal.pose, reason)
+        end = self._with_free_line(pose, joints, nearest[0])
+        return replace(goal, pose=end, note=note, then=None if end is nearest[0] else goal)
+
+    def _with_free_line(self, pose: Pose, joints: Array, nearest: Pose) -> Pose:
+        """The nearest pose, or where the line to it is not free, one on the way along the limits.
+
+        It is nearest to a part of that line; the goal is then pursued from there.
+        """
+        if self._is_free(pose, joints, nearest):
+            return nearest
+        for share in PARTS:
+            end, _ = self._descended(pose.moved(share * pose.twist_to(nearest)), pose, joints)
+            if self._is_free(pose, joints, end):
+                length = self._machine.kinematics.characteristic_length
+                is_nearer = float(distance(self._machine, pose, end)) > CLEARANCE * length
+                return end if is_nearer else nearest
+        return nearest
+
+    def _is_free(self, pose: Pose, joints: Array, end: Pose) -> bool:
+        machine = self._machine
+        line = line_between(machine, pose, end)
+        limits, there = machine.constraints, machine.kinematics.inverse_along(line, joints)
+        values = limits.values(line, there)
+        room = np.minimum(values - limits.low, limits.high - values)
+        return bool((room > SPARE).all())
 
     def _descended(self, target: Pose, pose: Pose, joints: Array) -> tuple[Pose, Array]:
         machine = self._machine
@@ -97,7 +128,7 @@ def _by_joints(
         left = float(distance(machine, there, target))
         if left < missed and bool(machine.constraints.admits(there, trial)):
             is_settled = missed - left < SETTLED * length
-            pose, joints, missed, damping = there, trial, left, EASED * damping
+            pose, joints, missed, damping = there, trial, left, max(EASED * damping, LEAST_DAMPED)
             if is_settled:
                 break
         elif damping > MOST_DAMPED:

@@ -23,7 +23,7 @@ from manipulator.planning.point_to_point import (
 from manipulator.pose import Pose
 
 LONGEST_GAP = 0.12
-"""Seconds between two goals of a stream, by their stamps."""
+"""Seconds between two goals of a stream, by their stamps, or as they come where they have none."""
 
 GAPS, SHORTEST = 2.5, 0.05
 """How much later than it comes a goal is reached: in gaps, but at least so many seconds."""
@@ -34,8 +34,32 @@ EXPECTED = 0.8
 DRIFT = 0.03
 """The part of the difference of clocks, and of delays, that each goal corrects."""
 
+LEAST_GAIN = 0.05
+"""Of what a message without a stamp is late, that corrects the clock in the long run."""
+
 STILL = 1e-6
 """m/s and rad/s that count as none."""
+
+
+class Clock:
+    """When messages without stamps were sent, if they are sent evenly: a line through arrivals."""
+
+    def __init__(self) -> None:
+        self._count = 0
+        self._time = self._period = 0.0
+
+    def sent(self, received: float) -> float:
+        """For a message that was received then; the first one of another period begins anew."""
+        late = received - (self._time + self._period)
+        if self._count > 1 and abs(late) > self._period / 2.0:
+            self._count = 0
+        k = self._count = self._count + 1
+        if k == 1:
+            self._time, self._period = received, 0.0
+            return received
+        self._time += self._period + max((4 * k - 2) / (k * (k + 1)), LEAST_GAIN) * late
+        self._period += max(6 / (k * (k + 1)), LEAST_GAIN**2) * late
+        return self._time
 
 
 class Stream:
@@ -44,24 +68,30 @@ class Stream:
     def __init__(self, delay: float) -> None:
         """delay: seconds from the request of a plan to its beginning."""
         self._delay = delay
-        self._recent = deque[Goal](maxlen=3)
+        self._clock = Clock()
+        self._recent = deque[tuple[float, Pose]](maxlen=3)
         self._due = 0.0
 
     def continued(self, goal: Goal, now: float) -> Goal:
         """The goal, with its flow where it continues a stream; now in seconds."""
-        is_simple = goal.then is None and goal.joints is None and goal.motion is not Motion.JOINT
-        last = self._recent[-1] if self._recent else None
-        if not is_simple or last is None or not 0.0 < goal.stamp - last.stamp <= LONGEST_GAP:
+        is_simple = (
+            goal.joints is None
+            and goal.motion is not Motion.JOINT
+            and (goal.then is None or isinstance(goal.then, Goal))
+        )
+        sent = goal.stamp or self._clock.sent(goal.received or now)
+        last = self._recent[-1][0] if self._recent else -np.inf
+        if not is_simple or not 0.0 < sent - last <= LONGEST_GAP:
             self._recent.clear()
         if is_simple:
-            self._recent.append(goal)
+            self._recent.append((sent, goal.pose))
         if len(self._recent) < 3:
             self._due = -np.inf
             return replace(goal, flow=None)
-        first, middle, _ = self._recent
-        before, gap = middle.stamp - first.stamp, goal.stamp - middle.stamp
-        start = first.pose.twist_to(middle.pose) / before
-        end = middle.pose.twist_to(goal.pose) / gap
+        (first, from_pose), (middle, by_pose), _ = self._recent
+        before, gap = middle - first, sent - middle
+        start = from_pose.twist_to(by_pose) / before
+        end = by_pose.twist_to(goal.pose) / gap
         change = 2.0 * (end - start) / (before + gap)
         between = max((before + gap) / 2.0, self._delay)
         late = max(GAPS * between, SHORTEST) + self._delay

@@ -13,6 +13,7 @@ import numpy as np
 from manipulator.arrays import Array, frozen
 from manipulator.errors import NoSolution, Unreachable
 from manipulator.limits.constraints import Constraints
+from manipulator.motion_limits import SPEED_NAMES
 from manipulator.pose import Pose
 
 if TYPE_CHECKING:
@@ -91,8 +92,7 @@ class JointJogger:
         name = self.machine.kinematics.joint_names[worst]
         readings = {
             f'speed of {name}': float(shares[worst]),
-            'platform speed': float(np.linalg.norm(twist[:3])) / limits.linear.speed,
-            'turning speed': float(np.linalg.norm(twist[3:])) / limits.angular.speed,
+            **dict(zip(SPEED_NAMES, limits.speed_shares(twist).tolist(), strict=True)),
         }
         first = max(readings, key=lambda one: readings[one])
         return (1.0, '') if readings[first] <= 1.0 else (1.0 / readings[first], first)

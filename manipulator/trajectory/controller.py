@@ -138,7 +138,7 @@ class MotionController:
     def pursue(self, goal: Goal, refuse: Refuse, now: float, is_of_platform: bool = True) -> None:
         """A goal: the platform's pose in the base frame, or the pivot's in the work frame."""
         self._check_order(goal.stamp, now)
-        self._pursue(goal, refuse, now, is_of_platform)
+        self._pursue(replace(goal, received=now), refuse, now, is_of_platform)
 
     def follow(self, path: PathGoal, refuse: Refuse, now: float) -> None:
         """A path: it is planned, then executed like a goal, unless a newer command comes."""

@@ -10,7 +10,7 @@ from manipulator.limits.constraints import Constraints
 from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Machine
 from manipulator.planning.goal import Goal, Motion
-from manipulator.planning.joint_move import KNOTS, between
+from manipulator.planning.joint_move import KNOTS, between, refuse_rule
 from manipulator.planning.joint_points import check_names
 from manipulator.trajectory.executor import Executor
 
@@ -23,6 +23,7 @@ def joint_goal(machine: Machine, executor: Executor, named: Mapping[str, float])
     whose rods do not close.
     """
     kinematics = machine.kinematics
+    refuse_rule(len(kinematics.joint_names))
     check_names(tuple(named), kinematics.joint_names)
     joints = executor.joints_to_come.copy()
     for name, position in named.items():

@@ -6,7 +6,7 @@ trajectory begins where the machine is at rest, by its stamp. Any newer command 
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Protocol, Union
 
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused
@@ -27,7 +27,7 @@ from manipulator.trajectory.executor import Executor
 from manipulator.trajectory.motion_status import OVERTAKEN, MotionNews, MotionStatus
 from manipulator.trajectory.supervisor import MotionSupervisor
 
-Outcome = TimedPath | Pose | JointTrajectory
+Outcome = Union[TimedPath, Pose, JointTrajectory, 'TrajectoryGoal']
 
 LEAD = 0.1
 """Seconds after its arrival at which a trajectory begins whose start is past: it is planned."""
@@ -97,13 +97,19 @@ class TrajectoryGoal:
 
     starts_at: monotonic (s), where its stamp names a time; None: as soon as it is planned.
     tolerance (n,): how far its first point may be from where the machine stands, rad or m.
+    points: once it has been read, which comes before the motion under way is braked for it.
     """
 
     stamp: float
     read: Callable[[], JointPoints]
     tolerance: Array
     starts_at: float | None = None
+    points: JointPoints | None = None
     is_from_rest = True
+
+    def read_by(self, effort: Effort) -> 'TrajectoryGoal':
+        """With its points; raises InvalidInput."""
+        return replace(self, points=self.read())
 
     def begins_at(self, now: float) -> float:
         """See `Expected`."""
@@ -115,7 +121,8 @@ class TrajectoryGoal:
         since = 0.0 if self.starts_at is None else begin - self.starts_at
 
         def plan(effort: Effort) -> JointTrajectory:
-            return plan_joint_trajectory(machine, start, self.read().after(since), effort)
+            points = self.points or self.read()
+            return plan_joint_trajectory(machine, start, points.after(since), effort)
 
         return plan
 
@@ -137,8 +144,6 @@ class PathPlanning:
         executor.expect(path.stamp)
         self._drop(OVERTAKEN)
         self._newest = path
-        if path.is_from_rest and not executor.is_at_rest:
-            executor.brake()
 
     def step(self, now: float) -> None:
         """Begins the path once it is planned, and its time has come; reports it if dropped."""
@@ -150,8 +155,7 @@ class PathPlanning:
             return
         executor = self._supervisor.executor
         if self._job is None:
-            if executor.is_at_rest or not self._newest.is_from_rest:
-                self._submit(self._newest, executor, now)
+            self._submit(self._newest, executor, now)
         elif self._job.is_done and (self._job.error or now >= self._begin_at):
             self._pursue(self._newest, self._job, executor)
 
@@ -162,8 +166,15 @@ class PathPlanning:
         self._job = self._newest = None
 
     def _submit(self, path: Expected, executor: Executor, now: float) -> None:
-        self._begin_at = path.begins_at(now)
-        task = path.task(self._supervisor.machine, executor, self._dt, self._begin_at)
+        """Begins to plan it, or to read what is planned from rest only."""
+        self._begin_at = now
+        if isinstance(path, TrajectoryGoal) and path.points is None:
+            task: Task[Outcome] = path.read_by
+        elif path.is_from_rest and not executor.is_at_rest:
+            return
+        else:
+            self._begin_at = path.begins_at(now)
+            task = path.task(self._supervisor.machine, executor, self._dt, self._begin_at)
         try:
             self._job = self._worker.submit(task)
         except Refused as error:
@@ -184,7 +195,10 @@ class PathPlanning:
         except ManipulatorError as error:
             executor.refuse(path.stamp, str(error))
             return
-        if isinstance(outcome, JointTrajectory):
+        if isinstance(outcome, TrajectoryGoal):
+            self._newest = outcome
+            executor.brake()
+        elif isinstance(outcome, JointTrajectory):
             executor.begin(outcome, path.stamp)
         elif isinstance(outcome, Pose):
             executor.pursue(Goal(outcome, path.stamp))

@@ -8,6 +8,7 @@ import numpy as np
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput, Refused
 from manipulator.frames import Frames
+from manipulator.planning.joint_move import refuse_rule
 from manipulator.planning.joint_points import check_names
 from manipulator.teleop.arbiter import Arbiter
 from manipulator.teleop.jog_modes import Feedback, JogMode
@@ -54,6 +55,7 @@ class Teleop:
     def receive_joints(self, source: str, named: Mapping[str, float], now: float) -> None:
         """Rates of some joints by name (rad/s or m/s); Refused or InvalidInput with the reason."""
         names = self._supervisor.machine.kinematics.joint_names
+        refuse_rule(len(names))
         check_names(tuple(named), names)
         rates = np.array([named.get(name, 0.0) for name in names])
         if not np.isfinite(rates).all():

@@ -44,11 +44,6 @@ class TrajectoryTolerances:
         time = goal_time if goal_time > 0.0 else DEFAULT_GOAL_TIME
         return cls(names, unit, on_path, at_goal, time)
 
-    @classmethod
-    def none(cls, machine: Machine) -> 'TrajectoryTolerances':
-        """None but the machine's own."""
-        return cls.of(machine, (), (), 0.0)
-
     def path_violation(self, desired: Array, actual: Array) -> str:
         """The joint that is farthest beyond its tolerance on the path, in words; '' where none."""
         return self._violation(self.path, desired, actual)

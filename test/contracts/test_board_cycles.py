@@ -65,6 +65,23 @@ def test_a_cycle_is_solved_by_the_board_itself(make_driver):
     assert np.abs(np.diff(counts, axis=0)).max() < 60
 
 
+def test_a_cycle_turns_about_all_axes_as_the_inverse_kinematics_say(make_driver):
+    driver, axes = make_driver(), (0.003, -0.002, 0.002, 0.04, -0.05, 0.06)
+    driver.arm(HOME)
+    phases = [0.3 * k for k in range(6)]
+    for k, (amplitude, phase) in enumerate(zip(axes, phases, strict=True)):
+        assert driver.ask(CycleAxis(k, amplitude, 500, phase)) is Result.OK
+    assert driver.ask(Play(Program.CYCLE, True)) is Result.OK
+    driver.run(6.0)
+    modes, counts = driver.record(2.0)
+    assert set(modes) == {Mode.PLAYING}
+    angle = np.arange(100) * 0.02 * math.pi
+    wanted = np.array([solve(np.array(axes) * np.sin(a + np.array(phases))) for a in angle])
+    shifts = [np.abs(np.roll(wanted, k, axis=0) - counts).max() for k in range(100)]
+    assert min(shifts) <= 1.0
+    assert driver.ask(TURN) is Result.NO_PROGRAM  # not while it is played
+
+
 def test_a_cycle_once_is_one_period_and_home_again(make_driver):
     driver = make_driver()
     driver.arm(HOME)

@@ -10,6 +10,7 @@ from bridge import cobs
 from bridge.frames import checksum, encode
 from bridge.framing import FrameReader
 from bridge.protocol import (
+    MAX_JOINTS,
     NO_JOINT,
     Ack,
     Arm,
@@ -162,13 +163,13 @@ def test_unknown_and_malformed_frames_are_refused_and_counted(armed):
 @pytest.mark.parametrize(
     ('code', 'lengths'),
     [
-        (0x02, (0, 1, 11, 18)),  # ARM: two bytes a joint, of eight at most
+        (0x02, (0, 1, 11, 2 * MAX_JOINTS + 2)),  # ARM: two bytes a joint
         (0x03, (1,)),
         (0x04, (1, 2)),
         (0x05, (1,)),
         (0x06, (10, 12)),
         (0x07, (3, 5)),
-        (0x08, (2, 3, 20)),
+        (0x08, (2, 3, 2 * MAX_JOINTS + 4)),
         (0x09, (1, 3)),
         (0x0A, (1, 3)),
         (0x0B, (1,)),

@@ -51,6 +51,7 @@ CASES = [
     Case(TILTED_CRANKS, hexapod, sample),
     Case(FLAT_CRANKS, hexapod, sample),
     Case(RAILS, hexapod, sample),
+    Case('linear_rails.yaml', hexapod, sample),
     Case(HANGING_LEGS, hexapod, sample),
     Case(SCREW_LEGS, hexapod, sample),
     Case('stewart_6_6.yaml', hexapod, sample),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hexapod_control.geometry import HexagonConfig, JointsConfig
+from hexapod_control.rotary import RotaryHexapod
 from manipulator.config import build
 from manipulator.errors import ConfigError
 
@@ -116,3 +117,15 @@ def test_lengths_are_one_number_or_six(robocake_content):
     robocake_content['geometry']['rod_length_mm'] = [58.0] * 5
     with pytest.raises(ConfigError, match='5 entries, needs 6'):
         build(HexagonConfig, robocake_content['geometry'])
+
+
+def test_a_hexagon_that_hangs_is_upside_down_with_the_same_crank_angles(robocake_content):
+    upside_down = np.diag([1.0, 1.0, -1.0])
+    above = build(HexagonConfig, robocake_content['geometry']).geometry()
+    below = build(
+        HexagonConfig, {**robocake_content['geometry'], 'home_height_mm': -41.19}
+    ).geometry()
+    for name in ('crank_centres', 'tangents', 'ups', 'platform_points'):
+        np.testing.assert_allclose(getattr(below, name), getattr(above, name) @ upside_down)
+    machine = RotaryHexapod(below, 0.07, 0.3, np.radians(120.0))
+    np.testing.assert_allclose(np.degrees(machine.inverse(machine.home)), 120.0045, atol=5e-5)

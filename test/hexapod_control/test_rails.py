@@ -9,6 +9,7 @@ from hexapod_control import load
 from hexapod_control.rails import RailPlatform, RailsConfig
 from hexapod_control.workspace import sample
 from hexarm.machine_check import problems_of
+from hexarm.machines import load as shipped_machine
 from leg_kinds import RAILS
 from manipulator.analysis.nearest import nearest_reachable
 from manipulator.config import build, parse_yaml
@@ -217,3 +218,18 @@ def test_no_admitted_neighbour_of_the_nearest_reachable_pose_is_nearer(rails):
     assert inside.any()
     distances = np.linalg.norm(near[inside].twist_to(target) * scale, axis=1)
     assert distances.min() > found.distance - 1e-4 * length
+
+
+def test_the_shipped_machine_stands_as_published_with_its_carriages_in_mid_travel():
+    """By the published constants: pairs at 0°, 120°, 240° below pairs at 60°, 180°, 300°."""
+    kinematics = shipped_machine('linear_rails').kinematics
+    g, home = kinematics.geometry, kinematics.home
+    radii = [np.hypot(60.968, 16.0), np.hypot(36.742, 7.5)]
+    for points, radius in zip((g.rail_points, g.platform_points), radii, strict=True):
+        np.testing.assert_allclose(1e3 * np.hypot(*points[:, :2].T), radius, atol=1e-3)
+    lower = kinematics.base_points(kinematics.inverse(home))
+    upper = home.transform(g.platform_points)
+    np.testing.assert_allclose(1e3 * lower[:, 2], 78.383 + 50.0, atol=1e-3)
+    np.testing.assert_allclose(1e3 * np.linalg.norm(upper - lower, axis=1), 150.362, atol=1e-6)
+    nearest = np.linalg.norm((upper[:, None] - lower)[..., :2], axis=-1).argmin(axis=1)
+    np.testing.assert_array_equal(nearest, np.arange(6))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from arm_control.urdf_chain import arm_of
-from arm_control.urdf_file import read_urdf
+from arm_control.urdf_file import read_urdf, with_right_angles
 from hexarm import machines
 from hexarm.arm_import import Wishes, machine_text
 from hexarm.cli.main import main
@@ -346,13 +346,59 @@ def test_an_arm_ends_at_what_carries_its_fingers():
     assert arm_of(read_urdf(single), tip='link_6').tip == 'link_6'
 
 
+def test_right_angles_that_the_file_rounds_are_exact_on_request(tmp_path, capsys):
+    rows = [
+        ((0.0, 0.0, 0.3), (0.0, 0.0, 0.0)),
+        ((0.05, 0.0, 0.0), (1.5708, 0.0, 0.0)),
+        ((0.4, 0.0, 0.0), (6.2832, 0.0, 0.0)),
+        ((0.02, 0.0, 0.0), (-1.5708, 0.0, 0.0)),
+        ((0.0, 0.0, 0.35), (1.5708, 0.0, 0.0)),
+        ((0.0, 0.0, 0.0), (-1.5708, 0.0, 0.0)),
+    ]
+    links = [f'l{i}' for i in range(7)]
+    pairs = zip(SIX, links, links[1:], rows, strict=False)
+    joints = [joint(name, a, b, xyz=xyz, rpy=rpy) for name, a, b, (xyz, rpy) in pairs]
+    text = robot(links, joints)
+    source = saved(tmp_path, text, 'a.urdf')
+    files = {option: str(tmp_path / f'{len(option)}.yaml') for option in ('', '--right-angles')}
+    for option, file in files.items():
+        assert main(['import', source, '--output', file, *option.split()]) == 0
+        assert ('with --right-angles' in capsys.readouterr().out) == (option == '')
+        assert machines.load(file).kinematics.is_explicit == (option != '')
+    angles = np.array([0.3, -0.4, 0.2, 0.5, -0.6, 0.7])
+    for rounded, right in (('1.5708', np.pi / 2), ('6.2832', 2 * np.pi)):
+        text = text.replace(rounded, repr(right))
+    expected = tool_of(text, 'l0', 'l6', dict(zip(SIX, angles, strict=True)))
+    pose = machines.load(files['--right-angles']).kinematics.forward(angles).pose
+    assert np.abs(pose.position - expected[:3, 3]).max() < 1e-12
+
+
+def test_angles_that_are_meant_are_kept():
+    for angles in ((1.57, 0.3, 0.0), (1.57, 0.0, 0.0), (0.0, 0.0, 2e-4)):
+        text = plain().replace('rpy="0.0 0.0 0.0"', f'rpy="{numbers(angles)}"')
+        kept = with_right_angles(read_urdf(text)).joints[0].origin.rotation
+        assert np.abs(kept - from_rpy(angles)).max() < 1e-12
+
+
 def test_command_writes_a_file_that_is_good_and_never_over_another(tmp_path, capsys):
     source, output = saved(tmp_path, weighed(), 'arm.urdf'), tmp_path / 'mine.yaml'
-    words = ['import', source, '--tip', 'tool', '--output', str(output), '--json']
+    words = [
+        'import',
+        source,
+        '--tip',
+        'tool',
+        '--prefix',
+        'l/',
+        '--output',
+        str(output),
+        '--json',
+    ]
     assert main(words) == 0
     answer = json.loads(capsys.readouterr().out)
     assert answer['tip'] == 'tool'
     assert any('acceleration' in line for line in answer['assumed'])
+    assert machines.load(str(output)).kinematics.joint_names == tuple(answer['joints'])
+    assert answer['joints'][0] == 'l/joint_0'
     assert main(['check', str(output)]) == 0
     capsys.readouterr()
     before = output.read_text()

@@ -85,6 +85,22 @@ def test_a_smooth_stream_is_followed_as_smoothly(
     assert commanded.distance(lag) < 0.06 * amplitude
 
 
+@pytest.mark.parametrize('frequency', [0.3, 1.0])
+def test_a_stream_without_stamps_is_followed_as_smoothly_however_late_its_goals_come(
+    world, frequency
+):
+    commanded, rng = Commanded(world, 0, 0.005, frequency), np.random.default_rng(1)
+    link = world.links['goals']
+    for k in range(156):
+        link.delay = 0.005 * rng.uniform()
+        now = world.now - commanded.begin
+        link.send(0.0, commanded.home.moved(commanded.sine(now) * np.eye(6)[0]))
+        world.run(commanded.begin + (k + 1) / 60 - world.now)
+    ideal = 0.005 * (2 * np.pi * frequency) ** 2
+    assert np.abs(commanded.accelerations).max() < SMOOTH * ideal
+    assert commanded.distance(0.04) < 0.06 * 0.005
+
+
 @pytest.mark.parametrize('name', ['robocake', 'arm_6r'])
 def test_a_stream_that_ends_in_motion_is_reached_within_the_limits(make_world, name):
     world = make_world(name)

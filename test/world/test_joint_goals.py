@@ -8,7 +8,7 @@ import pytest
 from manipulator.planning.check import TOLERANCE
 from manipulator.planning.goal import Goal, Motion
 
-DEAD_BAND = 4e-3
+DEAD_BAND = 0.008
 """rad or m by which the dead bands of the servos may miss a goal."""
 
 
@@ -114,3 +114,14 @@ def test_a_goal_of_joints_in_motion_brakes_first_and_keeps_the_end_of_the_other(
     assert arm.end_of(arm.send_goal_joints(joint_6=0.3)).result == 'reached'
     arm.run(0.5)
     assert arm.joints[[0, 5]] == pytest.approx([0.5, 0.3], abs=DEAD_BAND)
+
+
+def test_joints_that_a_rule_chooses_are_refused_one_by_one(make_world):
+    stack = make_world('stack_6_6')
+    since, name = stack.now, joint(stack, 1)
+    refused = stack.end_of(stack.send_goal_joints(**{name: stack.joints[0] + 0.001}))
+    assert 'joints cannot be commanded one by one' in refused.reason
+    stack.links['joint_rates'].send(stack.user.stamp, 'cmd_vel', {name: 0.001})
+    stack.run(0.1)
+    assert 'joints cannot be commanded' in stack.controller.on_joint_rates.refusals[-1][1]
+    assert stack.moved(since) <= 1.0

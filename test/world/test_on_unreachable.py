@@ -9,6 +9,7 @@ import pytest
 from manipulator.analysis.nearest import nearest_reachable
 from manipulator.analysis.readings import distance
 from manipulator.planning.goal import OnUnreachable
+from sampling import enough
 from world.controller import DT
 
 RADIUS = {'robocake': 0.03, 'stewart_6_6': 0.2, 'arm_6r': 0.5}
@@ -50,7 +51,7 @@ def test_a_stream_out_of_reach_is_followed_along_the_limits(make_nearest, name):
     world = make_nearest(name)
     machine, motion = world.machine, world.machine.motion
     poses, since = setpoints_of(world), len(world.controller.statuses)
-    for goal in circle(machine.kinematics.home, RADIUS[name], 2.5):
+    for goal in circle(machine.kinematics.home, RADIUS[name], 2.5, enough(90, 150)):
         stamp = world.send_goal(goal)
         world.run(1 / 60)
     results = {status.result for _, status in world.controller.statuses[since:]}
@@ -87,3 +88,30 @@ def test_a_goal_that_is_absurd_is_refused_all_the_same(make_nearest):
     status = world.go_to(world.machine.kinematics.home.moved([1e6, 0, 0, 0, 0, 0]))
     assert status.result == 'refused'
     assert 'm from home, needs at most' in status.reason
+
+
+FAR_APART = {
+    'robocake': (
+        (0.072, 0.008, -0.059, -0.46, -0.23, 0.11),
+        (-0.081, -0.017, -0.013, 0.27, 0.1, 0.18),
+    ),
+    'stewart_6_6': (
+        (0.27, 0.03, -0.22, -0.46, -0.23, 0.11),
+        (-0.3, -0.06, -0.05, 0.27, 0.1, 0.18),
+    ),
+}
+
+
+@pytest.mark.parametrize('name', FAR_APART)
+def test_limits_that_bend_are_followed_where_the_line_to_the_nearest_pose_is_blocked(
+    make_nearest, name
+):
+    world = make_nearest(name)
+    machine = world.machine
+    for offset in FAR_APART[name]:
+        goal = machine.kinematics.home.moved(offset)
+        status = world.go_to(goal)
+        assert status.result == 'reached'
+    at = world.controller.supervisor.executor.state.pose
+    least = nearest_reachable(machine, goal).distance
+    assert float(distance(machine, at, goal)) <= (1.0 + FARTHER[name]) * least

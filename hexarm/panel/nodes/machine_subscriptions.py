@@ -10,6 +10,7 @@ from geometry_msgs.msg import PointStamped, PoseStamped
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
+from std_msgs.msg import String
 
 from hexarm.panel.gripper import GripperJoint
 from hexarm.panel.view import NodeReport, Stance, View
@@ -18,6 +19,7 @@ from manipulator.frames import Frames
 from manipulator.machine import Machine
 from manipulator.nodes.messages import PLATFORM_FRAME, joints_of, point_of, pose_of
 from manipulator.nodes.qos import COMMAND, LATCHED, MEASUREMENT
+from manipulator.saved_poses import SavedPoses
 from manipulator.states import UNKNOWN
 
 STREAMS = {
@@ -65,11 +67,13 @@ class MachineSubscriptions:
         self._subscriptions: list[Any] = []
         self.machine_state = DiagnosticStatus(message=UNKNOWN)
         self.motion_status = DiagnosticStatus()
+        self._saved = SavedPoses.none_of(machine)
         self._reports: dict[str, tuple[DiagnosticStatus, float]] = {}
         subscribe = node.create_subscription
         subscribe(PointStamped, 'pivot', self._on_pivot, COMMAND)
         subscribe(DiagnosticStatus, 'machine_state', self._on_machine_state, LATCHED)
         subscribe(DiagnosticStatus, 'motion_status', self._on_motion_status, LATCHED)
+        subscribe(String, 'saved_poses', self._on_saved_poses, LATCHED)
         subscribe(DiagnosticArray, '/diagnostics', self._on_diagnostics, 10)
 
     def watch(self, is_watched: bool) -> None:
@@ -97,6 +101,7 @@ class MachineSubscriptions:
             mode=_value(self.motion_status, 'mode'),
             motion=self.motion_status.message,
             nodes=self._node_reports(),
+            saved=self._saved.poses,
         )
 
     def _stance(self, pose_topic: str, joint_topic: str) -> Stance | None:
@@ -136,6 +141,12 @@ class MachineSubscriptions:
 
     def _on_motion_status(self, message: DiagnosticStatus) -> None:
         self.motion_status = message
+
+    def _on_saved_poses(self, message: String) -> None:
+        try:
+            self._saved = self._saved.read(message.data)
+        except ManipulatorError as error:
+            self._node.get_logger().warning(f'saved_poses: {error}', throttle_duration_sec=1.0)
 
     def _on_pivot(self, message: PointStamped) -> None:
         try:

@@ -8,101 +8,107 @@ from typing import Any
 from geometry_msgs.msg import PoseStamped
 from rclpy.node import Node
 from rclpy.task import Future
-from std_msgs.msg import Bool, Float64
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool, Float64, String
 from std_srvs.srv import SetBool, Trigger
 
-from hexarm.panel.controls import Requests
+from hexarm.panel.page_requests import Request
 from manipulator.nodes.messages import pose_message
-from manipulator.nodes.qos import COMMAND, EVERY_WORD
+from manipulator.nodes.qos import COMMAND, EVERY_WORD, LATCHED
 from manipulator.pose import Pose
 
-TRIGGERS = (
-    'serial_bridge/stop',
-    'serial_bridge/clear_fault',
-    'trajectory/home',
-    'trajectory/stop',
-    'trajectory/start_cycle',
-)
+STOP = 'serial_bridge/stop'
+TRIGGERS = {
+    'clear': 'serial_bridge/clear_fault',
+    'home': 'trajectory/home',
+    'park': 'trajectory/park',
+    'brake': 'trajectory/stop',
+    'cycle': 'trajectory/start_cycle',
+}
+SWITCHES = {
+    'enable': ('serial_bridge/enable', True),
+    'disable': ('serial_bridge/enable', False),
+    'pause': ('trajectory/pause', True),
+    'resume': ('trajectory/pause', False),
+}
+"""Services by request."""
 ANSWERED_WITHIN = 4.0
-SWITCHES = ('serial_bridge/enable', 'trajectory/pause')
 
 
 class RequestClient:
-    """Requests come from the web server's threads and are put to the graph in the node's own.
+    """Requests come from the web server's thread and are put to the graph in the node's own.
 
     Only the emergency stop does not wait for it: its message goes out at once.
     """
 
-    def __init__(
-        self,
-        node: Node,
-        on_stop: Callable[[], None],
-        choose_mode: Callable[[str], None],
-        grip: Callable[[float], None],
-    ) -> None:
-        self._node = node
-        self._on_stop = on_stop
-        self._choose_mode = choose_mode
-        self._grip = grip
-        self._pending: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+    def __init__(self, node: Node, on_stop: Callable[[], None]) -> None:
+        self._node, self._on_stop = node, on_stop
+        self._pending: queue.SimpleQueue[Request] = queue.SimpleQueue()
         self._goal: Pose | None = None
         self._waiting: dict[Future, tuple[str, float]] = {}
         self.notice = ''
-        self._goals = node.create_publisher(PoseStamped, 'goal_pose', COMMAND)
-        self._stops = node.create_publisher(Bool, 'emergency_stop', EVERY_WORD)
-        self._speeds = node.create_publisher(Float64, 'speed_override', COMMAND)
-        self._clients = {name: node.create_client(Trigger, name) for name in TRIGGERS}
-        self._clients |= {name: node.create_client(SetBool, name) for name in SWITCHES}
+        publish = node.create_publisher
+        self._goals = publish(PoseStamped, 'goal_pose', COMMAND)
+        self._joints = publish(JointState, 'goal_joints', COMMAND)
+        self._stops = publish(Bool, 'emergency_stop', EVERY_WORD)
+        self._speeds = publish(Float64, 'speed_override', COMMAND)
+        self._names = {
+            'save': publish(String, 'save_pose', EVERY_WORD),
+            'delete': publish(String, 'delete_pose', EVERY_WORD),
+        }
+        node.create_subscription(String, 'saved_pose_status', self._on_saved, LATCHED)
+        self._clients = {
+            name: node.create_client(Trigger, name) for name in (STOP, *TRIGGERS.values())
+        }
+        self._clients |= {name: node.create_client(SetBool, name) for name, _ in SWITCHES.values()}
 
-    @property
-    def requests(self) -> Requests:
-        """For the page's buttons; safe from any thread."""
-        return Requests(
-            emergency_stop=self._emergency_stop,
-            clear_fault=self._later('serial_bridge/clear_fault'),
-            enable=lambda on: self._pending.put(lambda: self._switch('serial_bridge/enable', on)),
-            home=self._later('trajectory/home'),
-            start_cycle=self._later('trajectory/start_cycle'),
-            pause=lambda on: self._pending.put(lambda: self._switch('trajectory/pause', on)),
-            brake=self._later('trajectory/stop'),
-            set_speed=lambda share: self._pending.put(
-                lambda: self._speeds.publish(Float64(data=share))
-            ),
-            choose_mode=lambda mode: self._pending.put(lambda: self._choose_mode(mode)),
-            grip=lambda opening: self._pending.put(lambda: self._grip(opening)),
-        )
+    def take(self, request: Request) -> None:
+        """Takes a request, from any thread; returns at once."""
+        if request.do == 'stop':
+            self._stops.publish(Bool(data=True))
+            self._goal = None
+            self._on_stop()
+        self._pending.put(request)
+
+    def new(self) -> list[Request]:
+        """The requests since the last call; those to the graph alone are sent."""
+        found = []
+        while True:
+            try:
+                request = self._pending.get_nowait()
+            except queue.Empty:
+                break
+            found.append(request)
+            self._put(request)
+        self._give_up()
+        return found
+
+    def _put(self, request: Request) -> None:
+        if request.do == 'stop':
+            self._call(STOP, Trigger.Request())
+        elif request.do in TRIGGERS:
+            self._call(TRIGGERS[request.do], Trigger.Request())
+        elif request.do in SWITCHES:
+            name, is_on = SWITCHES[request.do]
+            self._call(name, SetBool.Request(data=is_on))
+        elif request.do in self._names:
+            self._names[request.do].publish(String(data=request.name))
+        elif request.do == 'speed':
+            self._speeds.publish(Float64(data=min(max(request.value, 0.0), 1.0)))
+        elif request.do == 'joint':
+            message = JointState(name=[request.name], position=[request.value])
+            message.header.stamp = self._node.get_clock().now().to_msg()
+            self._joints.publish(message)
 
     def request_goal(self, pose: Pose) -> None:
         """The newest goal replaces one that is not yet sent."""
         self._goal = pose
 
-    def put(self) -> None:
-        """Sends all requests since the last call to the graph."""
-        while True:
-            try:
-                self._pending.get_nowait()()
-            except queue.Empty:
-                break
-        self._give_up()
-
-    def send_goal(self) -> bool:
-        """The newest goal, if there is one; whether it was sent."""
+    def send_goal(self) -> None:
+        """The newest goal, if there is one."""
         goal, self._goal = self._goal, None
         if goal is not None:
             self._goals.publish(pose_message(goal, self._node.get_clock().now().to_msg()))
-        return goal is not None
-
-    def _emergency_stop(self) -> None:
-        self._stops.publish(Bool(data=True))
-        self._goal = None
-        self._on_stop()
-        self._pending.put(lambda: self._call('serial_bridge/stop', Trigger.Request()))
-
-    def _later(self, name: str) -> Callable[[], None]:
-        return lambda: self._pending.put(lambda: self._call(name, Trigger.Request()))
-
-    def _switch(self, name: str, is_on: bool) -> None:
-        self._call(name, SetBool.Request(data=is_on))
 
     def _call(self, name: str, request: Any) -> None:
         client = self._clients[name]
@@ -117,6 +123,9 @@ class RequestClient:
         name, _ = self._waiting.pop(future)
         answer = future.result()
         self.notice = '' if answer.success else f'{name}: {answer.message}'
+
+    def _on_saved(self, message: String) -> None:
+        self.notice = f'saved poses: {message.data}'
 
     def _give_up(self) -> None:
         """Notes services that do not answer: a node that was killed seems ready for 20 s."""

@@ -1,7 +1,8 @@
-"""viser's server with two things added: who may connect, and the joystick's own connection.
+"""viser's server with three things added: who may connect, our own page, and its connections.
 
-viser admits any site that a browser shows, and its buttons report presses but not whose hand is
-still there. Both are added where it opens its one port, so that a single address serves all.
+viser draws the machine; its own controls suit neither a phone nor a hand that must be there. So
+the page is ours, with viser's canvas in it. It is added where viser opens its one port: a single
+address serves all.
 
 Who may open the page's connection: the page itself, no other page that a browser shows.
 
@@ -10,7 +11,8 @@ a connection must come from a page of the same address (Origin and Host agree), 
 must be one that no foreign name server can answer for: a number, localhost, or this computer's
 name. Programs that are no browser send no Origin; they could move the machine over ROS as well.
 
-The joystick's connections: one for each open page, beats in, answers out.
+The page's connections: the joystick's, beats in, answers out; the controls', questions and
+requests in, states out.
 
 Runs in the web server's thread; the node calls from its own.
 """
@@ -24,17 +26,21 @@ import itertools
 import socket
 import threading
 import time
-from collections.abc import Awaitable, Callable, Collection, Iterator
+from collections.abc import Awaitable, Callable, Collection, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 import viser
 import websockets.asyncio.server as websockets_server
 from websockets.asyncio.server import ServerConnection
+from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
+from hexarm.panel import page_requests
 from hexarm.panel.joystick import Joystick, answer, parsed
+from hexarm.panel.page_requests import Request as PageRequest
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
 from manipulator.formatting import shown
@@ -110,16 +116,58 @@ class JoystickSocket:
                       reason or (self._may_move() if has_it else ''))  # fmt: skip
 
 
-JOYSTICK_PATH = '/joystick'
+class ControlsSocket:
+    """The controls of all pages: each question is answered with the newest texts.
+
+    `take` is called with each request, in the server's thread: it must return at once.
+    """
+
+    def __init__(self, machine: str, take: Callable[[PageRequest], None]) -> None:
+        """machine: the text that a page receives first."""
+        self._machine, self._take = machine, take
+        self.texts = {'state': '', 'nodes': ''}
+        self.pages = 0
+
+    async def serve(self, connection: ServerConnection) -> None:
+        """One page, from its first message until it is gone."""
+        self.pages += 1
+        try:
+            await connection.send(self._machine)
+            async for text in connection:
+                request = page_requests.parsed(text)
+                if isinstance(request, PageRequest):
+                    self._take(request)
+                elif self.texts[request]:
+                    await connection.send(self.texts[request])
+        except InvalidInput as error:
+            await connection.close(1008, str(error)[:100])
+        except ConnectionClosed:
+            pass
+        finally:
+            self.pages -= 1
+
+
+JOYSTICK_PATH, CONTROLS_PATH = '/joystick', '/controls'
 
 Handler = Callable[[ServerConnection], Awaitable[None]]
 
+PAGE = Path(__file__).parents[1] / 'page'
+FILES = {
+    '/': 'index.html',
+    **{f'/{name}': name for name in ('panel.css', 'panel.js', 'plots.js', 'joystick.html')},
+}
+"""The page's files by path; viser serves its own, /index.html."""
+KINDS = {'.html': 'text/html', '.css': 'text/css', '.js': 'text/javascript'}
 
-def start_server(host: str, port: int, label: str, serve_joystick: Handler) -> Any:
-    """A running viser server on the first free port from `port`; Refused with the reason."""
+
+def start_server(host: str, port: int, label: str, handlers: Mapping[str, Handler]) -> Any:
+    """A running viser server on the first free port from `port`; Refused with the reason.
+
+    handlers: of connections, by path.
+    """
     _check_host(host)
     quiet = contextlib.redirect_stdout(io.StringIO())  # the node logs its address itself
-    with _extended_serve(serve_joystick) as opened, quiet:
+    with _extended_serve(handlers) as opened, quiet:
         server = viser.ViserServer(host, port, label, verbose=False)
     if not opened:
         server.stop()
@@ -156,7 +204,7 @@ def _check_host(host: str) -> None:
 
 
 @contextlib.contextmanager
-def _extended_serve(serve_joystick: Handler) -> Iterator[list[int]]:
+def _extended_serve(handlers: Mapping[str, Handler]) -> Iterator[list[int]]:
     """While viser opens its port; yields a list that is not empty once it has done so."""
     opened: list[int] = []
     original = websockets_server.serve
@@ -167,8 +215,8 @@ def _extended_serve(serve_joystick: Handler) -> Iterator[list[int]]:
         options['process_request'] = _checked(options.get('process_request'))
 
         async def handle(connection: ServerConnection) -> None:
-            is_joystick = connection.request.path == JOYSTICK_PATH
-            await (serve_joystick if is_joystick else handler)(connection)
+            path = '' if connection.request is None else connection.request.path
+            await handlers.get(path, handler)(connection)
 
         return original(handle, host, port, **options)
 
@@ -188,10 +236,26 @@ def _checked(serve_file: Any) -> Callable[[ServerConnection, Request], Response 
         reason = refusal(headers.get('Host', ''), headers.get('Origin'), own_names)
         if reason:
             return connection.respond(http.HTTPStatus.FORBIDDEN, f'{reason}\n')
+        path = request.path.partition('?')[0]
+        if path in FILES and headers.get('Upgrade') != 'websocket':
+            return _file(FILES[path])
         found: Response | None = None if serve_file is None else serve_file(connection, request)
         return found
 
     return process_request
+
+
+def _file(name: str) -> Response:
+    """A file of the page, never kept by a browser: the next version may be another."""
+    content = (PAGE / name).read_bytes()
+    headers = Headers(
+        {
+            'Content-Type': f'{KINDS[Path(name).suffix]}; charset=utf-8',
+            'Content-Length': str(len(content)),
+            'Cache-Control': 'no-store',
+        }
+    )
+    return Response(http.HTTPStatus.OK, 'OK', headers, content)
 
 
 def _refuse_to_share(*arguments: object, **options: object) -> None:

@@ -126,6 +126,25 @@ def test_nothing_is_sent_before_the_rest_is_over_and_a_state_right_then():
     assert board.rest == pytest.approx(0.3)
 
 
+@pytest.mark.parametrize(('millivolts', 'is_on'), [(6399, False), (6400, True)])
+def test_a_battery_is_low_below_its_minimum(millivolts, is_on):
+    board = Board(settings(minimum_battery_mv=6400), battery_mv=millivolts)
+    board.step(0.05)
+    board.feed(encode(Arm((3000,) * 6), 1))
+    board.step(0.3)
+    assert (board.pulses[0] is not None) == is_on
+
+
+def test_its_uptime_has_more_than_sixteen_bits():
+    board = Board(settings())
+    board.step(200.0)
+    board.take_output()
+    board.step(0.5)
+    messages = [frame.message for frame in FrameReader().feed(board.take_output())]
+    uptimes = [m.uptime_ms for m in messages if isinstance(m, Hello)]
+    assert uptimes[-1] == pytest.approx(200_500, abs=260)
+
+
 def test_what_nobody_takes_is_dropped():
     board = Board(settings())
     board.step(60.0)

@@ -22,9 +22,11 @@ from manipulator.nodes.qos import COMMAND
 
 pytestmark = pytest.mark.graph
 
-NAMES = load('arm_6r_stepper').kinematics.joint_names
+KINEMATICS = load('arm_6r_stepper').kinematics
+NAMES = KINEMATICS.joint_names
+HOME = KINEMATICS.inverse(KINEMATICS.home).tolist()
 NEAR = 2e-3
-SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+EXECUTING, SUCCEEDED, CANCELED, ABORTED = 2, 4, 5, 6
 
 
 @pytest.fixture(scope='module', autouse=True)
@@ -45,9 +47,10 @@ def duration(seconds):
     return Duration(sec=int(seconds), nanosec=int(seconds % 1 * 1e9))
 
 
-def trajectory(*points, names=('joint_1', 'joint_6')):
-    """Points are (time, positions), with velocities of zero."""
+def trajectory(*points, names=NAMES):
+    """Points are (time, positions of joints 1 and 6), with velocities of zero."""
     still = [0.0] * len(names)
+    points = [(time, [first, *HOME[1:5], last]) for time, (first, last) in points]
     return JointTrajectory(
         joint_names=list(names),
         points=[
@@ -207,7 +210,9 @@ def test_what_ends_an_action_is_told_by_its_code(arm, actions):
     code = actions.kind.Result
 
     def go():
-        unknown = actions.result(actions.send(trajectory((1.0, [0.1]), names=('elbow',))))
+        unknown = actions.result(
+            actions.send(trajectory((1.0, [0.1, 0.1]), names=('elbow', *NAMES[1:])))
+        )
         assert (unknown[0], unknown[1].error_code) == (ABORTED, code.INVALID_JOINTS)
         assert "joint 'elbow' is unknown" in unknown[1].error_string
         fast = actions.result(actions.send(trajectory((0.1, [1.0, 1.0]))))
@@ -218,11 +223,20 @@ def test_what_ends_an_action_is_told_by_its_code(arm, actions):
         assert (left[0], left[1].error_code) == (ABORTED, code.PATH_TOLERANCE_VIOLATED)
         assert 'joint_1 is' in left[1].error_string
         first = actions.send(trajectory((4.0, [0.0, 0.0])))
+        bad = actions.result(actions.send(trajectory((1.0, [0.0, np.nan]))))
+        assert (bad[0], bad[1].error_code) == (ABORTED, code.INVALID_GOAL)
+        assert 'positions of joint_6 is nan' in bad[1].error_string
+        assert first.status == EXECUTING
         second = actions.send(trajectory((4.0, [0.1, 0.0])))
         replaced = actions.result(first)
         assert (replaced[0], replaced[1].error_code) == (ABORTED, code.INVALID_GOAL)
         assert replaced[1].error_string == 'replaced by a newer trajectory'
         assert actions.result(second)[0] == SUCCEEDED
+        third = actions.send(trajectory((4.0, [0.5, 0.0])))
+        arm.wait_while_driven('motion', lambda: arm.motion('mode') == 'path')
+        arm.home()
+        replaced = actions.result(third)
+        assert (replaced[0], replaced[1].error_code) == (ABORTED, code.INVALID_GOAL)
 
     arm.persist(go)
 
@@ -235,7 +249,7 @@ def test_a_program_and_the_command_line_move_and_jog_joints(arm, capsys):
             robot.jog_joints(joint_6=-0.3, seconds=0.5)
             assert robot.joints['joint_6'] < 0.15
             assert robot.joints['joint_1'] == pytest.approx(-0.1, abs=NEAR)
-            with pytest.raises(Refused, match=r'joint 2: joint angle .* outside'):
+            with pytest.raises(Refused, match='joint_2: joint angle 3 rad outside'):
                 robot.move_joints(joint_2=3.0)
         assert main(['joints', 'arm', '--set', 'joint_6=10', '--units', 'mm', '--json']) == 0
         measured = json.loads(capsys.readouterr().out)['joints']

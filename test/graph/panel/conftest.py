@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from geometry_msgs.msg import PoseStamped, TwistStamped
+from playwright.sync_api import Error
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
@@ -44,7 +45,7 @@ def with_cycle():
 def open_page(browser):
     """Opens the page of a panel, with few pixels where nobody looks at them."""
 
-    def opened(panel, size=(760, 760), pixels=SMALL):
+    def opened(panel, size=(1000, 760), pixels=SMALL):
         view = {'width': size[0], 'height': size[1]}
         page = browser.new_context(viewport=view, has_touch=True).new_page()
         page.set_default_timeout(PATIENCE)
@@ -76,31 +77,37 @@ class PanelPage:
     @property
     def said(self):
         """The line below the joystick."""
-        return self.page.frame_locator('iframe').locator('#said').inner_text()
+        return self.page.frame_locator('#joystick').locator('#said').inner_text()
 
     def says(self, words):
         """Waits until the joystick says so."""
-        self.page.frame_locator('iframe').get_by_text(words).wait_for()
+        self.page.frame_locator('#joystick').get_by_text(words).wait_for()
 
-    def values(self):
-        """What stands in the fields beside the sliders: speed, then x, y, z …"""
-        return [field.input_value() for field in self.page.get_by_role('textbox').all()]
+    def field(self, label):
+        """The number beside the slider of this label."""
+        return self.page.get_by_role('spinbutton', name=label)
 
-    def type(self, field, text):
-        """Types into the field with this number."""
-        box = self.page.get_by_role('textbox').nth(field)
-        box.fill(text)
-        box.press('Enter')
+    def value(self, label):
+        """What stands in it."""
+        return float(self.field(label).input_value() or 'nan')
+
+    def type(self, label, text):
+        """Types into it, where the machine takes goals: else the page has it disabled."""
+        box = self.field(label)
+        with contextlib.suppress(Error):
+            box.fill(text, timeout=5000)
+            box.press('Enter')
 
     def centre(self, pad):
         """Of a pad of the joystick, on the page, and half of its width and height."""
-        box = self.page.frame_locator('iframe').locator(pad).bounding_box()
+        box = self.page.frame_locator('#joystick').locator(pad).bounding_box()
         right, up = box['width'] / 2, box['height'] / 2
         return np.array([box['x'] + right, box['y'] + up]), np.array([right, up])
 
     def hold(self, pad, right, up):
         """Presses the mouse on a pad of the joystick and pushes it."""
         self.page.bring_to_front()
+        self.page.locator('#panel').evaluate('panel => panel.scrollTo(0, 0)')
         centre, half = self.centre(pad)
         self.page.mouse.move(*centre)
         self.page.mouse.down()
@@ -108,7 +115,7 @@ class PanelPage:
 
     def press_stop(self):
         """Presses STOP and stays on it; when the browser had the press, in s (time.time)."""
-        button = self.page.get_by_role('button', name='STOP').bounding_box()
+        button = self.page.locator('#stop').bounding_box()
         self.page.mouse.move(button['x'] + button['width'] / 2, button['y'] + button['height'] / 2)
         self.page.mouse.down()
         return self.page.evaluate('pressedAt') / 1000
@@ -204,6 +211,7 @@ class Seen:
         end = time.monotonic() + 120.0
         while not is_so():
             assert time.monotonic() < end, self.client.summary
+            self.client.make_ready()
             ask()
             until = time.monotonic() + 5.0
             while not is_so() and time.monotonic() < until:

@@ -16,8 +16,7 @@ from patient_user import PatientUser
 pytestmark = pytest.mark.graph
 
 SHIPPED = Path(__file__).resolve().parents[3] / 'config' / 'arm_6r.yaml'
-Z, GRIPPER = 3, 7
-"""Fields of the page: speed, six of the goal, gripper."""
+Z, GRIPPER = 'z [mm]', 'gripper [%]'
 
 CIRCLE = {
     'cycle.amplitude': '[0.06, 0.06, 0.0, 0.0, 0.0, 0.0]',
@@ -79,7 +78,7 @@ def test_the_gripper_opens_by_its_slider_and_the_slider_follows_others(page, arm
     arm.asked_until(lambda: page.type(GRIPPER, '100'), lambda: opening(arm) > closed + 0.5)
     others = arm.client.node.create_publisher(Float64, 'gripper', LATCHED)
     others.publish(Float64(data=0.0))
-    arm.client.wait('the slider', lambda: page.values()[GRIPPER] == '0', 20.0)
+    arm.client.wait('the slider', lambda: page.value(GRIPPER) == 0, 20.0)
 
 
 def opening(arm):

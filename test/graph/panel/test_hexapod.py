@@ -21,8 +21,7 @@ from patient_user import PatientUser
 
 pytestmark = pytest.mark.graph
 
-X = 1
-"""Field of the page: speed, then x, y, z …"""
+X = 'x [mm]'
 ELSEWHERE = Pose.from_xyz_rpy((-0.002, 0.0, 0.045))
 PICTURED = Pose.from_xyz_rpy((0.006, -0.004, 0.0455), (0.05, 0.09, -0.03))
 
@@ -74,7 +73,7 @@ def machine(user, page, seen):
 
 
 def test_sliders_move_the_machine_and_follow_the_goals_of_others(page, machine):
-    thumb = page.page.get_by_role('slider').nth(X)
+    thumb = page.page.get_by_role('slider', name=X)
     thumb.focus()
 
     def press():
@@ -83,8 +82,26 @@ def test_sliders_move_the_machine_and_follow_the_goals_of_others(page, machine):
 
     machine.asked_until(press, lambda: machine.has_moved(0, 0.002))
     machine.asked_until(
-        lambda: machine.client.reach(ELSEWHERE), lambda: abs(float(page.values()[X]) + 2.0) < 0.2
+        lambda: machine.client.reach(ELSEWHERE), lambda: abs(page.value(X) + 2.0) < 0.2
     )
+
+
+def test_a_pose_is_saved_on_the_page_and_gone_to_again(page, machine):
+    page.page.get_by_role('tab', name='Poses').click()
+    page.page.get_by_placeholder('name').fill('left')
+    machine.asked_until(
+        lambda: page.page.get_by_role('button', name='Save pose').click(),
+        lambda: page.page.get_by_role('button', name='go to').count() > 0,
+    )
+    saved = machine.poses[-1].position
+    machine.asked_until(
+        lambda: machine.client.reach(ELSEWHERE), lambda: machine.has_moved(0, -0.001)
+    )
+    machine.asked_until(
+        page.page.get_by_role('button', name='go to').first.click,
+        lambda: np.abs(machine.poses[-1].position - saved).max() < 2e-4,
+    )
+    page.page.get_by_role('tab', name='Drive').click()
 
 
 def test_stop_stops_the_machine_and_nothing_resumes(page, machine):
@@ -103,11 +120,10 @@ def test_a_node_that_does_not_answer_is_named(page, machine, hexapod_graph):
 
 
 def test_other_sites_are_rejected(panel, page):
-    assert [opened(panel, path, 'http://elsewhere.example') for path in ('/', '/joystick')] == [
-        403,
-        403,
-    ]
-    assert opened(panel, '/joystick', panel_address(panel)) == 101
+    for path in ('/', '/index.html', '/joystick', '/controls'):
+        assert opened(panel, path, 'http://elsewhere.example') == 403
+    for path in ('/joystick', '/controls'):
+        assert opened(panel, path, panel_address(panel)) == 101
 
 
 def opened(panel, path, origin):
@@ -141,7 +157,6 @@ def test_the_page_is_worth_a_picture(open_page, page, panel, machine, tmp_path):
     machine.client.trigger('trajectory/stop')
     machine.client.wait('rest', lambda: machine.client.motion('mode') == 'hold')
     machine.client.reach(PICTURED)
-    close_notes(shown.page)
     machine.client.spin(2.0)
     shown.page.screenshot(path=path)
     colours = np.asarray(Image.open(path).convert('RGB'), dtype=int).reshape(-1, 3)
@@ -152,12 +167,6 @@ def test_the_page_is_worth_a_picture(open_page, page, panel, machine, tmp_path):
         scene |= {'an amber leg': (red - blue > 60) & (green > 120)}
     shares = {what: np.mean(which) for what, which in scene.items()}
     assert all(share > 0.001 for share in shares.values()), shares
-
-
-def close_notes(page):
-    """Browsers without a graphics card are told so by viser, in a corner of the page."""
-    for button in page.locator('.mantine-Notification-closeButton').all():
-        button.click()
 
 
 def test_release_stops(page, machine):

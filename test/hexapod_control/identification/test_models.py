@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
+from hexapod_control.geometry import HexagonConfig, JointsConfig
 from hexapod_control.identification.leg_model import Tolerances
 from hexapod_control.identification.models import geometry_lines, model_of
 from hexapod_control.load import KINDS
@@ -13,6 +14,7 @@ from hexapod_control.workspace import sample
 from hexarm.machines import load, read
 from leg_kinds import RAILS, TILTED_CRANKS
 from manipulator.analysis.device_frames import DeviceFrames
+from manipulator.config import build
 from manipulator.errors import InvalidInput, NoSolution
 from manipulator.pose import Pose
 
@@ -118,3 +120,14 @@ def test_joints_that_close_nowhere_are_refused(case):
 def test_a_machine_that_is_no_platform_is_refused_in_words():
     with pytest.raises(InvalidInput, match='no model to identify for a SerialArm'):
         model_of(load('arm_6r').kinematics, BUILT)
+
+
+def test_axes_are_written_where_the_planes_are_not_those_that_a_file_without_axes_has():
+    upright = load('robocake').kinematics.geometry
+    assert not any('crank_axes' in line for line in geometry_lines(upright))
+    config = build(HexagonConfig, {**read('robocake').geometry, 'home_height_mm': -41.19})
+    hanging = config.geometry()
+    written = yaml.safe_load('\n'.join(['geometry:', *geometry_lines(hanging)]))['geometry']
+    again = build(JointsConfig, written).geometry()
+    np.testing.assert_allclose(again.normals, hanging.normals, atol=1e-6)
+    np.testing.assert_allclose(again.ups, hanging.ups, atol=1e-6)

@@ -16,6 +16,7 @@ from hexarm.machine_check import problems_of, report_of
 from hexarm.machines import content_of, load
 from leg_kinds import TILTED_CRANKS
 from manipulator.config import build, parse_yaml
+from sampling import some
 
 CONFIG = Path(__file__).parents[3] / 'config'
 REAL = Path(__file__).parents[1] / 'machines'
@@ -23,6 +24,8 @@ ROBOCAKE = (CONFIG / 'robocake.yaml').read_text()
 ARM = (CONFIG / 'arm_6r.yaml').read_text()
 STEWART = (CONFIG / 'stewart_6_3.yaml').read_text()
 UR5 = (CONFIG / 'ur5.yaml').read_text()
+STACK = (CONFIG / 'stack_6_6.yaml').read_text()
+BY_COORDINATES = (CONFIG / 'reachy_mini.yaml').read_text()
 
 
 def changed(text, *replacements):
@@ -86,6 +89,7 @@ def test_rod_shorter_than_its_gap_reports_by_how_much():
         (ROBOCAKE, 'rod_length_mm: 58.0', 0.058),
         (ROBOCAKE, 'rod_length_mm: 58.0', 58000.0),
         (ROBOCAKE, 'home_height_mm: 41.19', 41190.0),
+        (BY_COORDINATES, 'home_height_mm: 177.0', 0.177),
         (ROBOCAKE, 'characteristic_length_mm: 70.0', 0.07),
         (STEWART, 'base_radius_mm: 100.0', 0.1),
         (STEWART, 'stroke_range_mm: [142.0, 238.0]', [0.142, 0.238]),
@@ -212,6 +216,8 @@ def test_servos_that_are_too_narrow_alike_are_one_line():
     (found,) = problems_of(changed(ROBOCAKE, ('[550.0, 2450.0]', '[700.0, 2300.0]')))
     assert found.startswith('servos.joints: crank_1, crank_2, crank_3, crank_4, crank_5, crank_6 ')
     assert found.endswith('reach [43.81, 196.2] deg, their range in limits is [30, 210] deg')
+    report = report_of(parse_yaml(changed(ROBOCAKE, ('[30.0, 210.0]', '[-30.0, 210.0]'))))
+    assert (len(report.problems), report.warnings) == (1, ())
 
 
 def test_ranges_that_differ_are_not_written_alike_and_less_than_a_count_is_no_difference():
@@ -442,9 +448,6 @@ def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
     assert '0.190000  0.190000 m' in capsys.readouterr().out
 
 
-BY_COORDINATES = (CONFIG / 'reachy_mini.yaml').read_text()
-
-
 def bent_the_other_way(content):
     """The same machine with its tangents along the horns, as they are published; undoes itself."""
     low, high = content['limits']['crank_range_deg']
@@ -481,10 +484,11 @@ def test_one_wrong_word_in_every_entry_of_a_list_is_one_line():
     ]
 
 
-@pytest.mark.parametrize('text', [ROBOCAKE, STEWART, ARM, UR5, BY_COORDINATES])
+@pytest.mark.parametrize('text', [ROBOCAKE, STEWART, UR5, STACK])
 def test_one_wrong_letter_is_one_line(text):
     text = re.sub('#.*|^description.*', '', re.sub('".*?"', 'x', text), flags=re.MULTILINE)
-    for word in sorted({*re.findall(r'(\w{4,}):', text), *re.findall(r'^kind: (\w+)', text)}):
+    words = {*re.findall(r'(\w{4,}):', text), *re.findall(r'^kind: (\w+)', text)}
+    for word in some(sorted(words), 20):
         wrong = re.sub(rf'\b{word}\b', f'{word[:2]}q{word[3:]}', text, count=1)
         assert len(problems_of(wrong)) == 1, (word, problems_of(wrong))
 

@@ -17,6 +17,7 @@ from hexarm.cli.main import main
         ('robocake', 24, 6),
         ('stewart_6_3', 24, 6),
         ('stewart_6_6', 24, 6),
+        ('linear_rails', 24, 6),
         ('stack_6_6', 72, 18),
         ('arm_6r', 6, 6),
         ('ur5', 6, 6),

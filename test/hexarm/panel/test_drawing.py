@@ -1,13 +1,11 @@
-"""Bars, meshes, margins and words: what the page draws, without a page."""
+"""Bars, meshes and margins: what the page draws, without a page."""
 
 import numpy as np
 import pytest
 
 from hexarm.machines import load
-from hexarm.panel.controls import state_line
 from hexarm.panel.pieces import bar, bars_between, hull, pieces, plate, sphere
-from hexarm.panel.readout import GOOD, NARROW, NONE_LEFT, Plots, colour, diagnostics_text, shares
-from hexarm.panel.view import NodeReport, View
+from hexarm.panel.room import GOOD, NARROW, NONE_LEFT, colour, shares
 from manipulator.rotation import from_quaternion
 
 
@@ -50,17 +48,6 @@ def test_every_leg_or_joint_shows_its_margin(name, count):
     assert owners <= set(shares(machine, home, joints))
 
 
-def test_every_joint_of_a_stack_has_a_curve():
-    curves = []
-
-    class Gui:
-        def add_uplot(self, data, series, **words):
-            curves.append(len(series) - 1)
-
-    Plots(Gui(), load('stack_6_6').kinematics.joint_names, 'm')
-    assert 18 in curves
-
-
 def test_margins_shrink_towards_a_limit():
     machine = load('robocake')
     home = machine.kinematics.home
@@ -75,20 +62,3 @@ def test_colours_go_from_red_over_amber_to_green():
     assert colour(-1.0) == colour(0.0) == NONE_LEFT
     assert colour(0.175) == NARROW
     assert colour(1.0) == GOOD
-
-
-def test_what_a_node_reports_cannot_become_markup():
-    report = NodeReport('ik', 1, 'a|b <img src=x>', {'last_refusal': '**leg** 3 |'}, 0.2)
-    text = diagnostics_text((report,))
-    assert '⚠' in text
-    assert '\\<img' in text
-    assert '\\*\\*leg\\*\\* 3 \\|' in text
-    silent = NodeReport('ik', 0, 'running', {}, 5.0)
-    assert 'silent for 5 s' in diagnostics_text((silent,))
-
-
-def test_the_state_line_escapes_reasons():
-    line = state_line(View(machine_state='fault', machine_reason='<script>'), 'home: a & b')
-    assert '<script>' not in line
-    assert '&lt;script' in line
-    assert 'a &amp; b' in line

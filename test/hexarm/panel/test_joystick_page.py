@@ -8,8 +8,14 @@ import time
 import numpy as np
 import pytest
 
-from hexarm.panel.nodes.web_server import JoystickSocket, start_server, stop_server
-from hexarm.panel.page import joystick_frame
+from hexarm.panel.nodes.web_server import (
+    CONTROLS_PATH,
+    JOYSTICK_PATH,
+    ControlsSocket,
+    JoystickSocket,
+    start_server,
+    stop_server,
+)
 
 PATIENCE = 60.0
 FORWARD, BACKWARD, UPWARD = (0.0, 0.5), (0.0, -0.5), (0.0, 0.3)
@@ -23,7 +29,7 @@ class Hand:
     def __init__(self, tab, panel):
         self.tab = tab
         self._panel = panel
-        self.frame = tab.frame_locator('iframe')
+        self.frame = tab.frame_locator('#joystick')
         self.session = tab.context.new_cdp_session(tab)
         self._has_finger = False
 
@@ -82,12 +88,12 @@ class Hand:
 class Panel:
     """The panel's server with nothing but the joystick on its page."""
 
-    def __init__(self, browser, folder, port):
+    def __init__(self, browser, port):
         self._browser = browser
         self._socket = JoystickSocket(lambda: '')
-        self._server = start_server('127.0.0.1', port, 'joystick', self._socket.serve)
-        html = (folder / 'hexarm' / 'panel' / 'joystick.html').read_text(encoding='utf-8')
-        self._server.gui.add_html(joystick_frame(html))
+        nobody = ControlsSocket('{"machine": null}', lambda request: None)
+        handlers = {JOYSTICK_PATH: self._socket.serve, CONTROLS_PATH: nobody.serve}
+        self._server = start_server('127.0.0.1', port, 'joystick', handlers)
 
     def open_page(self):
         tab = self._browser.new_context(has_touch=True).new_page()
@@ -124,8 +130,8 @@ class Panel:
 
 
 @pytest.fixture(scope='module')
-def panel(browser, pytestconfig, worker):
-    panel = Panel(browser, pytestconfig.rootpath, 9500 + worker)
+def panel(browser, worker):
+    panel = Panel(browser, 9500 + worker)
     yield panel
     panel.close()
 

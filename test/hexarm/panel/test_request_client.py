@@ -15,8 +15,11 @@ class Publishers:
     def create_client(self, *_):
         return None
 
+    def create_subscription(self, *_):
+        return None
+
 
 def test_many_stops_in_a_row_all_arrive():
     node = Publishers()
-    RequestClient(node, bool, bool, bool)
+    RequestClient(node, bool)
     assert node.depths['emergency_stop'] == 100

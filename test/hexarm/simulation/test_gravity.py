@@ -138,3 +138,14 @@ def test_a_gravity_without_direction_is_named():
         'compensation: false', 'gravity_direction: [0.0, 0.0, 0.0]\n  compensation: false'
     )
     assert problems_of(text) == ['dynamics: gravity_direction: [0.0, 0.0, 0.0] is none']
+
+
+def test_a_stack_has_a_gravity_of_its_own(example):
+    this = example('stack_6_6')
+    for direction, expected in (
+        (None, [0.0, 0.0, -9.80665]),
+        ([0.0, 2.0, 0.0], [0.0, 9.80665, 0.0]),
+    ):
+        own = None if direction is None else {'gravity_direction': direction}
+        model = mechanism('m', replace(this.file, dynamics=own), this.kinematics)
+        assert f'gravity="{" ".join(f"{v:.12g}" for v in expected)}"' in model.xml

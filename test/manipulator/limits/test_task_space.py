@@ -8,11 +8,13 @@ import pytest
 
 from hexarm import machines
 from hexarm.machine_check import problems_of
+from hexarm.panel.readout import shares
 from manipulator import rotation as so3
 from manipulator.analysis.nearest import nearest_reachable
 from manipulator.analysis.reach import reach
 from manipulator.analysis.readings import distance
 from manipulator.analysis.travel import travel
+from manipulator.analysis.volume import with_orientation
 from manipulator.errors import ConfigError, Refused, Unreachable
 from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames
@@ -117,6 +119,19 @@ def test_travel_ends_at_the_limit(machine):
         at_limit = home.twist_to(moved(machine, np.eye(6)[axis]))
         assert way.seconds == pytest.approx(np.abs(at_limit).max(), abs=1e-7)
         assert way.reason
+
+
+def test_the_workspace_ends_at_the_box_and_the_page_shows_what_room_is_left(machine):
+    home, low, high = machine.kinematics.home, machine.constraints.low, machine.constraints.high
+    rng = np.random.default_rng(3)
+    places = rng.uniform(low[-5:-2], high[-5:-2], (200, 3))
+    beyond = places + rng.choice([-1.0, 1.0], (200, 3)) * (high[-5:-2] - low[-5:-2])
+    reached = with_orientation(machine, home.rotation)
+    assert reached(places).sum() > 100
+    assert not reached(beyond).any()
+    at_limit = moved(machine, (0.999, 0, 0, 0, 0, 0))
+    left = shares(machine, at_limit, machine.kinematics.inverse(at_limit))['']
+    assert left == pytest.approx(0.001, abs=1e-6)
 
 
 def test_the_nearest_pose_keeps_the_limits_and_no_admitted_neighbour_is_nearer(machine):

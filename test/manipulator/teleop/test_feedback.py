@@ -1,8 +1,12 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from manipulator.errors import InvalidInput
 from manipulator.teleop.jog_modes import MAX_GAIN, Feedback
+from manipulator.teleop.modes import jog_mode
+from manipulator.trajectory.teleop import Teleop
 
 
 def settled(gain, delay_ticks, dt=0.01, ticks=2000):
@@ -46,3 +50,16 @@ def test_velocities_are_bounded_with_their_direction_kept():
 def test_a_gain_that_is_not_positive_is_refused(gain):
     with pytest.raises(InvalidInput, match='gain'):
         Feedback(gain)
+
+
+@pytest.mark.parametrize('is_measured', [False, True])
+def test_modes_allow_for_the_delay_of_a_machine_that_measures_its_joints(is_measured):
+    commands = []
+    executor = SimpleNamespace(is_busy=False, jog=commands.append)
+    teleop = Teleop(SimpleNamespace(is_measured=is_measured, executor=executor), delay=0.1)
+    teleop.set_mode('hold_orientation')
+    for twist in (np.zeros(6), np.eye(6)[0]):
+        teleop.receive('cmd_vel', twist, '', 1.0)
+    teleop.drive(1.0)
+    expected = Feedback.for_delay(0.1 if is_measured else 0.0)
+    assert commands[-1].mode == jog_mode('hold_orientation', expected)

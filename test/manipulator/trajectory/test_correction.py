@@ -140,3 +140,18 @@ def test_a_correction_that_would_break_a_limit_on_poses_is_cut_to_the_part_that_
         heights.append(pose.position[2])
     assert min(heights) < lowest.position[2] - 2e-5
     assert np.abs(np.diff(heights)).max() < machine.motion.linear.speed * DT
+
+
+@pytest.mark.parametrize('is_confirmed', [False, True])
+def test_what_was_learned_of_a_direction_is_kept_once_the_joint_has_arrived(is_confirmed):
+    """Of one that has not, the opposite of the other direction's is the better guess."""
+    play, no = Play(np.full(1, 0.01), np.full(1, 1.0)), np.zeros(1, dtype=bool)
+    play.move(np.zeros(1))
+    play.move(np.full(1, 0.1))
+    play.add(np.full(1, 0.03), no)
+    play.confirm(np.full(1, is_confirmed))
+    play.move(np.zeros(1))
+    assert play.offset == pytest.approx(-0.03)
+    play.add(np.full(1, 0.02), no)
+    play.move(np.full(1, 0.1))
+    assert play.offset == pytest.approx(0.03 if is_confirmed else 0.01)

@@ -320,7 +320,7 @@ def test_what_three_plans_were_too_late_for_may_still_be_planned_from_rest():
     move = plan_joint_move(arm, arm.kinematics.home, begin, begin + 1.5 * np.eye(6)[0])
     active, worker = ActivePlan(move), Later(LEADS[-1] + 1)
     planning = Planning(replace(arm, kinematics=Costly(arm.kinematics)), DT, worker)
-    planning.request(Goal(arm.kinematics.home, 1.0))
+    planning.request(Goal(arm.kinematics.home, 1.0), arm.kinematics.home, begin)
     failures = []
     for time in np.arange(DT, move.duration - DT, DT):
         active.time = time
