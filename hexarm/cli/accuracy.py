@@ -4,6 +4,7 @@ import argparse
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -102,7 +103,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
     if arguments.picture is not None:
         from hexarm.pictures.accuracy import draw  # noqa: PLC0415 (matplotlib is an extra)
 
-        draw(machine, errors, arguments.picture, arguments.machine)
+        draw(machine, errors, arguments.picture, Path(arguments.machine).stem)
         lines.append(str(arguments.picture))
     return for_programs, lines
 

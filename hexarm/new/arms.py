@@ -48,7 +48,7 @@ def arm_text(m: Measures) -> Iterator[str]:
         yield from lines.servos(names, np.ones(6), ends.mean(axis=1), servo)
         yield line(f'  park_deg: {row(home)}', 'where they are switched on')
         yield ''
-        yield from lines.link()
+        yield from lines.link('hysteresis_deg: 0.5')
 
 
 def _geometry(m: Measures, ends: Array) -> tuple[dict[str, Any], float]:

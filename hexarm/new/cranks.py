@@ -94,7 +94,7 @@ def crank_text(m: Measures) -> Iterator[str]:
         yield from lines.servos(machine.kinematics.joint_names, signs, middle, servo)
         yield line(f'  park_deg: {lines.row(np.round(home, 2))}', 'where they are switched on')
         yield ''
-        yield from lines.link()
+        yield from lines.link('hysteresis_deg: 0.5')
     yield ''
     yield from _crank_dynamics(m, servo, scale)
 

@@ -55,7 +55,7 @@ def cylinder_text(m: Measures) -> Iterator[str]:
         yield from _servos(m, machine.kinematics.joint_names)
         yield line(f'  park_mm: {lines.row(np.round(legs, 2))}', 'where they are switched on')
         yield ''
-        yield from lines.link()
+        yield from lines.link('hysteresis_mm: 0.2')
     yield ''
     yield from _dynamics(m, scale)
 

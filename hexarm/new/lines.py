@@ -93,12 +93,15 @@ def servos(names: Iterable[str], signs: Array, centres: Array, servo: Servo) -> 
         )
 
 
-def link() -> Iterator[str]:
-    """The section of the serial line."""
+def link(play: str) -> Iterator[str]:
+    """The section of the serial line, and the fake board's; play: its key and value there."""
     yield 'link:'
     yield '  baud: 250000'
     yield line('  setpoint_deadline_ms: 200', 'how long a setpoint is good for')
     yield line('  on_link_loss: hold', 'hold or release, when no other came in time')
+    yield ''
+    yield line('simulation:', "what the fake board's servos do")
+    yield line(f'  {play}', 'assumed: play')
 
 
 def head(kind: str, description: str, is_by_driver: bool) -> Iterator[str]:

@@ -25,11 +25,14 @@ AXES = ('#0b4f78', '#c75b28', '#8fb94b')
 """Of x, y and z: dark, middle and light, so that they differ in grey, too."""
 JOINTS = ('#0b3d5c', '#2f7fb0', '#79b8c9', '#8a3b12', '#d1703d', '#e8ab6a')
 DASHES = ('-', (0, (6, 2)), (0, (1.5, 1.5)))
-"""Of every third curve, or of x, y and z: curves on one another all show."""
+JOINT_DASHES = (*DASHES, (0, (9, 3)), (0, (1, 2.5)), (0, (6, 2, 1, 2)))
+"""Of x, y and z, and of joints: of curves on one another, as of a platform's mirrored legs, all
+show, for those with wider gaps lie above.
+"""
 MAP, RATE_MAP = 'viridis', 'magma_r'
 """Both change evenly in brightness."""
 FONT = {
-    'font.size': 9, 'axes.titlesize': 10, 'legend.fontsize': 8, 'legend.frameon': False,
+    'font.size': 9, 'axes.titlesize': 10, 'legend.fontsize': 8, 'legend.frameon': False, 'legend.handlelength': 3.0,
     'axes.spines.top': False, 'axes.spines.right': False, 'axes.edgecolor': SOFT,
     'text.color': INK, 'axes.labelcolor': INK, 'xtick.color': SOFT, 'ytick.color': SOFT,
     'grid.color': LIGHT, 'grid.alpha': 0.35, 'lines.linewidth': 1.3, 'savefig.facecolor': PAPER,
@@ -62,12 +65,14 @@ def plotted(axes: Axes) -> Axes:
 
 
 def curve(k: int) -> dict[str, Any]:
-    """How the k-th of some curves is drawn: six colours, and dashes that let others show."""
-    return {
-        'color': JOINTS[k % len(JOINTS)],
-        'ls': DASHES[k % len(DASHES)],
-        'zorder': 3.0 - k / 100.0,
-    }
+    """How the k-th of some curves is drawn: six colours, six ways of dashes."""
+    dashes = JOINT_DASHES[k % len(JOINT_DASHES)]
+    return {'color': JOINTS[k % len(JOINTS)], 'ls': dashes, 'zorder': 3.0 - ink(dashes)}
+
+
+def ink(dashes: Any) -> float:
+    """Which share of a curve is not gaps."""
+    return 1.0 if dashes == '-' else sum(dashes[1][::2]) / sum(dashes[1])
 
 
 def axis(k: int) -> dict[str, Any]:

@@ -107,7 +107,8 @@ def draw_section(
         across, up, plane.conditions.admitted, levels=[0.5], colors=style.INK, linewidths=0.9
     )
     home = 1e3 * machine.kinematics.home.position
-    axes.plot(home[plane.axes[0]], home[plane.axes[1]], '+', color=style.INK, ms=7, mew=1.2)
+    for colour, width in ((style.PAPER, 3.2), (style.INK, 1.2)):
+        axes.plot(*home[list(plane.axes)], '+', color=colour, ms=8, mew=width)
     axes.set_xlabel(f'{AXES[plane.axes[0]]} (mm)', labelpad=1)
     axes.set_ylabel(f'{AXES[plane.axes[1]]} (mm)', labelpad=1)
     axes.set_aspect('equal', adjustable='box')

@@ -15,13 +15,19 @@ def grey(colour):
     return float(np.dot(to_rgb(colour), (0.299, 0.587, 0.114)))
 
 
-def test_curves_differ_in_grey_or_in_dashes():
+def test_curves_differ_in_grey_and_in_dashes():
     axes = [grey(colour) for colour in style.AXES]
     assert min(np.diff(axes)) > 0.15
-    looks = [(grey(style.curve(k)['color']), style.curve(k)['ls']) for k in range(6)]
-    for k, (shade, dashes) in enumerate(looks):
-        for other, its in looks[:k]:
-            assert dashes != its or abs(shade - other) > 0.05
+    looks = [style.curve(k) for k in range(6)]
+    assert len({str(look['ls']) for look in looks}) == len(looks)
+
+
+def test_of_curves_on_one_another_each_shows():
+    """What is drawn above leaves gaps: more than what is below it."""
+    looks = sorted((style.curve(k) for k in range(6)), key=lambda look: look['zorder'])
+    shares = [style.ink(look['ls']) for look in looks]
+    assert shares == sorted(shares, reverse=True)
+    assert shares[1] < 1.0
 
 
 def test_a_limit_is_a_line_in_view_or_said_to_be_outside():
