@@ -32,7 +32,8 @@ show, for those with wider gaps lie above.
 MAP, RATE_MAP = 'viridis', 'magma_r'
 """Both change evenly in brightness."""
 FONT = {
-    'font.size': 9, 'axes.titlesize': 10, 'legend.fontsize': 8, 'legend.frameon': False, 'legend.handlelength': 3.0,
+    'font.size': 9, 'axes.titlesize': 10, 'legend.fontsize': 8, 'legend.frameon': False,
+    'legend.handlelength': 3.0,
     'axes.spines.top': False, 'axes.spines.right': False, 'axes.edgecolor': SOFT,
     'text.color': INK, 'axes.labelcolor': INK, 'xtick.color': SOFT, 'ytick.color': SOFT,
     'grid.color': LIGHT, 'grid.alpha': 0.35, 'lines.linewidth': 1.3, 'savefig.facecolor': PAPER,
