@@ -28,7 +28,7 @@ def draw(motion: LegMotion, machine: str, picture: Path) -> None:
     axes[0, 0].set_title('position; wide and light: linear', loc='left')
     _curves(axes[0, 1], motion.share, places - straight, ('x', 'y', 'z'))
     axes[0, 1].set_title('position, off the linear one (mm)', loc='left')
-    _curves(axes[1, 1], motion.share, np.degrees(_defined(motion.euler_zxz)), ('α', 'β', 'γ'))
+    _curves(axes[1, 1], motion.share, np.degrees(defined(motion.euler_zxz)), ('α', 'β', 'γ'))
     axes[1, 1].set_title('ZXZ Euler angles (°)', loc='left')
     _curves(axes[2, 1], motion.share, np.degrees(motion.rotation_vectors), ('rx', 'ry', 'rz'))
     axes[2, 1].set_title('rotation vector (°)', loc='left')
@@ -38,11 +38,11 @@ def draw(motion: LegMotion, machine: str, picture: Path) -> None:
     style.save(figure, picture)
 
 
-def _defined(euler: Array) -> Array:
+def defined(euler: Array) -> Array:
     """ZXZ angles (N, 3), α and γ NaN where only their sum means something."""
-    defined: Array = euler.copy()
-    defined[np.abs(euler[:, 1]) < UNDEFINED, ::2] = np.nan
-    return defined
+    angles: Array = euler.copy()
+    angles[np.abs(euler[:, 1]) < UNDEFINED, ::2] = np.nan
+    return angles
 
 
 def _curves(axes: Axes, share: Array, values: Array, names: tuple[str, str, str]) -> None:

@@ -7,7 +7,7 @@ pytest.importorskip('matplotlib')
 from matplotlib.colors import to_rgb
 
 from hexarm.pictures import style
-from hexarm.pictures.leg_motion import _defined
+from hexarm.pictures.leg_motion import defined
 from manipulator.errors import InvalidInput
 
 
@@ -69,7 +69,7 @@ def test_a_picture_that_fails_leaves_nothing(failure, tmp_path, monkeypatch):
 
 
 def test_euler_angles_without_a_meaning_are_not_drawn():
-    shown = _defined(np.array([[0.4, 0.0, -0.4], [0.4, 0.1, -0.3]]))
+    shown = defined(np.array([[0.4, 0.0, -0.4], [0.4, 0.1, -0.3]]))
     assert np.isnan(shown[0]).tolist() == [True, False, True]
     assert not np.isnan(shown[1]).any()
 
