@@ -69,7 +69,9 @@ class Client(GraphClient):
         However long the servos take: the patience begins again with each *arming* of the bridge.
         """
         self.wait(
-            'the board', lambda: self.machine_state.message not in WITHOUT_BOARD, seconds=15.0
+            'the board or driver',
+            lambda: self.machine_state.message not in WITHOUT_BOARD,
+            seconds=15.0,
         )
         self.switch('serial_bridge/enable', True)
         before = self._states_received

@@ -84,7 +84,7 @@ def find(name_or_path: str) -> Path:
     near = difflib.get_close_matches(name_or_path, list(known), n=1)
     hint = f', did you mean {near[0]!r}?' if near else ''
     raise ConfigError(
-        [f'no machine is called {shown(name_or_path)}{hint} (shipped: {sorted(known)})']
+        [f'no machine is called {shown(name_or_path)}{hint} (shipped: {", ".join(sorted(known))})']
     )
 
 
@@ -202,6 +202,7 @@ def load(name_or_path: str) -> Machine:
     try:
         machine = loader(machine_file.kind)(machine_file)
         machine = machine.within(machine_file.task_space)
+        machine = machine.among(machine_file.surroundings, machine_file.bodies)
         machine = replace(machine, deflection=_deflection(machine_file, machine.kinematics))
         machine = replace(machine, frames=frames_of(machine_file, machine.kinematics))
     except ConfigError as error:

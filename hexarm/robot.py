@@ -256,9 +256,9 @@ class Robot:
         saved = self.saved_poses
         steps = saved.steps(names)
         most = None if speed is None else checked('speed', speed, above=0.0)
-        rest = None if pause is None else checked('pause', pause)
-        total = max(len(steps) * repeat, 1)
-        for done in range(len(steps) * repeat):
+        rest = None if pause is None else checked('pause', pause, least=0.0)
+        total = len(steps) * int(checked('repeat', repeat, least=1.0))
+        for done in range(total):
             step = steps[done % len(steps)]
             self.move_to(saved.of(step.pose).pose, speed=most or step.speed)
             self._client.spin(step.pause_s if rest is None else rest)

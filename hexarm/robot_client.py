@@ -298,11 +298,11 @@ class RobotClient(Client):
             )
         finally:
             self.node.destroy_publisher(changes)
-        outcome = str(self._newest['saved_pose_status'].data)
-        if ': refused: ' in outcome:
-            raise Refused(outcome)
+        saved, _, outcome = str(self._newest['saved_pose_status'].data).partition(': ')
+        if outcome.startswith('refused: '):
+            raise Refused(outcome.removeprefix('refused: '))
         self.receive()
-        return outcome.partition(': ')[0]
+        return saved
 
     def _note(self, name: str, message: Any) -> None:
         self._newest[name] = message
