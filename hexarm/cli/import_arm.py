@@ -51,7 +51,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
     """Where the machine file is, and what it assumes; an existing file is not written over."""
     source: Path = arguments.file
     try:
-        robot = read_urdf(_text_of(source))
+        robot = read_urdf(urdf_text(source))
         robot = with_right_angles(robot) if arguments.right_angles else robot
         arm = arm_of(robot, arguments.base, arguments.tip)
         named = (replace(joint, name=arguments.prefix + joint.name) for joint in arm.joints)
@@ -88,7 +88,7 @@ def _write(output: Path, text: str) -> None:
         raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
 
 
-def _text_of(path: Path) -> str:
+def urdf_text(path: Path) -> str:
     """ConfigError for what cannot be read as text, or is huge."""
     try:
         with path.open(encoding='utf-8') as file:
