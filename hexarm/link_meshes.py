@@ -11,14 +11,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hexarm.machines import find, read
 from manipulator.errors import ConfigError
-from manipulator.formatting import reason, shortened
+from manipulator.formatting import counted, reason, shortened
 
 HEADER = 84
 FACET = np.dtype([('normal', '<f4', 3), ('corners', '<f4', (3, 3)), ('attribute', '<u2')])
 MOST_FACES = 100_000
 """Of a link: what a browser shows seven of; MuJoCo reads 200,000."""
 MOST_BYTES = HEADER + MOST_FACES * FACET.itemsize
+SMALLEST = 1e-10
+"""Twice the area of a link, m²."""
 FARTHEST = 1000.0
 """Metres: a mesh in millimetres, or of noise, is no link."""
 
@@ -54,6 +57,11 @@ def link_meshes(
     return tuple(found), faults
 
 
+def meshes_of(name_or_path: str) -> tuple[tuple[LinkMesh | None, ...], list[str]]:
+    """`link_meshes` of a machine; ConfigError as `machines.read`."""
+    return link_meshes(read(name_or_path).geometry, find(name_or_path).parent)
+
+
 def read_stl(file: Path) -> Triangles:
     """A binary STL file; ConfigError for what is none, is huge, or has no surface."""
     content = bytes_of(file, MOST_BYTES)
@@ -77,11 +85,18 @@ def write_stl(file: Path, triangles: Triangles) -> None:
 
 
 def check(triangles: Triangles) -> None:
-    """ConfigError for too many faces, for none, and for corners that no machine has."""
+    """ConfigError for too many faces, for no surface, and for corners that no machine has."""
     if not 0 < len(triangles) <= MOST_FACES:
-        raise ConfigError([f'{len(triangles)} faces, 1 to {MOST_FACES} of a link are drawn'])
+        faces = counted(len(triangles), 'face')
+        raise ConfigError([f'has {faces}, 1 to {MOST_FACES:,} of a link are drawn'])
     if not (np.abs(triangles) <= FARTHEST).all():
         raise ConfigError([f'has corners farther than {FARTHEST:g} m: is it in another unit?'])
+    a, b, c = triangles.transpose(1, 0, 2).astype(np.float64)
+    doubled = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    corners = triangles.reshape(-1, 3)
+    has_others = (corners[:, None] != triangles[doubled.argmax()]).any(axis=2).all(axis=1).any()
+    if doubled.sum() < SMALLEST or not has_others:  # which MuJoCo refuses
+        raise ConfigError(['is no surface but a triangle, a line or a point'])
 
 
 def bytes_of(file: Path, most: int) -> bytes:

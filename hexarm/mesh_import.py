@@ -137,7 +137,7 @@ def _whole(link: str, parts: Sequence[Triangles], faults: list[str]) -> Triangle
     try:
         check(whole)
     except ConfigError as error:
-        faults.append(f'not imported: all meshes of {link}: {error}')
+        faults.append(f'not imported: meshes of {link}, together: {error}')
         return None
     return whole
 

@@ -4,6 +4,7 @@ import json
 import sys
 import types
 
+import mujoco
 import numpy as np
 import pytest
 import yaml
@@ -192,6 +193,12 @@ def test_packages_are_found_where_ros_has_them_and_around_the_urdf(
         ('https://example.org/a.stl', None, 'is no file of this computer'),
         ('package://unknown/a.stl', None, "package 'unknown', which is not found: --package"),
         ('bad\x7f*.stl', None, 'does not exist'),
+        ('one.obj', 'v 1 0 0\nv 0 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n', 'is no surface but'),
+        (
+            'line.obj',
+            'v 1 0 0\nv 0 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3\nf 2 3 4\n',
+            'is no surface but',
+        ),
         ('far.obj', 'v 1e9 0 0\nv 0 0 0\nv 0 1e9 0\nf 1 2 3\n', 'is it in another unit?'),
     ],
 )
@@ -220,7 +227,7 @@ def test_too_many_faces_and_bytes_are_refused(tmp_path, bring, monkeypatch):
     twice = visual('a.stl') * 2
     faults = bring({'link_1': visual('many.stl'), 'link_2': twice})['not_imported']
     assert 'many.stl: has 8 faces, 1 to 5' in faults[0]
-    assert 'all meshes of link_2: 8 faces, 1 to 5' in faults[1]
+    assert 'meshes of link_2, together: has 8 faces, 1 to 5' in faults[1]
     (tmp_path / 'mine.yaml').unlink()
     monkeypatch.setattr('hexarm.mesh_import.MOST_BYTES', 300)
     assert 'is larger than' in bring({'link_1': visual('many.stl')})['not_imported'][0]
@@ -277,3 +284,34 @@ def test_stl_comes_back_and_a_cut_file_is_refused(tmp_path):
     file.write_bytes(file.read_bytes()[:-1])
     with pytest.raises(ConfigError, match='is no binary STL'):
         read_stl(file)
+
+
+def test_mujoco_has_the_meshes_in_the_places_of_their_links(tmp_path, bring, capsys):
+    (tmp_path / 'a.stl').write_text(ascii_stl())
+    (tmp_path / 'flat.obj').write_text('v 1 0 0\nv 0 20 0\nv 0 1 9\nv 0 0 9\nf 1 2 3\nf 2 3 4\n')
+    weight = '<inertial><mass value="2"/><inertia ixx=".1" iyy=".1" izz=".1"/></inertial>'
+    visuals = {f'link_{i}': weight + visual('a.stl') for i in range(7)}
+    visuals |= {'link_2': weight + visual('flat.obj'), 'link_4': weight}
+    bring(visuals)
+    (tmp_path / 'mine_meshes' / 'link_5.stl').unlink()
+    output = tmp_path / 'mine.xml'
+    assert main(['mjcf', str(tmp_path / 'mine.yaml'), '--output', str(output)]) == 0
+    assert 'link_5.stl: does not exist' in capsys.readouterr().out
+    model = mujoco.MjModel.from_xml_path(str(output))
+    state = mujoco.MjData(model)
+    state.qpos = angles = np.array([0.3, -0.5, 0.7, 1.1, -0.2, 0.4])
+    mujoco.mj_forward(model, state)
+    of_body = {model.geom_bodyid[i]: model.geom_type[i] for i in range(model.ngeom)}
+    kinds = [of_body[model.body(f'link_{i}').id if i else 0] for i in range(7)]
+    mesh, rod = int(mujoco.mjtGeom.mjGEOM_MESH), int(mujoco.mjtGeom.mjGEOM_CAPSULE)
+    assert kinds == [mesh, mesh, mesh, mesh, rod, rod, mesh]
+    geom = next(i for i in range(model.ngeom) if model.geom(i).bodyid == model.body('link_6').id)
+    begin, count = model.mesh_vertadr[model.geom_dataid[geom]], 4
+    corners = model.mesh_vert[begin : begin + count].astype(float)
+    here = corners @ state.geom_xmat[geom].reshape(3, 3).T + state.geom_xpos[geom]
+    T = frame(6, angles)
+    local = TETRAHEDRON * SCALE @ from_rpy(RPY).T + XYZ
+    expected = local @ T[:3, :3].T + T[:3, 3]
+    np.testing.assert_allclose(np.sort(here, axis=0), np.sort(expected, axis=0), atol=1e-6)
+    assert model.body('link_6').mass == pytest.approx(2.0)
+    assert not model.geom_contype.any()
