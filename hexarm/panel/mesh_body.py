@@ -1,0 +1,80 @@
+"""An arm's links as the solids of its meshes, tinted by their joints' margins."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from hexarm.link_meshes import LinkMesh
+from hexarm.panel.pieces import wxyz_of
+from hexarm.panel.room import colour
+from hexarm.panel.view import Stance
+from manipulator.kinematics import Kinematics
+from manipulator.pose import Pose
+
+PAINT = np.array([205, 208, 214])
+TINT = 0.55
+"""Of the margin's colour in a link's; the base has the paint alone."""
+
+
+class MeshBody:
+    """The base and the links with a mesh, under the scene's name `name`; lengths times `scale`.
+
+    owners are the joints whose margins each shows, '' for none.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        name: str,
+        kinematics: Kinematics,
+        scale: float,
+        meshes: Sequence[LinkMesh | None],
+        owners: Sequence[str],
+    ) -> None:
+        self._kinematics = kinematics
+        self._scale = scale
+        self._owners = owners
+        self._at_zero = self._places(
+            Stance(kinematics.home, np.zeros(len(kinematics.joint_names)))
+        )
+        self._solids = {
+            i: self._add(scene, f'{name}/mesh_{i}', mesh)
+            for i, mesh in enumerate(meshes)
+            if mesh is not None
+        }
+
+    @property
+    def drawn(self) -> list[int]:
+        """Of the base, 0, and the links those that have a mesh."""
+        return list(self._solids)
+
+    def show(self, stance: Stance, left: dict[str, float]) -> None:
+        """Moves and tints every solid; `left` is the share of room left by owner."""
+        places = self._places(stance)
+        for i, solid in self._solids.items():
+            moved = places[i] @ self._at_zero[i].inverse()
+            solid.position, solid.wxyz = moved.position * self._scale, wxyz_of(moved)
+            tint = self._tint(self._owners[i], left)
+            if tuple(solid.color) != tint:
+                solid.color = tint
+
+    def _places(self, stance: Stance) -> list[Pose]:
+        """Of the base and each link; the tool, which comes last, has no mesh."""
+        links = self._kinematics.links(stance.pose, stance.joints)[:-1]
+        return [Pose.identity(), *(link.pose for link in links)]
+
+    def _tint(self, owner: str, left: dict[str, float]) -> tuple[int, int, int]:
+        share = TINT if owner else 0.0
+        mixed = (1 - share) * PAINT + share * np.array(colour(left.get(owner, 1.0)))
+        red, green, blue = np.rint(mixed).astype(int).tolist()
+        return red, green, blue
+
+    def _add(self, scene: Any, name: str, mesh: LinkMesh) -> Any:
+        """Flat faces, from both sides: many meshes have some that are turned inside out."""
+        corners = mesh.triangles.reshape(-1, 3)
+        vertices, faces = np.unique(corners, axis=0, return_inverse=True)
+        return scene.add_mesh_simple(
+            name, vertices * self._scale, faces.reshape(-1, 3), color=tuple(PAINT.tolist()),
+            flat_shading=True, side='double',
+        )  # fmt: skip
