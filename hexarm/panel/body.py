@@ -117,9 +117,8 @@ class Body:
             strokes += fingers(stance.pose, opening, 1.0 / self._scale)
         scaled = tuple(replace(s, points=s.points * self._scale) for s in strokes)
         found = pieces(scaled)
-        if self._meshes is not None:  # a bar and the ball at its beginning for each link
-            found.bars.sizes[self._meshes.drawn] = 0.0
-            found.ball_radii[self._meshes.drawn] = 0.0
+        if self._meshes is not None:
+            self._meshes.hide_rods(found)
         return found
 
     def _bar_colours(self, found: Pieces, left: dict[str, float]) -> Colours:

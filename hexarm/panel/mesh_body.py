@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from hexarm.link_meshes import LinkMesh
-from hexarm.panel.pieces import wxyz_of
+from hexarm.panel.pieces import Pieces, wxyz_of
 from hexarm.panel.room import colour
 from hexarm.panel.view import Stance
 from manipulator.kinematics import Kinematics
@@ -44,10 +44,15 @@ class MeshBody:
             if mesh is not None
         }
 
-    @property
-    def drawn(self) -> list[int]:
-        """Of the base, 0, and the links those that have a mesh."""
-        return list(self._solids)
+    def hide_rods(self, found: Pieces) -> None:
+        """Makes nothing of the bars of links with a mesh, and of the balls at their beginnings.
+
+        The last link's has a ball at its end as well, the tool's.
+        """
+        links = list(self._solids)
+        balls = links + [i + 1 for i in links if i == len(self._at_zero) - 1]
+        found.bars.sizes[links] = 0.0
+        found.ball_radii[balls] = 0.0
 
     def show(self, stance: Stance, left: dict[str, float]) -> None:
         """Moves and tints every solid; `left` is the share of room left by owner."""

@@ -90,10 +90,12 @@ def test_links_with_meshes_are_drawn_by_them_and_the_others_by_rods():
     machine, scene, size = load('puma560'), PaperScene(), 0.5
     chain, corners = machine.kinematics.chain, np.random.default_rng(4).normal(size=(5, 3, 3))
     mesh = LinkMesh(Path('a.stl'), corners.astype(np.float32))
-    body = Body(scene, 'm', machine.kinematics, size, meshes=[mesh, None, None, mesh, *[None] * 3])
+    body = Body(
+        scene, 'm', machine.kinematics, size, meshes=[mesh, None, None, mesh, None, None, mesh]
+    )
     joints = np.array([0.3, -0.5, 0.7, 1.1, -0.2, 0.4])
     body.show(Stance(chain.forward(joints), joints), {'joint 3': 0.0, 'joint 1': 0.0})
-    assert {name for name in scene.handles if 'mesh' in name} == {'m/mesh_0', 'm/mesh_3'}
+    assert {name for name in scene.handles if 'mesh' in name} == {f'm/mesh_{i}' for i in (0, 3, 6)}
     for i, moved in ((0, np.eye(4)), (3, chain.displacements(joints)[3])):
         solid = scene.handles[f'm/mesh_{i}']
         turn = from_quaternion(np.roll(solid.wxyz, -1))
@@ -108,4 +110,5 @@ def test_links_with_meshes_are_drawn_by_them_and_the_others_by_rods():
     assert tuple(balls[1]) == NONE_LEFT
     assert tuple(balls[2]) == GOOD
     drawn = scene.handles['m/bars'].batched_scales.any(axis=1)
-    assert drawn.tolist() == [False, True, True, False, True, True, True]
+    assert drawn.tolist() == [False, True, True, False, True, True, False]
+    assert (scene.handles['m/balls'].batched_scales > 0).tolist() == [*drawn, False]
