@@ -94,6 +94,7 @@ def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
     if machine is not None and whole is not None:
         found.of(partial(frames_of, whole, machine.kinematics))
         machine = found.of(partial(machine.within, whole.task_space)) or machine
+        machine = found.of(partial(machine.among, whole.surroundings, whole.bodies)) or machine
     calibration = _calibration(found, sections.get('servos'))
     if machine is not None:
         home = _home_problems(kind, machine, content)
@@ -185,7 +186,7 @@ def _merged(problems: Sequence[str]) -> tuple[str, ...]:
         where, colon, what = problem.partition(': ')
         groups.setdefault(INDEX.sub('[]', where, count=1) + colon + what, []).append(where)
     return tuple(
-        text.replace('[]', f'[{", ".join(INDEX.findall(" ".join(places)))}]', 1)
+        text.replace('[]', f'[{", ".join(m[1] for m in map(INDEX.search, places) if m)}]', 1)
         for text, places in groups.items()
     )
 

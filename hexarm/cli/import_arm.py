@@ -56,7 +56,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
     source: Path = arguments.file
     packages = Packages(packages_of(arguments.package), source)
     try:
-        robot = read_urdf(_text_of(source))
+        robot = read_urdf(urdf_text(source))
         robot = with_right_angles(robot) if arguments.right_angles else robot
         arm = arm_of(robot, arguments.base, arguments.tip)
         named = (replace(joint, name=arguments.prefix + joint.name) for joint in arm.joints)
@@ -105,7 +105,7 @@ def _write(output: Path, text: str, meshes: ImportedMeshes | None, folder: Path)
         raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
 
 
-def _text_of(path: Path) -> str:
+def urdf_text(path: Path) -> str:
     """ConfigError for what cannot be read as text, or is huge."""
     try:
         with path.open(encoding='utf-8') as file:

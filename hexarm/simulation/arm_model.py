@@ -11,11 +11,10 @@ import numpy as np
 from arm_control.arm import SerialArm
 from hexarm.simulation.drives import Drives
 from hexarm.simulation.dynamics_config import ArmDynamicsConfig
-from hexarm.simulation.platform_parts import add_drives, add_joint
+from hexarm.simulation.platform_parts import add_carried, add_drives, add_joint
 from hexarm.simulation.rigid_body import (
     BLUE,
     METAL,
-    ORANGE,
     Mechanism,
     RigidBody,
     add,
@@ -23,7 +22,6 @@ from hexarm.simulation.rigid_body import (
     document,
     inertial,
     link,
-    payload,
     tube,
     written,
 )
@@ -62,12 +60,7 @@ def arm_model(name: str, arm: SerialArm, config: ArmDynamicsConfig, drives: Driv
         parent, 'body', name=TOOL, pos=chain.home.position - origin, quat=(w, x, y, z)
     )  # fmt: skip
     add(tool, 'site', name=TOOL)
-    if config.payload.mass_g > 0:
-        load = payload(config.payload)
-        held = add(tool, 'body', name='payload', pos=load.centre)
-        inertial(held, load, load.centre)
-        size = (1e-3 * config.payload.radius_mm, 0.5e-3 * config.payload.height_mm)
-        add(held, 'geom', type='cylinder', size=size, mass='0', rgba=ORANGE)
+    add_carried(tool, config.payload)
     add_drives(root, arm.joint_names, drives)
 
     def seat(pose: Pose, joints: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 from types import SimpleNamespace
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
@@ -11,7 +12,9 @@ from hexarm.machines import load
 from hexarm.panel.body import Body
 from hexarm.panel.pieces import bar, bars_between, hull, pieces, plate, sphere
 from hexarm.panel.room import GOOD, NARROW, NONE_LEFT, colour, shares
+from hexarm.panel.scene import Scene
 from hexarm.panel.view import Stance
+from manipulator.limits.surroundings import BodiesConfig, BoxConfig, SurroundingsConfig
 from manipulator.rotation import from_quaternion
 
 
@@ -112,3 +115,24 @@ def test_links_with_meshes_are_drawn_by_them_and_the_others_by_rods():
     drawn = scene.handles['m/bars'].batched_scales.any(axis=1)
     assert drawn.tolist() == [False, True, True, False, True, True, False]
     assert (scene.handles['m/balls'].batched_scales > 0).tolist() == [*drawn, False]
+
+
+def test_the_page_draws_the_surroundings_where_they_are():
+    walls = SurroundingsConfig(
+        floor_mm=-50.0,
+        boxes=(BoxConfig('table', centre_mm=(0.0, 0.0, 900.0), size_mm=(400.0, 300.0, 20.0)),),
+        workspace_mm=((-2000.0, -2000.0, -60.0), (2000.0, 2000.0, 2000.0)),
+    )
+    machine = load('arm_6r').among(walls, BodiesConfig())
+    server = MagicMock()
+    Scene(server, machine, has_gripper=False)
+    kinematics = machine.kinematics
+    strokes = kinematics.skeleton(kinematics.home, kinematics.inverse(kinematics.home))
+    size = float(np.ptp(strokes[0].points, axis=0).max())
+    (table, workspace) = server.scene.add_box.call_args_list
+    np.testing.assert_allclose(np.array(table.args[2]) * size, [0.4, 0.3, 0.02])
+    np.testing.assert_allclose(table.kwargs['position'] * size, [0.0, 0.0, 0.9])
+    assert workspace.kwargs['wireframe']
+    assert not table.kwargs['wireframe']
+    grid = server.scene.add_grid.call_args.kwargs
+    assert grid['position'][2] * size == pytest.approx(-0.05)
