@@ -44,7 +44,7 @@ class Packages:
 
     def _in_package(self, name: str, package: str, inside: str) -> Path:
         folders = list(self._folders(package))
-        found = next((f / inside for f in folders if (f / inside).is_file()), None)
+        found = next((f / inside for f in folders if os.path.isfile(f / inside)), None)
         if found is not None:
             return found
         if folders:
@@ -63,7 +63,7 @@ class Packages:
         candidates = [*ros, *(folder / package for folder in ros)]
         candidates += [prefix / 'share' / package for prefix in ament]
         candidates += [*above, *(folder / package for folder in above)]
-        yield from (f for f in candidates if f.name == package and f.is_dir())
+        yield from (f for f in candidates if f.name == package and os.path.isdir(f))
 
 
 def packages_of(options: Sequence[str]) -> dict[str, Path]:

@@ -1,10 +1,14 @@
 """The machine as solids in a viser scene: once as measured, once as commanded."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from hexarm.link_meshes import LinkMesh
 from hexarm.panel.gripper import fingers
+from hexarm.panel.mesh_body import MeshBody
 from hexarm.panel.pieces import (
     PLAIN,
     Colours,
@@ -19,7 +23,6 @@ from hexarm.panel.pieces import (
 )
 from hexarm.panel.view import Stance
 from manipulator.kinematics import Kinematics
-from manipulator.links import Stroke
 
 STILL = 2e-5
 """Metres and radians below which a change is not drawn."""
@@ -46,6 +49,7 @@ class Body:
         *,
         has_gripper: bool = False,
         is_ghost: bool = False,
+        meshes: Sequence[LinkMesh | None] = (),
     ) -> None:
         self._kinematics = kinematics
         self._scale = scale
@@ -54,7 +58,13 @@ class Body:
         self._shown: Stance | None = None
         home = kinematics.home
         joints = kinematics.inverse(home)
+        self._meshes: MeshBody | None = None
         found = self._pieces(Stance(home, joints))
+        if any(meshes):
+            owners = found.ball_owners
+            self._meshes = MeshBody(scene, name, kinematics, scale, meshes, owners)
+            self._meshes.show(Stance(home, joints), {})
+            found = self._pieces(Stance(home, joints))
         style: dict[str, Any] = {'opacity': GHOST_OPACITY if is_ghost else None, 'lod': 'off'}
         style |= {'cast_shadow': not is_ghost, 'receive_shadow': not is_ghost}
         vertices, faces = bar()
@@ -80,6 +90,8 @@ class Body:
         if self._shown is not None and _are_alike(stance, self._shown):
             return
         self._shown = stance
+        if self._meshes is not None:
+            self._meshes.show(stance, left)
         found = self._pieces(stance)
         self._bars.batched_positions = found.bars.starts.astype(np.float32)
         self._bars.batched_wxyzs = found.bars.wxyz.astype(np.float32)
@@ -103,8 +115,11 @@ class Body:
         if self._has_gripper:
             opening = HALF_OPEN if stance.opening is None else stance.opening
             strokes += fingers(stance.pose, opening, 1.0 / self._scale)
-        scaled = tuple(Stroke(s.part, s.points * self._scale) for s in strokes)
-        return pieces(scaled)
+        scaled = tuple(replace(s, points=s.points * self._scale) for s in strokes)
+        found = pieces(scaled)
+        if self._meshes is not None:
+            self._meshes.hide_rods(found)
+        return found
 
     def _bar_colours(self, found: Pieces, left: dict[str, float]) -> Colours:
         if self._is_ghost:

@@ -4,10 +4,12 @@ Everything is drawn in base axes, lengths divided by the machine's size: so ligh
 widths suit a platform of the size of a hand and an arm of the size of a man alike.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from hexarm.link_meshes import LinkMesh
 from hexarm.panel.body import Body
 from hexarm.panel.pieces import hull, wxyz_of
 from hexarm.panel.room import shares
@@ -35,7 +37,13 @@ CAMERA = np.array([1.2, -1.4, 0.95])
 class Scene:
     """What a viser server shows in three dimensions."""
 
-    def __init__(self, server: Any, machine: Machine, has_gripper: bool) -> None:
+    def __init__(
+        self,
+        server: Any,
+        machine: Machine,
+        has_gripper: bool,
+        meshes: Sequence[LinkMesh | None] = (),
+    ) -> None:
         server.gui.configure_theme(dark_mode=True)
         self._scene = server.scene
         self._machine = machine
@@ -49,7 +57,9 @@ class Scene:
         self._floor()
         self._camera(server, (low + high) / 2, float(high[2] - low[2]))
         style = kinematics, self._scale
-        self._measured = Body(self._scene, '/measured', *style, has_gripper=has_gripper)
+        self._measured = Body(
+            self._scene, '/measured', *style, has_gripper=has_gripper, meshes=meshes
+        )
         self._commanded = Body(self._scene, '/commanded', *style, is_ghost=True)
         self._pivot = self._add_axes('/pivot', 0.16, 0.006)
         self._goal = self._add_axes('/goal', 0.22, 0.004)

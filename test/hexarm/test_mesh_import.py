@@ -193,6 +193,8 @@ def test_packages_are_found_where_ros_has_them_and_around_the_urdf(
         ('https://example.org/a.stl', None, 'is no file of this computer'),
         ('package://unknown/a.stl', None, "package 'unknown', which is not found: --package"),
         ('bad\x7f*.stl', None, 'does not exist'),
+        (f'{"long" * 999}.stl', None, 'cannot be read: File name too long'),
+        (f'package://{"long" * 999}/a.stl', None, 'is not found: --package'),
         ('one.obj', 'v 1 0 0\nv 0 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n', 'is no surface but'),
         (
             'line.obj',

@@ -11,6 +11,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from std_msgs.msg import Float64
 
+from hexarm.link_meshes import meshes_of
 from hexarm.panel import page_state
 from hexarm.panel.gripper import gripper_of
 from hexarm.panel.nodes.machine_subscriptions import MachineSubscriptions
@@ -113,7 +114,10 @@ class PanelNode(Node):
         self._socket = ControlsSocket(machine_text, self._requests.take)
         handlers = {JOYSTICK_PATH: self._joystick.serve, CONTROLS_PATH: self._socket.serve}
         self._server = start_server(host, port, label, handlers)
-        self._scene = Scene(self._server, self._machine, gripper is not None)
+        meshes, faults = meshes_of(name)
+        for fault in faults:
+            self.get_logger().warning(fault)
+        self._scene = Scene(self._server, self._machine, gripper is not None, meshes)
         self._reach = NewestWorker[tuple[Pose, Array | None]](self._show_reach)
         self._moved_at = self._gripped_at = float('-inf')
         self._ticks = 0

@@ -1,14 +1,19 @@
 """Bars, meshes and margins: what the page draws, without a page."""
 
+from pathlib import Path
+from types import SimpleNamespace
 from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
 
+from hexarm.link_meshes import LinkMesh
 from hexarm.machines import load
+from hexarm.panel.body import Body
 from hexarm.panel.pieces import bar, bars_between, hull, pieces, plate, sphere
 from hexarm.panel.room import GOOD, NARROW, NONE_LEFT, colour, shares
 from hexarm.panel.scene import Scene
+from hexarm.panel.view import Stance
 from manipulator.limits.surroundings import BodiesConfig, BoxConfig, SurroundingsConfig
 from manipulator.rotation import from_quaternion
 
@@ -66,6 +71,50 @@ def test_colours_go_from_red_over_amber_to_green():
     assert colour(-1.0) == colour(0.0) == NONE_LEFT
     assert colour(0.175) == NARROW
     assert colour(1.0) == GOOD
+
+
+class PaperScene:
+    """Keeps what is added, by name, as viser's handles have it."""
+
+    def __init__(self):
+        self.handles = {}
+
+    def add_mesh_simple(self, name, vertices, faces, color, **_):
+        self.handles[name] = SimpleNamespace(vertices=vertices, faces=faces, color=color)
+        return self.handles[name]
+
+    def add_batched_meshes_simple(self, name, *_, batched_scales, batched_colors, **__):
+        handle = SimpleNamespace(batched_scales=batched_scales, batched_colors=batched_colors)
+        self.handles[name] = handle
+        return handle
+
+
+def test_links_with_meshes_are_drawn_by_them_and_the_others_by_rods():
+    machine, scene, size = load('puma560'), PaperScene(), 0.5
+    chain, corners = machine.kinematics.chain, np.random.default_rng(4).normal(size=(5, 3, 3))
+    mesh = LinkMesh(Path('a.stl'), corners.astype(np.float32))
+    body = Body(
+        scene, 'm', machine.kinematics, size, meshes=[mesh, None, None, mesh, None, None, mesh]
+    )
+    joints = np.array([0.3, -0.5, 0.7, 1.1, -0.2, 0.4])
+    body.show(Stance(chain.forward(joints), joints), {'joint 3': 0.0, 'joint 1': 0.0})
+    assert {name for name in scene.handles if 'mesh' in name} == {f'm/mesh_{i}' for i in (0, 3, 6)}
+    for i, moved in ((0, np.eye(4)), (3, chain.displacements(joints)[3])):
+        solid = scene.handles[f'm/mesh_{i}']
+        turn = from_quaternion(np.roll(solid.wxyz, -1))
+        here = solid.vertices[solid.faces] @ turn.T + solid.position
+        expected = size * (corners @ moved[:3, :3].T + moved[:3, 3])
+        np.testing.assert_allclose(here, expected, atol=1e-6)
+    red, green, _ = scene.handles['m/mesh_3'].color
+    assert red > 1.5 * green  # at its limit
+    base = scene.handles['m/mesh_0'].color
+    assert max(base) - min(base) < 20
+    balls = scene.handles['m/balls'].batched_colors
+    assert tuple(balls[1]) == NONE_LEFT
+    assert tuple(balls[2]) == GOOD
+    drawn = scene.handles['m/bars'].batched_scales.any(axis=1)
+    assert drawn.tolist() == [False, True, True, False, True, True, False]
+    assert (scene.handles['m/balls'].batched_scales > 0).tolist() == [*drawn, False]
 
 
 def test_the_page_draws_the_surroundings_where_they_are():
