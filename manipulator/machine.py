@@ -177,7 +177,9 @@ class Machine:
     def _with_clearance(self, clearance: Clearance) -> Constraints:
         """In the group of all other limits, where there is one."""
         limits = self.constraints.limits
-        if not self.constraints.is_one_group or not clearance.owners:
+        if not clearance.owners:
+            return self.constraints
+        if not self.constraints.is_one_group:
             return Constraints((*limits, clearance))
         group = ClearGroup(self.constraints.checks[0][0], clearance, self.kinematics)
         own = [replace(cast(Any, limit), group=group) for limit in limits]
