@@ -19,6 +19,9 @@ from manipulator.pose import Pose
 
 Indices: TypeAlias = NDArray[np.intp]
 
+TOOL = 'tool'
+"""The name of the part that a tool is, also of an arm's last link."""
+
 HALVINGS = 20
 """Of the line to a pose that is too near to something."""
 
@@ -30,11 +33,13 @@ A_LIMIT = 1.0
 class Clearance:
     """A `Limit`: every clearance at least 0, its owner a sentence as 'link 3 meets the floor'.
 
-    group and columns: see `Grouped`.
+    tip (3,): the point of the tool in force, platform frame; None of a machine without tools. From
+    the platform's origin to it is one more part. group and columns: see `Grouped`.
     """
 
     bodies: Bodies
     obstacles: tuple[Obstacle, ...]
+    tip: Array | None = None
     group: LimitGroup | None = None
     columns: slice = field(default_factory=lambda: slice(0))
     quantity: str = ''
@@ -48,9 +53,12 @@ class Clearance:
 
     def __post_init__(self) -> None:
         """Lays out what the kernel is given: who meets whom, and the radii between them."""
-        names, radii = self.bodies.names, self.bodies.radii
+        names, radii, moving = self.bodies.names, self.bodies.radii, self.bodies.moving
+        if self.tip is not None:
+            moving = (*moving, len(names))
+            names, radii = (*names, TOOL), np.append(radii, self.bodies.tool_radius)
         first, second = np.array(self.bodies.pairs, dtype=np.intp).reshape(-1, 2).T
-        faced = [(part, box) for part in self.bodies.moving for box in self.obstacles]
+        faced = [(part, box) for part in moving for box in self.obstacles]
         parts = np.array([part for part, _ in faced], dtype=np.intp)
         boxes = np.array([box.numbers for _, box in faced]).reshape(-1, 7)
         owners = [f'{names[i]} meets {names[k]}' for i, k in self.bodies.pairs]
@@ -74,6 +82,12 @@ class Clearance:
         Of capsules with one name, as the lines of a platform, the least.
         """
         segments = self.bodies.segments(pose, joints)
+        if self.tip is not None:
+            tool = np.concatenate(
+                [pose.position, pose.position + pose.rotation @ self.tip], axis=-1
+            )
+            one = stretched(tool[..., None, :], (*segments.shape[:-2], 1, 6))
+            segments = np.concatenate([segments, one], axis=-2)
         first, second, widths = self._of_pairs
         parts, boxes, radii = self._of_boxes
         lead = segments.shape[:-2]

@@ -347,3 +347,5 @@ def test_bad_surroundings_are_named_all_at_once():
     ) == ['bodies.rod_diameter_mm: an arm has no such parts']
     meeting = problems_of(text + f'surroundings: {{floor_mm: 350, {known}}}\n')
     assert 'home: link 2 meets the floor by 50 mm' in meeting
+    below = 'surroundings: {floor_mm: 200}\ntools: [{name: pole, xyz_mm: [0, 0, 300]}]\n'
+    assert problems_of(text + below) == ['home: tool meets the floor by 13.6 mm']
