@@ -7,10 +7,11 @@ import numpy as np
 from arm_control.arm import SerialArm
 from manipulator.arrays import Array, frozen
 from manipulator.errors import ConfigError
+from manipulator.limits.clearance import TOOL
 from manipulator.limits.surroundings import Bodies, BodiesConfig
 from manipulator.pose import Pose
 
-NAMES = ('base', *(f'link {i}' for i in range(1, 6)), 'tool')
+NAMES = ('base', *(f'link {i}' for i in range(1, 6)), TOOL)
 MOVING = tuple(range(2, len(NAMES)))
 """Not the base, and not link 1, which turns about it: they stand on the floor."""
 
@@ -31,7 +32,7 @@ def arm_bodies(arm: SerialArm, config: BodiesConfig) -> Bodies:
         points = line_of(arm, joints)
         return np.concatenate([points[..., :-1, :], points[..., 1:, :]], axis=-1)
 
-    return Bodies(NAMES, frozen(radii), pairs, MOVING, segments)
+    return Bodies(NAMES, frozen(radii), pairs, MOVING, segments, float(radii[-1]))
 
 
 def line_of(arm: SerialArm, joints: Array) -> Array:

@@ -86,9 +86,10 @@ class ArmJogger:
         By the rates of the limited values, which change little while it brakes.
         """
         limits, joints = self.of_pose, motion.joints
-        here = limits.values(motion.pose, joints)
-        ahead = motion.joints + dt * self._joint_rates(motion, twist)
-        rate = (limits.values(motion.pose.moved(twist * dt), ahead) - here) / dt
+        ahead = joints + dt * self._joint_rates(motion, twist)
+        poses = motion.pose.moved(np.outer([0.0, dt], twist))
+        here, there = limits.values(poses, np.array([joints, ahead]))
+        rate = (there - here) / dt
         is_rising, is_falling = rate > STILL, rate < -STILL
         room = np.where(
             is_rising, limits.high - here, np.where(is_falling, here - limits.low, np.inf)

@@ -22,6 +22,7 @@ from hexarm.simulation.dynamics_config import SCHEMAS
 from manipulator.config import build, forms_of, parse_yaml
 from manipulator.errors import ConfigError, ManipulatorError
 from manipulator.formatting import shown
+from manipulator.frames import Frames
 from manipulator.machine import Machine, MachineFile
 from manipulator.motion_limits import MotionConfig
 
@@ -92,9 +93,10 @@ def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
     if kind and all(sections.get(name) for name in ROOM):
         machine = found.of(lambda: _machine(kind, content, whole))
     if machine is not None and whole is not None:
-        found.of(partial(frames_of, whole, machine.kinematics))
+        frames = found.of(partial(frames_of, whole, machine.kinematics)) or Frames()
         machine = found.of(partial(machine.within, whole.task_space)) or machine
-        machine = found.of(partial(machine.among, whole.surroundings, whole.bodies)) or machine
+        around = whole.surroundings, whole.bodies, frames.tools
+        machine = found.of(partial(machine.among, *around)) or machine
     calibration = _calibration(found, sections.get('servos'))
     if machine is not None:
         home = _home_problems(kind, machine, content)

@@ -204,9 +204,9 @@ def load(name_or_path: str) -> Machine:
     try:
         machine = loader(machine_file.kind)(machine_file)
         machine = machine.within(machine_file.task_space)
-        machine = machine.among(machine_file.surroundings, machine_file.bodies)
-        machine = replace(machine, deflection=_deflection(machine_file, machine.kinematics))
         frames = frames_of(machine_file, machine.kinematics)
+        machine = machine.among(machine_file.surroundings, machine_file.bodies, frames.tools)
+        machine = replace(machine, deflection=_deflection(machine_file, machine.kinematics))
         frames = replace(frames, is_load_fixed=machine.deflection is not None)
         machine = replace(machine, frames=frames)
     except ConfigError as error:

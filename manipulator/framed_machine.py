@@ -11,7 +11,7 @@ import numpy as np
 
 from manipulator import rotation as so3
 from manipulator.arrays import Array, Mask
-from manipulator.frames import Frames
+from manipulator.frames import NO_TOOL, Frames
 from manipulator.kinematics import ForwardSolution, Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import Bounds, BrakingPaths, LimitGroup, LimitOf, Search
@@ -25,6 +25,8 @@ PATH_ROTATION = slice(5, 14)
 
 def in_frames(machine: Machine, frames: Frames) -> Machine:
     """The machine as driven by T_work_pivot; with the same kinematics when frames are plain."""
+    held = frames.T_platform_pivot.position if frames.tool != NO_TOOL else np.zeros(3)
+    machine = machine.holding(held)
     if frames.are_plain:
         return replace(machine, frames=frames)
     kinematics = FramedKinematics(machine.kinematics, frames)

@@ -1,15 +1,15 @@
 """A machine as the nodes use it: its kinematics, its limits, its jogger."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Generic, Literal, TypeVar, cast
 
 import numpy as np
 
-from manipulator.arrays import Array
+from manipulator.arrays import Array, frozen
 from manipulator.config import build_both, key
 from manipulator.errors import ConfigError, InvalidInput
-from manipulator.frames import Frames, FramesConfig, ToolConfig
+from manipulator.frames import Frames, FramesConfig, Tool, ToolConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.clearance import Clearance, ClearGroup
 from manipulator.limits.constraints import Constraints
@@ -161,26 +161,49 @@ class Machine:
             motion=replace(self.motion, axis_speeds=task_space.speeds),
         )
 
-    def among(self, surroundings: SurroundingsConfig, bodies: BodiesConfig) -> 'Machine':
-        """With clearances as limits as well; ConfigError names all that meets at home."""
+    def among(
+        self, surroundings: SurroundingsConfig, bodies: BodiesConfig, tools: Sequence[Tool] = ()
+    ) -> 'Machine':
+        """With clearances as limits as well; ConfigError names all that meets at home.
+
+        The first of the tools is on it there; it holds none until `holding`.
+        """
         obstacles = surroundings.obstacles()
         if not obstacles and bodies == BodiesConfig():
             return self
         if self.make_bodies is None:
             raise ConfigError(['surroundings, bodies: not known of this kind of machine'])
-        clearance = Clearance(self.make_bodies(bodies), obstacles)
+        tips = [tool.T_platform_tool.position for tool in tools]
+        clearance = Clearance(self.make_bodies(bodies), obstacles, tips[0] if tips else None)
         kinematics = self.kinematics
         found = Constraints((clearance,)).violations(
             kinematics.home, kinematics.inverse(kinematics.home)
         )
         if found:
             raise ConfigError([f'home: {words}' for words in in_words(found)])
+        if tips:
+            clearance = replace(clearance, tip=frozen(np.zeros(3)))
         return replace(self, constraints=self._with_clearance(clearance), obstacles=obstacles)
+
+    def holding(self, tip: Array) -> 'Machine':
+        """With the point (3,) of the tool in force, platform frame, where clearances count it."""
+        clearance = self.constraints.limits[-1] if self.constraints.limits else None
+        if not isinstance(clearance, Clearance) or clearance.tip is None:
+            return self
+        limits = self.constraints.limits[:-1]
+        if isinstance(clearance.group, ClearGroup):
+            inner = clearance.group.inner
+            limits = tuple(replace(cast(Any, limit), group=inner) for limit in limits)
+        bare = replace(self, constraints=Constraints(limits))
+        held = replace(clearance, tip=frozen(tip), group=None, columns=slice(0))
+        return replace(self, constraints=bare._with_clearance(held))
 
     def _with_clearance(self, clearance: Clearance) -> Constraints:
         """In the group of all other limits, where there is one."""
         limits = self.constraints.limits
-        if not self.constraints.is_one_group or not clearance.owners:
+        if not clearance.owners:
+            return self.constraints
+        if not self.constraints.is_one_group:
             return Constraints((*limits, clearance))
         group = ClearGroup(self.constraints.checks[0][0], clearance, self.kinematics)
         own = [replace(cast(Any, limit), group=group) for limit in limits]

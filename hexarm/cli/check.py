@@ -94,8 +94,10 @@ def _reach(machine: Machine) -> dict[str, tuple[float, float]]:
 
 
 def _margin(reading: LimitReading, units: Units) -> str:
-    owner = f' ({reading.owner})' if reading.owner else ''
     unit = f' {units.name(reading.unit)}'.rstrip().replace(' °', '°')
+    if not reading.quantity:
+        return f'{reading.margin * units.factor(reading.unit):.4g}{unit} before {reading.owner}'
+    owner = f' ({reading.owner})' if reading.owner else ''
     return f'{reading.quantity} {reading.margin * units.factor(reading.unit):.4g}{unit}{owner}'
 
 

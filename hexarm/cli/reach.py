@@ -100,7 +100,7 @@ def _in_words(found: Reach, units: Units) -> Lines:
         lines.append('{:<30} {:>10}   {:<22} {:>10}  {:>11}'.format(*head))
     for reading in found.limits[: max(SHOWN, len(found.broken))]:
         factor, unit = units.factor(reading.unit), units.name(reading.unit)
-        name = f'{reading.owner}: {reading.quantity}' if reading.owner else reading.quantity
+        name = ': '.join(filter(None, (reading.owner, reading.quantity)))
         span = f'{_bound(factor * reading.low)} … {_bound(factor * reading.high)} {unit}'
         value, margin = (units.number(v, reading.unit) for v in (reading.value, reading.margin))
         values = f'{value:>10}   {span:<22} {margin:>10}'

@@ -19,6 +19,9 @@ from manipulator.pose import Pose
 
 Indices: TypeAlias = NDArray[np.intp]
 
+TOOL = 'tool'
+"""The name of the part that a tool is, also of an arm's last link."""
+
 HALVINGS = 20
 """Of the line to a pose that is too near to something."""
 
@@ -30,11 +33,13 @@ A_LIMIT = 1.0
 class Clearance:
     """A `Limit`: every clearance at least 0, its owner a sentence as 'link 3 meets the floor'.
 
-    group and columns: see `Grouped`.
+    tip (3,): the point of the tool in force, platform frame; None of a machine without tools. From
+    the platform's origin to it is one more part. group and columns: see `Grouped`.
     """
 
     bodies: Bodies
     obstacles: tuple[Obstacle, ...]
+    tip: Array | None = None
     group: LimitGroup | None = None
     columns: slice = field(default_factory=lambda: slice(0))
     quantity: str = ''
@@ -44,28 +49,45 @@ class Clearance:
     high: Array = field(init=False)
     _of_pairs: tuple[Indices, Indices, Array] = field(init=False, repr=False)
     _of_boxes: tuple[Indices, Array, Array] = field(init=False, repr=False)
+    _rows: tuple[Indices, Indices] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Lays out what the kernel is given: who meets whom, and the radii between them."""
-        names, radii = self.bodies.names, self.bodies.radii
+        names, radii, moving = self.bodies.names, self.bodies.radii, self.bodies.moving
+        if self.tip is not None:
+            moving = (*moving, len(names))
+            names, radii = (*names, TOOL), np.append(radii, self.bodies.tool_radius)
         first, second = np.array(self.bodies.pairs, dtype=np.intp).reshape(-1, 2).T
-        faced = [(part, box) for part in self.bodies.moving for box in self.obstacles]
+        faced = [(part, box) for part in moving for box in self.obstacles]
         parts = np.array([part for part, _ in faced], dtype=np.intp)
         boxes = np.array([box.numbers for _, box in faced]).reshape(-1, 7)
         owners = [f'{names[i]} meets {names[k]}' for i, k in self.bodies.pairs]
         owners += [f'{names[part]} {box.words}' for part, box in faced]
+        unique = list(dict.fromkeys(owners))
+        rows = np.array([unique.index(owner) for owner in owners], dtype=np.intp)
+        order = np.argsort(rows, kind='stable')
         for name, value in {
-            'owners': tuple(owners),
-            'low': frozen(np.zeros(len(owners))),
-            'high': frozen(np.full(len(owners), np.inf)),
+            'owners': tuple(unique),
+            'low': frozen(np.zeros(len(unique))),
+            'high': frozen(np.full(len(unique), np.inf)),
+            '_rows': (order, np.searchsorted(rows[order], np.arange(len(unique)))),
             '_of_pairs': (first, second, radii[first] + radii[second]),
             '_of_boxes': (parts, boxes, radii[parts]),
         }.items():
             object.__setattr__(self, name, value)
 
     def values(self, pose: Pose, joints: Array) -> Array:
-        """Metres (..., k) to each meeting, negative where parts overlap; pairs of parts first."""
+        """Metres (..., k) to each meeting, negative where parts overlap; pairs of parts first.
+
+        Of capsules with one name, as the lines of a platform, the least.
+        """
         segments = self.bodies.segments(pose, joints)
+        if self.tip is not None:
+            tool = np.concatenate(
+                [pose.position, pose.position + pose.rotation @ self.tip], axis=-1
+            )
+            one = stretched(tool[..., None, :], (*segments.shape[:-2], 1, 6))
+            segments = np.concatenate([segments, one], axis=-2)
         first, second, widths = self._of_pairs
         parts, boxes, radii = self._of_boxes
         lead = segments.shape[:-2]
@@ -76,7 +98,12 @@ class Clearance:
         if parts.size:
             own = np.take(segments, parts, axis=-2)
             _kernel.box_clearance(own, stretched(boxes, (*room.shape, 7)), room)
-        return np.concatenate([between - widths, room - radii], axis=-1)
+        everything = np.concatenate([between - widths, room - radii], axis=-1)
+        order, starts = self._rows
+        if len(order) == len(starts):
+            return everything
+        least: Array = np.minimum.reduceat(np.take(everything, order, axis=-1), starts, axis=-1)
+        return least
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,11 +147,20 @@ class ClearGroup:
         return np.concatenate([inner.ravel(), least])
 
     def keeps(self, ranges: Array, pose: Pose, joints: Array) -> Mask:
-        """See `LimitGroup`."""
+        """See `LimitGroup`; clearances are computed where all else is kept, which costs less."""
         inner, least = self._parted(ranges)
         kept = self.inner.keeps(inner, pose, joints)
-        clear = (self.clearance.values(pose, joints) >= least).all(axis=-1)
-        return np.asarray(kept & clear)
+        if not kept.any():
+            return kept
+        if kept.ndim and np.shape(joints)[:-1] == pose.position.shape[:-1]:
+            clear = self._is_clear(least, pose[kept], np.asarray(joints)[kept])
+            kept[kept] = clear
+            return kept
+        return np.asarray(kept & self._is_clear(least, pose, joints))
+
+    def _is_clear(self, least: Array, pose: Pose, joints: Array) -> Mask:
+        clear = self.clearance.values(pose, joints) >= least
+        return np.asarray(np.logical_and.reduce(clear, axis=-1))
 
     def descended(self, search: Search, bounds: Sequence[Bounds], start: Pose) -> Pose:
         """See `LimitGroup`; where parts would meet there, on the line to it, before they do."""
@@ -157,30 +193,30 @@ class ClearGroup:
             inner, replace(paths, twists=paths.twists[first:])
         )
         found = first + free
-        is_checked = found in (first, count) or self._is_clear(least, paths, found, met)
+        is_checked = found in (first, count) or self._is_free(least, paths, found, met)
         return (found if is_checked else count), met
 
     def _first_clear(self, least: Array, paths: BrakingPaths, met: Array) -> int:
         """The largest of the twists with a path that meets nothing, by bisection; or how many."""
-        if self._is_clear(least, paths, 0, met):
+        if self._is_free(least, paths, 0, met):
             return 0
         blocked, free = 0, len(paths.twists) - 1
-        if free == 0 or not self._is_clear(least, paths, free, met):
+        if free == 0 or not self._is_free(least, paths, free, met):
             return len(paths.twists)
         while free - blocked > 1:
             middle = (blocked + free) // 2
-            if self._is_clear(least, paths, middle, met):
+            if self._is_free(least, paths, middle, met):
                 free = middle
             else:
                 blocked = middle
         return free
 
-    def _is_clear(self, least: Array, paths: BrakingPaths, index: int, met: Array) -> bool:
+    def _is_free(self, least: Array, paths: BrakingPaths, index: int, met: Array) -> bool:
         """Whether a path meets nothing; where it does, as `braking_path`, is put into `met`."""
         poses = paths.poses(paths.twists[index])
         own = paths.of_platform(poses)
         joints = self.kinematics.inverse_or_nan(own, paths.joints)
-        clear: Mask = np.logical_and.reduce(self.clearance.values(own, joints) >= least, axis=-1)
+        clear = self._is_clear(least, own, joints)
         if clear.all():
             return True
         tick = int(np.argmin(clear))

@@ -157,7 +157,7 @@ class Bodies:
     """The parts of a machine as capsules: segments (..., m, 6) of a pose and its joints (...).
 
     A segment is its two ends in the base frame. radii (m,) in metres; pairs are of parts that may
-    not meet, `moving` are those that may meet no obstacle.
+    not meet, `moving` are those that may meet no obstacle. tool_radius: of a tool that is added.
     """
 
     names: tuple[str, ...]
@@ -165,6 +165,7 @@ class Bodies:
     pairs: tuple[tuple[int, int], ...]
     moving: tuple[int, ...]
     segments: Callable[[Pose, Array], Array] = field(repr=False)
+    tool_radius: float = 0.0
 
 
 def _metres(one: object, other: object) -> Array:

@@ -30,3 +30,21 @@ def test_the_stick_cannot_drive_the_tool_below_the_table(make_world, tmp_path):
     executor = world.controller.supervisor.executor
     tool = line_of(world.machine.kinematics, np.asarray(executor.joints))[-1]
     assert TABLE - 1e-9 <= tool[2] < TABLE + 2e-3
+
+
+def test_a_tool_of_the_machine_file_is_kept_off_the_table_too(make_world, tmp_path):
+    path = tmp_path / 'arm.yaml'
+    corners = f'[[-900, 200, 0], [900, 900, {1e3 * TABLE}]]'
+    more = f'surroundings: {{boxes: [{{name: table, corners_mm: {corners}}}]}}\n'
+    more += 'tools: [{name: probe, xyz_mm: [0, 0, 80]}]\n'
+    path.write_text(machines.find('arm_6r').read_text() + more)
+    world = make_world(str(path))
+    home, tip = (
+        machine.kinematics.home for machine in (world.machine, world.controller.supervisor.machine)
+    )
+    refused = world.go_to(home.moved([0, 0, TABLE - tip.position[2] - 0.01, 0, 0, 0]))
+    assert re.search('tool meets the box table by 10 mm', refused.reason)
+    world.jog([0, 0, -0.2, 0, 0, 0], 3.0)
+    world.run(0.5)
+    pose = world.controller.supervisor.executor.state.pose
+    assert TABLE - 1e-9 <= pose.position[2] < TABLE + 2e-3

@@ -11,9 +11,11 @@ from hexarm.machine_check import problems_of
 from manipulator import _kernel
 from manipulator.analysis.nearest import nearest_reachable
 from manipulator.analysis.reach import reach
-from manipulator.errors import Refused, Unreachable
+from manipulator.analysis.travel import travel
+from manipulator.errors import ConfigError, Refused, Unreachable
 from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames
+from manipulator.limits.clearance import Clearance
 from manipulator.limits.surroundings import (
     BodiesConfig,
     BoxConfig,
@@ -267,6 +269,64 @@ def test_rods_and_platform_meet_only_where_they_are_given_a_thickness():
             assert value + 3e-3 == pytest.approx(sampled_distance(one, other), abs=3e-4)
 
 
+def test_links_that_are_not_joined_may_not_meet():
+    machine = machines.load('arm_6r')
+    kinematics, bodies = machine.kinematics, BodiesConfig((80.0,) * 7)
+    clearance = Clearance(machine.make_bodies(bodies), ())
+    names = ['base', *(f'link {i}' for i in range(1, 6)), 'tool']
+    pairs = [owner.split(' meets ') for owner in clearance.owners]
+    assert not any(abs(names.index(a) - names.index(b)) == 1 for a, b in pairs)
+    assert ['link 2', 'tool'] in pairs
+    rng, (low, high) = np.random.default_rng(5), machine.joint_ranges
+    for joints in rng.uniform(low, high, (20, 6)):
+        pose = kinematics.forward(joints).pose
+        line = kinematics.skeleton(pose, joints)[0].points
+        links = dict(zip(names, np.hstack([line[:-1], line[1:]]), strict=True))
+        found = clearance.values(pose, joints)
+        for (a, b), value in zip(pairs, found, strict=True):
+            assert value + 0.08 == pytest.approx(sampled_distance(links[a], links[b]), abs=6e-3)
+
+
+def test_a_folded_arm_that_would_meet_itself_is_refused_by_name():
+    machine = machines.load('arm_6r')
+    home = machine.kinematics.inverse(machine.kinematics.home)
+    thick = machine.among(SurroundingsConfig(), BodiesConfig((160.0,) * 7))
+    _, high = machine.joint_ranges
+    folded = np.array([home[0], home[1], high[2], 0.0, high[4], 0.0])
+    pose = machine.kinematics.forward(folded).pose
+    assert machine.constraints.admits(pose, folded)
+    with pytest.raises(Unreachable, match=r'(link \d|base) meets (link \d|tool) by \d+'):
+        thick.constraints.check(pose, folded)
+    with pytest.raises(ConfigError, match='home: base meets tool by'):
+        machine.among(SurroundingsConfig(), BodiesConfig((1200.0, *[5.0] * 5, 300.0)))
+
+
+@pytest.mark.parametrize('name', AXES)
+def test_travel_ends_at_the_wall(name):
+    walled_in = walled(name)
+    machine = walled_in.machine
+    way = travel(machine, machine.kinematics.home, np.eye(6)[walled_in.axis])
+    assert way.seconds == pytest.approx(walled_in.gap, abs=1e-7)
+    assert 'meets the box wall' in way.reason
+
+
+def test_a_machine_that_meets_something_already_may_move_away_alone():
+    machine = machines.load('arm_6r')
+    home = machine.kinematics.home
+    joints = machine.kinematics.inverse(home)
+    x, y, z = 1e3 * home.position
+    tall = BoxConfig('post', centre_mm=(x, y + 45.0, z), size_mm=(80.0, 80.0, 80.0))
+    posted = machine.among(SurroundingsConfig(boxes=(tall,)), BodiesConfig())
+    inside = home.moved([0, 0.02, 0, 0, 0, 0])
+    joints = machine.kinematics.inverse(inside, joints)
+    jogger = posted.make_jogger(posted)
+    for way, is_free in ((1.0, False), (-1.0, True)):
+        motion = JogMotion.at_rest(inside, joints)
+        for _ in range(20):
+            motion = jogger.step(motion, np.array([0, way * 0.1, 0, 0, 0, 0]), DT)
+        assert (abs(motion.pose.position[1] - inside.position[1]) > 0.005) == is_free
+
+
 def test_bad_surroundings_are_named_all_at_once():
     text = machines.find('arm_6r').read_text()
     bad = (
@@ -287,3 +347,5 @@ def test_bad_surroundings_are_named_all_at_once():
     ) == ['bodies.rod_diameter_mm: an arm has no such parts']
     meeting = problems_of(text + f'surroundings: {{floor_mm: 350, {known}}}\n')
     assert 'home: link 2 meets the floor by 50 mm' in meeting
+    below = 'surroundings: {floor_mm: 200}\ntools: [{name: pole, xyz_mm: [0, 0, 300]}]\n'
+    assert problems_of(text + below) == ['home: tool meets the floor by 13.6 mm']
