@@ -67,7 +67,9 @@ def _poses(kinematics: Kinematics, joints: Array) -> tuple[list[tuple[Pose, bool
         poses, is_complete = _poses(kinematics.inner, joints)
         return [(kinematics.frames.pivot(pose), side) for pose, side in poses], is_complete
     if isinstance(kinematics, StackKinematics):
-        raise NoSolution('a stack has those of its sections, combined')
+        raise NoSolution(
+            'each section of a stack has assembly modes of its own, which are not combined'
+        )
     if not isinstance(kinematics, ParallelPlatform):
         return [(kinematics.forward(joints).pose, True)], True
     found = modes_of(kinematics, joints)

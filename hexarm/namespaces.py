@@ -21,7 +21,7 @@ class NoMachine(TimedOut):
 def no_machine_in(namespace: str, there: Collection[str], domain: int) -> str:
     """That no machine is in a namespace, and where others are; `there` are published topics."""
     others = sorted(topic.removesuffix(MARK) for topic in there if topic.endswith(MARK))
-    hint = f'; there are machines in {", ".join(others)}' if others else ''
+    hint = f' There are machines in {", ".join(others)}' if others else ''
     space = namespace.strip('/')
     return f'no machine found in /{space} on ROS domain {domain}: is it running there?{hint}'
 

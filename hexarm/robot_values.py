@@ -84,14 +84,15 @@ def moved_to(pose: Pose, named: Mapping[str, float | None]) -> Pose:
     return pose_from(numbers)
 
 
-def checked(name: str, value: Any, above: float = -math.inf) -> float:
-    """A finite number, above another one; InvalidInput names it."""
+def checked(name: str, value: Any, above: float = -math.inf, least: float = -math.inf) -> float:
+    """A finite number, above or at least another one; InvalidInput names it."""
     try:
         number = float(value)
     except (TypeError, ValueError):
         number = math.nan
-    if not (math.isfinite(number) and number > above):
+    if not (math.isfinite(number) and number > above and number >= least):
         needs = '' if above == -math.inf else f' above {above:g}'
+        needs += '' if least == -math.inf else f' of at least {least:g}'
         raise InvalidInput(f'{name}: {value!r} is not a finite number{needs}')
     return number
 

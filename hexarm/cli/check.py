@@ -43,7 +43,7 @@ def shipped_machines(arguments: argparse.Namespace) -> Answer:
             }
         )
     lines = [f'{e["name"]:<14} {e["kind"]:<18} {e["description"]}' for e in entries]
-    return {'machines': entries}, lines
+    return {'machines': entries}, [*lines, f'in {path.parent}']
 
 
 def run(arguments: argparse.Namespace) -> int:

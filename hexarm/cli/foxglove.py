@@ -4,7 +4,7 @@ import argparse
 import math
 
 from hexarm.cli.up import StopSignal
-from hexarm.namespaces import namespace_of
+from hexarm.namespaces import NoMachine, namespace_of
 from hexarm.recording.topics import TopicSelection, nothing_recorded
 
 
@@ -20,7 +20,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Serves; status 0 after Ctrl-C."""
+    """Serves; status 0 after Ctrl-C, 1 where no machine comes."""
     from hexarm.recording.foxglove_server import FoxgloveServer  # noqa: PLC0415 (needs the SDK)
     from hexarm.recording.session import Control, record  # noqa: PLC0415 (needs ROS)
 
@@ -40,5 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
                 flush=True,
             ),
         )
-        record(server, namespace, selection, control)
+        there, domain = record(server, namespace, selection, control)
+    if not stop.is_set:
+        raise NoMachine(nothing_recorded(namespace, [], there, domain))
     return 0

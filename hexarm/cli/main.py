@@ -41,7 +41,7 @@ class Parser(argparse.ArgumentParser):
         found = re.search(r"invalid choice: '(.*?)' \(choose from (.*)\)", message)
         if found is not None:
             choices = re.findall(r'[\w-]+', found[2])
-            near = difflib.get_close_matches(found[1], choices, n=1)
+            near = difflib.get_close_matches(found[1].lower(), choices, n=1)
             message = f'{found[1]!r} is not one of {", ".join(choices)}'
             message += f', did you mean {near[0]!r}?' if near else ''
         super().error(message[:MOST_OF_AN_ERROR])

@@ -97,7 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(described(machine), flush=True)
         parts.start_nodes(arguments.separate)
         try:
-            enable(client, namespace)
+            enable(client, namespace, machine)
             print(_welcome(namespace, machine, arguments.port), flush=True)
             for page in pages:
                 print(f'The panel is on {panel_words(page)}', flush=True)
@@ -217,11 +217,13 @@ def check_alive(graph: Graph) -> None:
         raise NodeDied(f'{dead}; stopping the others')
 
 
-def enable(client: 'Client', namespace: str) -> None:
+def enable(client: 'Client', namespace: str, machine: str) -> None:
     """Energises the servos; a machine that is stopped waits until it is cleared."""
     space = namespace.strip('/')
+    is_ours = read(machine).driver == 'serial'
+    what = 'servos are energised one by one' if is_ours else 'nothing moves yet'
     while True:
-        print('enabling; servos are energised one by one', flush=True)
+        print(f'enabling; {what}', flush=True)
         try:
             client.enable()
             return

@@ -1,9 +1,12 @@
 """What a Robot takes for a pose, and what it refuses."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from hexarm import machines
+from hexarm.robot import Robot
 from hexarm.robot_values import (
     Limits,
     moved_to,
@@ -92,3 +95,10 @@ def test_numbers_by_name_come_from_both_places_and_must_be_some():
         numbers_by_name(None, {}, 'joint')
     with pytest.raises(InvalidInput, match="joint_1: 'far' is not a finite number"):
         numbers_by_name({'joint_1': 'far'}, {}, 'joint')
+
+
+@pytest.mark.parametrize('wrong', [{'pause': -1.0}, {'repeat': 0}, {'speed': 0.0}])
+def test_a_replay_refuses_what_no_time_or_speed_is(wrong):
+    saved = SimpleNamespace(steps=lambda names: names)
+    with pytest.raises(InvalidInput, match=next(iter(wrong))):
+        Robot.replay(SimpleNamespace(saved_poses=saved), 'low', **wrong)

@@ -73,4 +73,5 @@ def test_poses_are_saved_by_name_gone_to_replayed_and_deleted(says):
     assert 'no saved pose is called' in says('go', 'hexapod', 'rihgt', status=2)
     says('delete', 'hexapod', 'pose_1')
     assert list(json.loads(says('poses', '--json'))['poses']) == ['right']
-    assert "no saved pose is called 'pose_1'" in says('delete', 'hexapod', 'pose_1', status=2)
+    refused = says('delete', 'hexapod', 'pose_1', status=2)
+    assert "hexarm: no saved pose is called 'pose_1'" in refused

@@ -43,7 +43,7 @@ def test_where_nobody_answers_namespace_and_domain_are_named_and_where_somebody_
     status, text = says('enable', 'hexapd')
     assert (status, text.count('\n')) == (1, 1)
     assert 'hexarm: no machine found in /hexapd on ROS domain ' in text
-    assert text.endswith('there are machines in /hexapod\n')
+    assert text.endswith('There are machines in /hexapod\n')
 
 
 def test_a_stop_from_the_same_computer_needs_no_ros(enabled):

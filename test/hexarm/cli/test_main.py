@@ -9,6 +9,7 @@ import pytest
 
 from hexarm.cli.commands import COMMANDS
 from hexarm.cli.main import main
+from hexarm.machines import find
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -20,13 +21,24 @@ def test_no_subcommand_prints_help_with_examples_and_fails(capsys):
     assert said.count('\n    ') >= len(COMMANDS)
 
 
-def test_unknown_subcommand_names_the_nearest(capsys):
+@pytest.mark.parametrize(('typed', 'meant'), [('machnies', 'machines'), ('IK', 'ik')])
+def test_unknown_subcommand_names_the_nearest(typed, meant, capsys):
     with pytest.raises(SystemExit) as ended:
-        main(['machnies'])
+        main([typed])
     assert ended.value.code == 2
     said = capsys.readouterr().err
-    assert "'machnies' is not one of" in said
-    assert "did you mean 'machines'?" in said
+    assert f"'{typed}' is not one of" in said
+    assert f"did you mean '{meant}'?" in said
+
+
+def test_the_list_of_machines_ends_with_their_folder(capsys):
+    assert main(['machines']) == 0
+    assert capsys.readouterr().out.endswith(f'\nin {find("robocake").parent}\n')
+
+
+def test_an_unknown_machine_lists_the_known_as_words(capsys):
+    assert main(['ik', 'cake', '--xyz', '0', '0', '0']) == 2
+    assert '(shipped: ar4_mk3, arm_6r, ' in capsys.readouterr().err
 
 
 def test_a_machine_is_named_once(capsys):

@@ -1,12 +1,13 @@
 """How `hexarm up` ends: it parks, or says why not and asks before it lets go."""
 
 from types import SimpleNamespace
+from unittest.mock import Mock
 
 import pytest
 
 pytest.importorskip('rclpy')
 
-from hexarm.cli.up import Interrupted, park
+from hexarm.cli.up import Interrupted, enable, park
 from manipulator.errors import Refused, Stopped
 
 
@@ -101,3 +102,8 @@ def test_servos_that_are_off_need_no_parking(stop, state):
     user = User(state)
     park(user, stop)
     assert user.asked == []
+
+
+def test_a_machine_without_a_board_is_not_said_to_energise_servos(capsys):
+    enable(Mock(), 'arm', 'ur3e')
+    assert capsys.readouterr().out == 'enabling; nothing moves yet\n'

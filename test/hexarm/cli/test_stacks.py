@@ -46,6 +46,11 @@ def test_joints_that_ik_gives_are_of_the_pose_that_fk_gives(stack, capsys):
     np.testing.assert_allclose(found['pose']['xyz'], [0.02, 0.0, 0.4], atol=1e-9)
 
 
+def test_all_modes_of_a_stack_are_refused_with_what_they_would_be(stack, capsys):
+    assert main(['fk', stack, '--all', *['0.19'] * 12]) == 2
+    assert 'each section of a stack has assembly modes of its own' in capsys.readouterr().err
+
+
 def test_a_pose_out_of_reach_names_the_section(stack, capsys):
     assert main(['reach', stack, '--xyz', '0', '0', '0.6', '--rpy', '0', '0', '0']) == 3
     assert 'section 2 leg 1: leg length' in capsys.readouterr().out

@@ -2,12 +2,14 @@
 
 import json
 import struct
+from unittest.mock import Mock
 
 import pytest
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from websockets.sync.client import connect
 
+from hexarm.cli.main import main
 from hexarm.recording.foxglove_server import FoxgloveServer
 from hexarm.recording.sink import Topic
 from manipulator.errors import Refused
@@ -64,3 +66,10 @@ def test_a_port_that_is_taken_is_named(server):
     port = int(server.address.rpartition(':')[2])
     with pytest.raises(Refused, match=f'port {port}'):
         FoxgloveServer('second', '127.0.0.1', port)
+
+
+def test_a_machine_that_does_not_come_is_status_1_with_the_reason(monkeypatch, capsys):
+    monkeypatch.setattr('hexarm.recording.session.record', lambda *_: (set(), 7))
+    monkeypatch.setattr('hexarm.cli.foxglove.StopSignal', lambda: Mock(is_set=False))
+    assert main(['foxglove', 'nowhere', '--port', '0']) == 1
+    assert 'no machine found in /nowhere on ROS domain 7' in capsys.readouterr().err

@@ -16,7 +16,7 @@ def test_namespace_without_topics_is_reported_with_domain_and_the_machines_that_
     assert nothing_recorded('arm', [], ['/rosout'], 7) == (
         'no machine found in /arm on ROS domain 7: is it running there?'
     )
-    assert nothing_recorded('hexa', [], THERE, 7).endswith('; there are machines in /hexapod')
+    assert nothing_recorded('hexa', [], THERE, 7).endswith('there? There are machines in /hexapod')
 
 
 def test_machine_that_is_there_is_not_blamed():
