@@ -94,8 +94,8 @@ class ParallelAxes(ClosedForm):
     tip = "joint 4's axis"
 
 
-NO_LOOP = -1
-"""Instead of the joint after which a loop for elimination begins."""
+NO_LOOP, MOST_LOOPS = -1, 4
+"""Instead of a loop for elimination; how many an arm has."""
 
 
 class Closes(IntEnum):
@@ -112,7 +112,7 @@ def arm_numbers(
     length: float,
     low: Array,
     high: Array,
-    first: int = NO_LOOP,
+    loops: tuple[int, ...] = (NO_LOOP,) * MOST_LOOPS,
 ) -> Array:
     """An arm in the order of `struct arm`: its chain, the closed form that it has, or almost."""
     closes = Closes.NO_FORM
@@ -120,7 +120,7 @@ def arm_numbers(
         closes = Closes.CLOSED if form.chain is chain else Closes.ALMOST
     without = np.zeros(len(chain.numbers) + 4)
     numbers = without if form is None else form.numbers
-    return frozen(np.concatenate([chain.numbers, numbers, [closes, length], low, high, [first]]))
+    return frozen(np.concatenate([chain.numbers, numbers, [closes, length], low, high, loops]))
 
 
 def closed_form(chain: Chain) -> ClosedForm | None:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from arm_control.chain import JOINTS, Chain, aligned, flat, in_parts
-from arm_control.closed_forms import NO_LOOP, ClosedForm, arm_numbers
+from arm_control.closed_forms import MOST_LOOPS, NO_LOOP, ClosedForm, arm_numbers
 from manipulator import _kernel
 from manipulator.arrays import Array
 from manipulator.pose import Pose
@@ -31,14 +31,14 @@ class Numerical:
     length: float
     low: Array
     high: Array
-    first: int = field(init=False)
+    loops: tuple[int, ...] = field(init=False)
     numbers: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Prepares what the kernel is given."""
-        first = best_loop(self.chain, self.length)
-        numbers = arm_numbers(self.chain, None, self.length, self.low, self.high, first)
-        object.__setattr__(self, 'first', first)
+        loops = best_loops(self.chain, self.length)
+        numbers = arm_numbers(self.chain, None, self.length, self.low, self.high, loops)
+        object.__setattr__(self, 'loops', loops)
         object.__setattr__(self, 'numbers', numbers)
 
     @property
@@ -58,7 +58,7 @@ class Numerical:
     def branches(self, pose: Pose, near: Array) -> Array:
         """What was found from `near`, which comes first, and from the cold starts: (..., 16, 6).
 
-        A branch may be missed.
+        Next to a singularity a branch may be missed.
         """
         return arm_branches(self.numbers, pose, near)[0]
 
@@ -83,7 +83,7 @@ class AlmostClosed:
     def __post_init__(self) -> None:
         """Prepares what the kernel is given."""
         own = self.numerical
-        numbers = arm_numbers(own.chain, self.ideal, own.length, own.low, own.high, own.first)
+        numbers = arm_numbers(own.chain, self.ideal, own.length, own.low, own.high, own.loops)
         object.__setattr__(self, 'numbers', numbers)
 
     @property
@@ -125,32 +125,39 @@ def arm_branches(numbers: Array, pose: Pose, near: Array) -> tuple[Array, int]:
     return found, in_parts(_kernel.arm_branches, numbers, *flat(poses), rows)
 
 
-TRIED = 12
-"""Postures on which the ways to begin the loop of an elimination are tried."""
-CANDIDATES = 48
-ORDER = (5, 2, 4, 0, 1, 3)
-"""Most arms have axes that are parallel, or that meet, where the first of these have a use."""
-GOOD, USEFUL = 1e-9, 1e-3
-"""Radians from a posture at which three quarters of its eliminations have a candidate."""
+TRIED = 48
+"""Postures on which each loop of an elimination is tried."""
+LOOPS, CANDIDATES = 12, 48
+"""See kernel/elimination.h and general.h."""
+ROUNDING, USEFUL = 1e-9, 0.03
+"""Radians from a posture at which a candidate is as good as exact, and at which a useful loop has
+its candidates, in the geometric mean."""
 
 
-def best_loop(chain: Chain, length: float) -> int:
-    """After which joint a loop begins that has its candidates near; NO_LOOP where none has a use.
+def best_loops(chain: Chain, length: float) -> tuple[int, ...]:
+    """The loops that have their candidates nearest, best first; NO_LOOP where none has a use.
 
     Which determinant tells an arm's branches depends on which of its axes are parallel or meet.
+    The second loop solves for another joint than the first: branches that have almost the same
+    angle there, which hides them, have others here.
     """
     joints = np.random.default_rng(0).uniform(-np.pi, np.pi, (TRIED, JOINTS))
-    poses, missed = chain.forward(joints), {}
-    for first in ORDER:
-        found, how = np.empty((TRIED, CANDIDATES, JOINTS)), np.array([length, first])
+    poses, missed = chain.forward(joints), np.empty(LOOPS)
+    for loop in range(LOOPS):
+        found, how = np.empty((TRIED, CANDIDATES, JOINTS)), np.array([length, loop])
         _kernel.general_candidates(chain.numbers, how, poses.position, poses.rotation, found)
         apart = np.abs(np.exp(1j * found) - np.exp(1j * joints)[:, None]).max(axis=-1)
-        nearest = np.sort(np.nan_to_num(apart, nan=np.inf).min(axis=-1))
-        missed[first] = float(nearest[3 * TRIED // 4])
-        if missed[first] < GOOD:
-            return first
-    best = min(missed, key=lambda first: missed[first])
-    return best if missed[best] < USEFUL else NO_LOOP
+        nearest = np.nan_to_num(apart, nan=np.inf).min(axis=-1).clip(ROUNDING, 1.0)
+        missed[loop] = np.exp(np.log(nearest).mean())
+    first, *others = (int(loop) for loop in np.argsort(missed))
+    others.sort(key=lambda loop: solved_joint(loop) == solved_joint(first))
+    useful = [loop for loop in (first, *others) if missed[loop] < USEFUL]
+    return tuple([*useful, *[NO_LOOP] * MOST_LOOPS][:MOST_LOOPS])
+
+
+def solved_joint(loop: int) -> int:
+    """The joint, 0 to 5, whose angle a loop's determinant tells."""
+    return (loop + 2) % JOINTS if loop < JOINTS else JOINTS - 1 - (loop + 2) % JOINTS
 
 
 ALMOST_PARALLEL, ALMOST_MEETING = np.radians(5.0), 0.005

@@ -5,7 +5,7 @@
 #include "vector.h"
 
 /* Of descent: from anywhere, and from the branches of the ideal arm. */
-enum { STARTS = 32, FEW_STARTS = 4, STEPS = 60, FEW_STEPS = 20 };
+enum { STARTS = 32, STEPS = 60, FEW_STEPS = 20 };
 /* Poses along one row at which all branches are searched for because Newton's method gave up. */
 enum { MOST_SEARCHES = 50 };
 /* What is left of the error of a solution, metres divided by the length. */
@@ -49,7 +49,7 @@ static int found_from(const struct arm *arm, const struct frame *pose, const rea
     real joints[JOINTS];
     for (int i = 0; i < JOINTS; i++)
         joints[i] = start[i];
-    if (count == MOST_BRANCHES || !(descend_joints(&arm->chain, pose, arm->length, steps, joints) < TOLERANCE)
+    if (count == MOST_BRANCHES || is_known(branches, count, start) || !(descend_joints(&arm->chain, pose, arm->length, steps, joints) < TOLERANCE)
         || is_known(branches, count, joints))
         return count;
     for (int i = 0; i < JOINTS; i++)
@@ -75,32 +75,15 @@ static void cold_start(const struct ranges *ranges, int k, real start[JOINTS])
     }
 }
 
-static int from_spread_starts(const struct arm *arm, const struct frame *pose, int starts,
+static int from_spread_starts(const struct arm *arm, const struct frame *pose,
                               real branches[MOST_BRANCHES][JOINTS], int count)
 {
-    for (int k = 0; k < starts; k++) {
+    for (int k = 0; k < STARTS; k++) {
         real start[JOINTS];
         cold_start(&arm->ranges, k, start);
         count = found_from(arm, pose, start, STEPS, branches, count);
     }
     return count;
-}
-
-/* From near, from where elimination has the branches, and where it has none from anywhere. */
-static int from_anywhere(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
-                         real branches[MOST_BRANCHES][JOINTS])
-{
-    real candidates[MOST_CANDIDATES][JOINTS];
-    int first = (int)arm->first, known = 0;
-    if (!is_within_reach(&arm->chain, pose->position))
-        return 0;
-    if (first >= 0)
-        known = general_candidates(&arm->chain, arm->length, first, pose, candidates);
-    int count = found_from(arm, pose, near, STEPS, branches, 0);
-    for (int k = 0; k < known; k++)
-        count = found_from(arm, pose, candidates[k], STEPS, branches, count);
-    int starts = first < 0 || count == 0 ? STARTS : FEW_STARTS;
-    return from_spread_starts(arm, pose, starts, branches, count);
 }
 
 /* Of the ideal arm, each branch of the pose, or of one a little aside where the pose lacks it: at
@@ -129,29 +112,53 @@ static void ideal_branches(const struct arm *arm, const struct frame *pose,
 }
 
 static int from_ideal(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
-                      real branches[MOST_BRANCHES][JOINTS])
+                      real branches[MOST_BRANCHES][JOINTS], int count)
 {
     real starts[CLOSED_BRANCHES][JOINTS];
     ideal_branches(arm, pose, near, starts);
-    int count = found_from(arm, pose, near, FEW_STEPS, branches, 0);
     for (int k = 0; k < CLOSED_BRANCHES; k++)
         if (!isnan(starts[k][0]))
             count = found_from(arm, pose, starts[k], FEW_STEPS, branches, count);
-    return count > 0 ? count : from_anywhere(arm, pose, near, branches);
+    return count;
+}
+
+/* From one loop after another, until one is certain, or adds nothing to those before. Branches come
+   in pairs: of an odd number one is missed. */
+static int from_elimination(const struct arm *arm, const struct frame *pose,
+                            real branches[MOST_BRANCHES][JOINTS], int count)
+{
+    real candidates[MOST_CANDIDATES][JOINTS];
+    int is_complete = 0;
+    for (int n = 0; n < MOST_LOOPS && arm->loops[n] >= 0 && !(is_complete && count % 2 == 0); n++) {
+        int are_certain, before = count;
+        int known = general_candidates(&arm->chain, arm->length, (int)arm->loops[n], pose,
+                                       candidates, &are_certain);
+        for (int k = 0; k < known; k++)
+            count = found_from(arm, pose, candidates[k], FEW_STEPS, branches, count);
+        is_complete = are_certain || (n > 0 && count == before);
+    }
+    return count;
+}
+
+static int from_anywhere(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
+                         real branches[MOST_BRANCHES][JOINTS])
+{
+    if (!is_within_reach(&arm->chain, pose->position))
+        return 0;
+    int count = found_from(arm, pose, near, STEPS, branches, 0);
+    if ((int)arm->closes == ALMOST_CLOSED)
+        count = from_ideal(arm, pose, near, branches, count);
+    count = from_elimination(arm, pose, branches, count);
+    return count > 0 && count % 2 == 0 ? count : from_spread_starts(arm, pose, branches, count);
 }
 
 int arm_branches(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
                  real branches[MOST_BRANCHES][JOINTS])
 {
-    switch ((int)arm->closes) {
-    case CLOSED:
-        closed_branches(&arm->form, pose, near, branches);
-        return CLOSED_BRANCHES;
-    case ALMOST_CLOSED:
-        return from_ideal(arm, pose, near, branches);
-    default:
+    if ((int)arm->closes != CLOSED)
         return from_anywhere(arm, pose, near, branches);
-    }
+    closed_branches(&arm->form, pose, near, branches);
+    return CLOSED_BRANCHES;
 }
 
 int arm_inverse(const struct arm *arm, const struct frame *pose, const real near[JOINTS],

@@ -6,6 +6,7 @@
 #include "closed_forms.h"
 
 enum { MOST_BRANCHES = 16 }; /* of six revolute joints */
+enum { MOST_LOOPS = 4 };
 
 /* Which closed form an arm has. */
 enum { NO_FORM, ALMOST_CLOSED, CLOSED };
@@ -16,7 +17,7 @@ struct arm {
     real closes;             /* NO_FORM, ALMOST_CLOSED or CLOSED */
     real length;             /* divides metres beside radians */
     struct ranges ranges;
-    real first; /* where the loop of `general_candidates` begins, -1 where that has no use */
+    real loops[MOST_LOOPS]; /* of `general_candidates`, the best first; -1: no more have a use */
 };
 
 /* The branches of a pose, in the first rows; how many rows, some of which may be NaN. `near` gives

@@ -102,10 +102,10 @@ void determinant_series(six_equations six, struct series *series)
    -1/(v.u), and u is the next v. */
 void refine(six_equations six, real room, real *q3, real v[SIZE])
 {
-    enum { STEPS = 3 };
+    const int steps = room < REAL(0.1) ? 3 : 2;
     for (int k = 0; k < SIZE; k++)
         v[k] = 1;
-    for (int step = 0; step < STEPS; step++) {
+    for (int step = 0; step < steps; step++) {
         real at[3], matrix[SIZE][SIZE], slope[SIZE][SIZE], right[SIZE], u[SIZE];
         int order[SIZE];
         trigonometry(*q3, at);

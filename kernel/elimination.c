@@ -8,22 +8,43 @@ static void displaced(const struct frame *moved, const struct axis *axis, struct
     moved_point(moved, axis->point, there->point);
 }
 
-/* The joints after `first`, displaced by the pose, then those before. */
-static void make_loop(const struct chain *chain, real length, int first, const struct frame *pose,
+static void turn_round(struct frame *moved)
+{
+    const struct frame there = *moved;
+    for (int i = 0; i < 3; i++) {
+        moved->position[i] = 0;
+        for (int k = 0; k < 3; k++) {
+            moved->rotation[3 * i + k] = there.rotation[3 * k + i];
+            moved->position[i] -= there.rotation[3 * k + i] * there.position[k];
+        }
+    }
+}
+
+int loop_joint(int loop, int n)
+{
+    int k = (loop + n) % JOINTS;
+    return loop < JOINTS ? k : JOINTS - 1 - k;
+}
+
+/* The joints from the one at which the loop begins on, displaced by the pose, then those before;
+   backwards they turn about the opposite axes, to the pose as seen from the tool. */
+static void make_loop(const struct chain *chain, real length, int which, const struct frame *pose,
                       struct loop *loop)
 {
     displacement(chain, pose, &loop->moved);
     for (int i = 0; i < 3; i++)
         loop->moved.position[i] /= length;
+    if (which >= JOINTS)
+        turn_round(&loop->moved);
     for (int n = 0; n < JOINTS; n++) {
-        int k = (first + n) % JOINTS;
+        int k = loop_joint(which, n);
         struct axis axis;
         for (int i = 0; i < 3; i++) {
-            axis.direction[i] = chain->axis[k][i];
+            axis.direction[i] = which < JOINTS ? chain->axis[k][i] : -chain->axis[k][i];
             axis.point[i] = chain->point[k][i] / length;
         }
         loop->joint[n] = axis;
-        if (first + n < JOINTS)
+        if (which % JOINTS + n < JOINTS)
             displaced(&loop->moved, &axis, &loop->joint[n]);
     }
 }
@@ -174,10 +195,10 @@ static void make_six(struct equations *equations, six_equations six)
         }
 }
 
-void eliminate_two(const struct chain *chain, real length, int first, const struct frame *pose,
+void eliminate_two(const struct chain *chain, real length, int which, const struct frame *pose,
                    struct loop *loop, struct equations *equations, six_equations six)
 {
-    make_loop(chain, length, first, pose, loop);
+    make_loop(chain, length, which, pose, loop);
     sample_left(loop, equations->left);
     sample_right(loop, equations->right);
     eliminate(equations);

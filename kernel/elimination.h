@@ -28,9 +28,15 @@ struct equations {
    tan(q4/2), each times those of tan(q5/2). */
 typedef real six_equations[3][REMAINING][POWERS];
 
-/* The loop that begins after joint `first`, 0 to 5, in lengths of `length`; its equations, of which
-   rows 8 to 13 are without q1 and q2, and the rows before a triangle for them; and those six. */
-void eliminate_two(const struct chain *chain, real length, int first, const struct frame *pose,
+/* Twice as many loops as joints: they begin after joint 0 to 5, or go backwards. */
+enum { LOOPS = 2 * JOINTS };
+
+/* The joint, 0 to 5, that is q1 (n = 0) to q6 of a loop. */
+int loop_joint(int loop, int n);
+
+/* A loop, in lengths of `length`; its equations, of which rows 8 to 13 are without q1 and q2, and
+   the rows before a triangle for them; and those six. */
+void eliminate_two(const struct chain *chain, real length, int which, const struct frame *pose,
                    struct loop *loop, struct equations *equations, six_equations six);
 
 #endif

@@ -58,17 +58,17 @@ static real last_joint(const struct loop *loop, const real q[JOINTS])
     return turn_angle(facing(loop->joint[5].direction, across, there, (struct turn){1, 0}));
 }
 
-int general_candidates(const struct chain *chain, real length, int first, const struct frame *pose,
-                       real candidates[MOST_CANDIDATES][JOINTS])
+int general_candidates(const struct chain *chain, real length, int which, const struct frame *pose,
+                       real candidates[MOST_CANDIDATES][JOINTS], int *are_certain)
 {
     struct loop loop;
     struct equations equations;
     six_equations six;
     struct series series;
     real roots[ROOTS], rooms[ROOTS];
-    eliminate_two(chain, length, first, pose, &loop, &equations, six);
+    eliminate_two(chain, length, which, pose, &loop, &equations, six);
     determinant_series(six, &series);
-    int count = series_roots(&series, roots, rooms);
+    int count = series_roots(&series, roots, rooms, are_certain);
     int found = 0;
     for (int n = 0; n < count; n++) {
         real v[3][SIZE], q[JOINTS];
@@ -81,7 +81,7 @@ int general_candidates(const struct chain *chain, real length, int first, const 
             inner_joints(&equations, q, &q[0], &q[1]);
             q[5] = last_joint(&loop, q);
             for (int i = 0; i < JOINTS; i++)
-                candidates[found][(first + i) % JOINTS] = q[i];
+                candidates[found][loop_joint(which, i)] = q[i];
             found++;
         }
     }

@@ -6,10 +6,9 @@
 
 enum { MOST_CANDIDATES = 48 };
 
-/* Joints near which every branch of a pose is; how many. Lengths are divided by `length`. The loop
-   of the joints begins after joint `first`, 0 to 5, two before the joint that is solved for: some
-   have no use for an arm, as a determinant that is always 0. */
-int general_candidates(const struct chain *chain, real length, int first, const struct frame *pose,
-                       real candidates[MOST_CANDIDATES][JOINTS]);
+/* Joints near which every branch of a pose is; how many. Lengths are divided by `length`. Of the
+   loops, 0 to 11 (elimination.h), some have no use for an arm: a determinant that is always 0. */
+int general_candidates(const struct chain *chain, real length, int which, const struct frame *pose,
+                       real candidates[MOST_CANDIDATES][JOINTS], int *are_certain);
 
 #endif

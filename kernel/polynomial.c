@@ -22,7 +22,8 @@ static void polynomial_of(const struct series *series, complex_number polynomial
 }
 
 /* Newton's step p/p' at z. */
-static complex_number newton_step(const complex_number polynomial[SAMPLES], complex_number z)
+static complex_number newton_step(const complex_number polynomial[SAMPLES], complex_number z,
+                                  complex_number *derivative)
 {
     complex_number value = polynomial[SAMPLES - 1], slope = {0, 0};
     for (int k = SAMPLES - 2; k >= 0; k--) {
@@ -33,7 +34,24 @@ static complex_number newton_step(const complex_number polynomial[SAMPLES], comp
         value.cosine += polynomial[k].cosine;
         value.sine += polynomial[k].sine;
     }
+    *derivative = slope;
     return turn_on(value, reciprocal(slope));
+}
+
+static real size_of(complex_number z)
+{
+    return real_sqrt(z.cosine * z.cosine + z.sine * z.sine);
+}
+
+/* How far rounding of the polynomial may have moved a root. */
+static real blur(const complex_number polynomial[SAMPLES], complex_number root)
+{
+    complex_number slope;
+    real sum = 0;
+    newton_step(polynomial, root, &slope);
+    for (int k = 0; k < SAMPLES; k++)
+        sum += size_of(polynomial[k]);
+    return 10 * REAL_EPSILON * sum / size_of(slope);
 }
 
 /* All roots at once (Aberth 1973): Newton's steps, each kept away from the other roots. */
@@ -41,12 +59,15 @@ static void all_roots(const complex_number polynomial[SAMPLES], complex_number r
 {
     enum { MOST_STEPS = 30 };
     const real arrived = REAL(1e-10);
+    int is_there[ROOTS] = {0};
     for (int k = 0; k < ROOTS; k++)
         roots[k] = turn_by(REAL(0.1) + REAL_TURN * (real)k / ROOTS);
     for (int step = 0, moving = 1; moving && step < MOST_STEPS; step++) {
         moving = 0;
         for (int k = 0; k < ROOTS; k++) {
-            complex_number newton = newton_step(polynomial, roots[k]), sum = {0, 0};
+            if (is_there[k])
+                continue;
+            complex_number slope, newton = newton_step(polynomial, roots[k], &slope), sum = {0, 0};
             for (int j = 0; j < ROOTS; j++)
                 if (j != k) {
                     complex_number away = reciprocal(
@@ -61,26 +82,29 @@ static void all_roots(const complex_number polynomial[SAMPLES], complex_number r
                 continue;
             roots[k].cosine -= sum.cosine;
             roots[k].sine -= sum.sine;
-            moving |= real_fabs(sum.cosine) + real_fabs(sum.sine) > arrived;
+            is_there[k] = real_fabs(sum.cosine) + real_fabs(sum.sine) < arrived;
+            moving |= !is_there[k];
         }
     }
 }
 
 static real distance(complex_number a, complex_number b)
 {
-    real across = a.cosine - b.cosine, along = a.sine - b.sine;
-    return real_sqrt(across * across + along * along);
+    return size_of((complex_number){a.cosine - b.cosine, a.sine - b.sine});
 }
 
-int series_roots(const struct series *series, real angles[ROOTS], real rooms[ROOTS])
+int series_roots(const struct series *series, real angles[ROOTS], real rooms[ROOTS],
+                 int *are_certain)
 {
-    const real nearly = REAL(0.2), rounding = REAL(1e-4);
+    const real certain = REAL(1e-4);
+    const real nearly = REAL(0.05), rounding = REAL(1e-4);
     complex_number polynomial[SAMPLES], roots[ROOTS];
     int count = 0;
     polynomial_of(series, polynomial);
     all_roots(polynomial, roots);
+    *are_certain = 1;
     for (int k = 0; k < ROOTS; k++) {
-        real size = real_sqrt(roots[k].cosine * roots[k].cosine + roots[k].sine * roots[k].sine);
+        real size = size_of(roots[k]);
         /* Roots beside the circle are pairs z, 1/z*: one is enough. */
         if (!(size > 1 - nearly && size < 1 + rounding))
             continue;
@@ -88,6 +112,7 @@ int series_roots(const struct series *series, real angles[ROOTS], real rooms[ROO
         for (int j = 0; j < ROOTS; j++)
             if (j != k && distance(roots[j], roots[k]) < rooms[count])
                 rooms[count] = distance(roots[j], roots[k]);
+        *are_certain &= blur(polynomial, roots[k]) < certain * rooms[count];
         angles[count++] = turn_angle(roots[k]);
     }
     return count;

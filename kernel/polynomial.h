@@ -12,6 +12,7 @@ struct series {
 };
 
 /* The angles at which the series is zero, or nearly, and how far the next root is; how many. */
-int series_roots(const struct series *series, real angles[ROOTS], real rooms[ROOTS]);
+int series_roots(const struct series *series, real angles[ROOTS], real rooms[ROOTS],
+                 int *are_certain);
 
 #endif

@@ -36,7 +36,7 @@ def test_the_joints_that_made_a_pose_are_among_its_branches(arm):
     assert isinstance(arm.method, AlmostClosed)
     joints = some_joints(arm, enough(300, 1000))
     branches = arm.method.branches(arm.chain.forward(joints), joints * 0.0 + arm.rest)
-    assert (apart(branches, joints[:, None]).min(axis=1) < 1e-5).mean() > 0.97
+    assert apart(branches, joints[:, None]).min(axis=1).max() < 1e-4
 
 
 def test_every_branch_leads_to_the_pose_and_none_stands_twice(arm):
