@@ -147,7 +147,7 @@ class ArmJogger:
             return twist
         to_base = self.frames.T_base_work.rotation
         turn = to_base @ twist[3:]
-        arm = to_base @ T_work_pivot.rotation @ self.frames.T_platform_pivot.position
+        arm = to_base @ T_work_pivot.rotation @ self.frames.arm
         return np.concatenate([to_base @ twist[:3] - np.cross(turn, arm), turn])
 
     def _of_pivot(self, twist: Array, T_work_pivot: Pose) -> Array:
@@ -156,7 +156,7 @@ class ArmJogger:
             return twist
         to_work = self.frames.T_base_work.rotation.T
         turn = to_work @ twist[3:]
-        arm = T_work_pivot.rotation @ self.frames.T_platform_pivot.position
+        arm = T_work_pivot.rotation @ self.frames.arm
         return frozen([*(to_work @ twist[:3] + np.cross(turn, arm)), *turn])
 
 

@@ -55,15 +55,23 @@ class Imported:
     assumed: tuple[str, ...]
 
 
-def machine_text(arm: UrdfArm, name: str, source: str, wishes: Wishes) -> Imported:
+def machine_text(
+    arm: UrdfArm,
+    name: str,
+    source: str,
+    wishes: Wishes,
+    meshes: Sequence[str] = (),
+    notes: Sequence[str] = (),
+) -> Imported:
     """The machine file of an arm, which `hexarm check` finds good; ConfigError with its problems.
 
-    name is the robot's, source the URDF's file name: both go into comments.
+    name is the robot's, source the URDF's file name: both go into comments, and so do notes.
+    meshes are the files of the seven links, or none.
     """
     length = LENGTH_SHARE * reach_of(arm.chain)
     sections = (
         _head(arm, name, source),
-        _geometry(arm, length, wishes),
+        [*_geometry(arm, length, wishes), *_meshes(meshes, notes)],
         _limits(arm, length, wishes),
         _motion(arm, wishes),
         _dynamics(arm, length),
@@ -101,6 +109,13 @@ def _geometry(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
     rounded = np.round(exact, 3)
     home = np.where((low <= rounded) & (rounded <= high), rounded, exact)
     yield f'  home_deg: {_list(home)}  # assumed: not near a singular posture'
+
+
+def _meshes(files: Sequence[str], notes: Sequence[str]) -> Iterator[str]:
+    if files:
+        yield '  meshes:                          # of the base and the six links, for the eye'
+        yield from (f'    - {json.dumps(file, ensure_ascii=False)}' for file in files)
+    yield from (f'  # {_plain(note)}' for note in notes)
 
 
 def _limits(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:

@@ -12,6 +12,7 @@ from bridge.servo_config import ServosConfig
 from hexapod_control import load as hexapods
 from hexapod_control.home import home_problems
 from hexapod_control.load_stack import StackConfig
+from hexarm.link_meshes import link_meshes
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
 from hexarm.machine_spelling import corrected
 from hexarm.machine_warnings import warnings_of
@@ -101,6 +102,8 @@ def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
         if calibration is not None:
             found.problems += contradictions(machine, calibration, is_home_good=not home)
     doubts = [] if machine is None else warnings_of(machine, calibration, content['geometry'])
+    if machine is not None and folder is not None:
+        doubts += link_meshes(content['geometry'], folder)[1]
     return Report(_merged(found.problems), tuple(doubts), machine)
 
 

@@ -20,7 +20,7 @@ from hexapod_control import load as hexapods
 from hexapod_control import load_stack
 from hexarm.simulation.dynamics_config import SCHEMAS, StackDynamicsConfig
 from manipulator.config import forms_of, is_required
-from manipulator.frames import FramesConfig
+from manipulator.frames import FramesConfig, ToolConfig
 from manipulator.limits.surroundings import BodiesConfig, SurroundingsConfig
 from manipulator.limits.task_space import TaskSpaceConfig
 from manipulator.machine import Kind, MachineFile
@@ -120,6 +120,7 @@ def tables() -> str:
                 lines += [f'### `{name}` of a `{kind}`{_form(form, schema)}', '', *_table(form)]
     others = {
         'frames': FramesConfig,
+        'tools': ToolConfig,
         'task_space': TaskSpaceConfig,
         'surroundings': SurroundingsConfig,
         'bodies': BodiesConfig,

@@ -9,7 +9,7 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.config import build_both, key
 from manipulator.errors import ConfigError, InvalidInput
-from manipulator.frames import Frames, FramesConfig
+from manipulator.frames import Frames, FramesConfig, ToolConfig
 from manipulator.kinematics import Kinematics
 from manipulator.limits.clearance import Clearance, ClearGroup
 from manipulator.limits.constraints import Constraints
@@ -57,6 +57,9 @@ class MachineFile:
     )
     dynamics: dict[str, Any] | None = key('masses and drives (docs/physics.md)', default=None)
     frames: FramesConfig = key("the user's frames", default_factory=FramesConfig)
+    tools: tuple[ToolConfig, ...] = key(
+        'that can be on platform or arm, the first at start (docs/tools.md)', default=()
+    )
     task_space: TaskSpaceConfig = key(
         'limits on position, orientation and speed of platform or tool',
         default_factory=TaskSpaceConfig,

@@ -243,6 +243,26 @@ def test_pivot_out_of_proportion_is_named():
     assert found.startswith('frames.pivot_xyz_mm: pivot [2.0, 2.0, 0.0] is 2.828 m from the platf')
 
 
+def test_tools_that_do_not_fit_are_named():
+    tools = """
+tools:
+  - {name: far, xyz_mm: [0.0, 0.0, 9000.0]}
+  - {name: near, xyz_mm: [0.0, 0.0, 20.0]}
+  - {name: huge, xyz_mm: [20000.0, 0.0, 20.0]}
+  - {name: lever, xyz_mm: [0.0, 0.0, 20.0], mass_g: 20.0, centre_mm: [0.0, 9e3, 0.0]}
+"""
+    found = problems_of(ROBOCAKE + tools)
+    assert [problem.partition(' [')[0] for problem in found] == [
+        "tools[0].xyz_mm: tool 'far'",
+        "tools[2].xyz_mm: tool 'huge'",
+        "tools[3].centre_mm: centre of tool 'lever'",
+    ]
+    (endless,) = problems_of(ROBOCAKE + 'tools: [{name: laser, xyz_mm: [0.0, .nan, 0.0]}]\n')
+    assert endless == 'tools[0].xyz_mm[1]: nan is not finite'
+    (nameless,) = problems_of(ROBOCAKE + 'tools: [{name: a b, xyz_mm: [0.0, 0.0, 0.0]}]\n')
+    assert nameless.startswith("tools[0]: name: 'a b' is not a name of a tool: a letter")
+
+
 def test_speed_beyond_the_servos_is_named():
     (found,) = problems_of(changed(ROBOCAKE, ('joint_speed_deg_s: 480', 'joint_speed_deg_s: 700')))
     assert found.startswith('motion.joint_speed_deg_s: 700 is more than the servos do')
