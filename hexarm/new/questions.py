@@ -158,7 +158,7 @@ QUESTIONS: tuple[Question, ...] = (
     Question('home_deg', 'six joint angles at home; auto: chosen, not near a singular posture',
              lambda v: 'auto' if str(v).strip().lower() == 'auto' else numbers((6,), ANGLE)(v),
              'auto', TABLES),
-    Question('urdf', 'path of the URDF file', words, when={**ARM, 'given_by': ('urdf',)}),
+    Question('urdf', 'path of the URDF file (its meshes, too: hexarm import)', words, when={**ARM, 'given_by': ('urdf',)}),
     Question('tip', 'its last link; auto: chosen', words, 'auto',
              {**ARM, 'given_by': ('urdf',)}),
     _choice('servo', 'Which servos?', SERVO_CHOICES, CRANK),
