@@ -207,16 +207,20 @@ def _typed(value: Any) -> str:
 
 def _write(path: Path, text: str) -> None:
     """All of it or nothing, and nothing over another file."""
-    part = path.with_name(f'.{path.name}.part')
     try:
-        part.write_text(text, encoding='utf-8')
-        os.link(part, path)
+        file = path.open('x', encoding='utf-8')
     except FileExistsError:
         raise InvalidInput(f'{path} exists: nothing is written over') from None
     except OSError as error:
         raise InvalidInput(f'cannot write {path}: {reason(error)}') from error
-    finally:
-        part.unlink(missing_ok=True)
+    try:
+        with file:
+            file.write(text)
+    except BaseException as error:
+        path.unlink(missing_ok=True)
+        if isinstance(error, OSError):
+            raise InvalidInput(f'cannot write {path}: {reason(error)}') from error
+        raise
 
 
 def _pictures(path: Path) -> list[str]:

@@ -146,8 +146,9 @@ QUESTIONS: tuple[Question, ...] = (
             LINEAR, 'pulses'),
     Question('pulse_us', 'pulses at the ends of the stroke', numbers((2,), (100.0, 30000.0)),
              [1000.0, 2000.0], {**LINEAR, 'cylinder_input': ('pulses',)}),
-    Question('home_height_mm', 'height of the platform at home; auto: with level horns, or '
-             'cylinders at half their stroke', height, 'auto', PLATFORM),
+    Question('home_height_mm', 'height of the platform at home (below the base: negative); auto: '
+             'above it, with level horns or cylinders at half their stroke',
+             height, 'auto', PLATFORM),
     _rows('dh_table', 'a (mm), alpha (°), d (mm), and the offset of θ (°) if there is one',
           numbers((3, 4), PLACE), TABLES, JOINTS),
     Question('tool_mm', 'from the last frame to the tool, along its z', number((0.0, 1e6)), 0.0,
@@ -157,7 +158,8 @@ QUESTIONS: tuple[Question, ...] = (
     Question('home_deg', 'six joint angles at home; auto: chosen, not near a singular posture',
              lambda v: 'auto' if str(v).strip().lower() == 'auto' else numbers((6,), ANGLE)(v),
              'auto', TABLES),
-    Question('urdf', 'path of the URDF file', words, when={**ARM, 'given_by': ('urdf',)}),
+    Question('urdf', 'path of the URDF file (its meshes, too: hexarm import)', words,
+             when={**ARM, 'given_by': ('urdf',)}),
     Question('tip', 'its last link; auto: chosen', words, 'auto',
              {**ARM, 'given_by': ('urdf',)}),
     _choice('servo', 'Which servos?', SERVO_CHOICES, CRANK),

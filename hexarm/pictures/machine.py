@@ -34,7 +34,7 @@ LEGS = 6
 """Of which a stack numbers the lowest platform's."""
 SHORTEST = 0.05
 """mm of a link with a length."""
-ROOM = 0.2
+ROOM = 0.24
 """Around a view, as a share of its size, for the measures."""
 
 
@@ -49,7 +49,7 @@ def draw(machine: Machine, pose: Pose, picture: Path, name: str) -> Path:
     places = iter(((0.06, 0.5, 0.42, 0.4), (0.06, 0.05, 0.42, 0.38), (0.55, 0.05, 0.42, 0.38)))
     for (title, across), place in zip(VIEWS.items(), places, strict=True):
         axes = figure.add_axes(place)
-        _view(axes, strokes, across)
+        _view(axes, strokes, across, pose)
         axes.set_title(title, loc='left', color=style.SOFT)
         (_radii if across == (0, 1) else _heights)(axes, strokes, across, pose)
     _space(figure.add_axes((0.5, 0.47, 0.48, 0.45), projection='3d'), strokes)
@@ -69,13 +69,15 @@ def _place(pose: Pose) -> str:
     )
 
 
-def _view(axes: Axes, strokes: Strokes, across: tuple[int, int]) -> None:
+def _view(axes: Axes, strokes: Strokes, across: tuple[int, int], pose: Pose) -> None:
     """The projection, joints as dots, numbered from above."""
     for part, points in strokes:
         axes.plot(*points[:, across].T, **PARTS.get(part, PARTS['rod']))
         if part in ('crank', 'rod'):
             axes.plot(*points[:, across].T, 'o', color=style.INK, ms=3)
-    low, high = _framed(axes, np.concatenate([points for _, points in strokes])[:, across])
+    ends = np.stack([np.zeros(3), 1e3 * pose.position])  # of the measure of its height
+    points = np.concatenate([*(points for _, points in strokes), ends])
+    low, high = _framed(axes, points[:, across])
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     axes.set(xlabel=f'{"xyz"[across[0]]} (mm)', ylabel=f'{"xyz"[across[1]]} (mm)')
     axes.grid(True)
@@ -93,46 +95,53 @@ def _framed(axes: Axes, points: Array) -> tuple[Array, Array]:
     return (low + high) / 2 - half, (low + high) / 2 + half
 
 
-def _number_legs(axes: Axes, strokes: Strokes) -> None:
-    """Beside the joints on the base."""
-    legs = [p for part, p in strokes if part == 'crank'] or [
-        p for part, p in strokes if part == 'rod'
-    ]
-    centre = np.mean([leg[0] for leg in legs], axis=0) if legs else np.zeros(3)
-    for k, leg in enumerate(legs[:LEGS], start=1):
-        place = centre + 1.12 * (leg[0] - centre)
-        axes.text(place[0], place[1], str(k), weight='bold', **NUMBER)
-
-
 def _of(strokes: Strokes, part: str) -> list[Array]:
     return [points for each, points in strokes if each == part]
 
 
+def _legs(strokes: Strokes) -> list[Array]:
+    """The parts by which the legs begin, of the lowest platform; none of an arm."""
+    return (_of(strokes, 'crank') or _of(strokes, 'rod'))[:LEGS]
+
+
+def _number_legs(axes: Axes, strokes: Strokes) -> None:
+    """Beside the joints on the base."""
+    legs = _legs(strokes)
+    centre = np.mean([leg[0] for leg in legs], axis=0) if legs else np.zeros(3)
+    for k, leg in enumerate(legs, start=1):
+        place = centre + 1.12 * (leg[0] - centre)
+        axes.text(place[0], place[1], str(k), weight='bold', **NUMBER)
+
+
 def _radii(axes: Axes, strokes: Strokes, across: tuple[int, int], pose: Pose) -> None:
     """The circles of base and platform joints, where joints are on one, with their radii."""
-    for part, colour, turn in (('body', style.INK, -0.25), ('platform', style.AXES[0], 2.6)):
-        for outline in _of(strokes, part)[-1:]:
-            points = outline[:-1]
-            centre = points.mean(axis=0)
-            away = np.linalg.norm((points - centre)[:, :2], axis=1)
-            if np.ptp(away) > 0.02 * away.mean():
-                continue
-            radius = float(away.mean())
-            axes.add_patch(
-                plt.Circle(centre[:2], radius, fill=False, color=colour, lw=0.6, ls=':')
-            )
-            end = centre[:2] + radius * np.array([np.cos(turn), np.sin(turn)])
-            _arrow(axes, centre[:2], end, f'R {radius:.4g}', 0.55)
+    base = np.array([leg[0] for leg in _legs(strokes)])
+    platform = _of(strokes, 'platform')[-1][:-1] if len(base) else base
+    for points, colour, turn in ((base, style.INK, -0.25), (platform, style.AXES[0], 2.6)):
+        if len(points):
+            _radius(axes, points, colour, turn)
     if _of(strokes, 'link'):
         end = 1e3 * pose.position[:2]
         _arrow(axes, np.zeros(2), end, f'{np.linalg.norm(end):.4g}', 0.5)
+
+
+def _radius(axes: Axes, points: Array, colour: str, turn: float) -> None:
+    """The circle through the points, if they are on one, and an arrow to it."""
+    centre = points.mean(axis=0)
+    away = np.linalg.norm((points - centre)[:, :2], axis=1)
+    if np.ptp(away) > 0.02 * away.mean():
+        return
+    radius = float(away.mean())
+    axes.add_patch(plt.Circle(centre[:2], radius, fill=False, color=colour, lw=0.6, ls=':'))
+    end = centre[:2] + radius * np.array([np.cos(turn), np.sin(turn)])
+    _arrow(axes, centre[:2], end, f'R {radius:.4g}', 0.55)
 
 
 def _heights(axes: Axes, strokes: Strokes, across: tuple[int, int], pose: Pose) -> None:
     """From the base frame to the platform or the tool, beside the machine."""
     points = np.concatenate([points for _, points in strokes])
     side = points[:, across[0]].max()
-    beside = side + 0.45 * ROOM * float(np.ptp(points, axis=0)[list(across)].max())
+    beside = side + 0.62 * ROOM * float(np.ptp(points, axis=0)[list(across)].max())
     height = 1e3 * float(pose.position[2])
     for z, from_x in ((0.0, 0.0), (height, 1e3 * float(pose.position[across[0]]))):
         axes.plot([from_x, beside * 1.02], [z, z], lw=0.5, ls=(0, (6, 4)), color=style.SOFT)

@@ -1,5 +1,7 @@
 """`hexarm new`: known machines come back from the measures that people have of them."""
 
+import io
+
 import numpy as np
 import pytest
 import yaml
@@ -224,14 +226,28 @@ def interrupt(*_):
     raise KeyboardInterrupt
 
 
-@pytest.mark.parametrize('where', ['builtins.input', 'os.link'])
-def test_ctrl_c_leaves_no_file(where, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(where, interrupt)
-    given = [] if where == 'builtins.input' else ['--answers', str(tmp_path / 'a.yml')]
-    (tmp_path / 'a.yml').write_text(yaml.safe_dump(ROBOCAKE))
+class Interrupted(io.StringIO):
+    """A file whose writing ends with the first half."""
+
+    write = interrupt
+
+
+def interrupted_open(path, *_, **__):
+    path.touch()
+    return Interrupted()
+
+
+@pytest.mark.parametrize('is_asked', [True, False])
+def test_ctrl_c_leaves_no_file(is_asked, tmp_path, monkeypatch, capsys):
+    words = [f'{key}={value}' for key, value in ROBOCAKE.items()]
+    if is_asked:
+        monkeypatch.setattr('builtins.input', interrupt)
+    else:
+        monkeypatch.setattr(new.Path, 'open', interrupted_open)
+    given = [] if is_asked else ['--set', *words]
     assert main(['new', str(tmp_path / 'mine.yaml'), *given]) == 130
     assert 'nothing is written' in capsys.readouterr().out
-    assert [path.name for path in tmp_path.iterdir()] == ['a.yml']
+    assert not list(tmp_path.iterdir())
 
 
 def test_an_existing_file_stays(tmp_path, capsys):
