@@ -23,7 +23,7 @@ log="$environment/install.log"
 if [ "$what" = demo ]; then
   echo "Making $environment with $("$python" --version), hexarm and ROS 2 in it, 0.7 GB: a minute or two, once."
   "$python" -m venv --clear "$environment" || stop "could not make the virtual environment $environment."
-  extras='ros,plot,physics,panel,terminal,record'
+  extras='ros,plot,physics,panel,meshes,terminal,record'
 else
   echo "Adding to $environment what only tests need, 0.7 GB: a minute, once."
   extras='test,docs'

@@ -59,6 +59,7 @@ setup(
         'physics': ['mujoco>=3.2', 'matplotlib>=3.8', 'pillow>=10'],
         'record': ['mcap>=1.6', 'mcap-ros2-support>=0.5', 'matplotlib>=3.8'],
         'panel': ['viser>=1.1,<1.2'],  # panel/nodes/web_server.py reaches into it
+        'meshes': ['trimesh>=4', 'pycollada>=0.8'],  # of a URDF: hexarm import
         'foxglove': ['foxglove-sdk>=0.10'],
         'terminal': ['rich>=13', 'argcomplete>=3'],
         'docs': ['mkdocs-material>=9.5', 'mkdocstrings-python>=1.10'],  # make docs

@@ -15,6 +15,11 @@ from manipulator.pose import Pose
 
 SixAngles = tuple[float, float, float, float, float, float]
 Three = tuple[float, float, float]
+Meshes = tuple[str, str, str, str, str, str, str] | None
+MESHES = (
+    'binary STL files of the base and the six links, beside this file: m, base axes at zero '
+    "angles; '' for a link that is drawn as a rod"
+)
 
 LONG_LINK, SHORTEST_ARM, LONGEST_ARM = 5.0, 0.02, 200.0
 """Metres: between two joints, and from the base through all of them to the tool."""
@@ -42,6 +47,7 @@ class LengthsConfig:
     L3_mm: float = quantity(*SIZE_MM, 'from joint 3 to the centre of the wrist')
     tool_mm: float = quantity(0, PLACE_MM[1], 'from there to the tool')
     home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
+    meshes: Meshes = key(MESHES, default=None)
 
     def chain(self) -> Chain:
         """Axes and points by the paper's figure 1."""
@@ -78,6 +84,7 @@ class DhConfig:
     dh: tuple[DhRow, DhRow, DhRow, DhRow, DhRow, DhRow] = key('standard Denavit–Hartenberg table')
     home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
     tool_mm: float = quantity(0, PLACE_MM[1], 'to the tool along z of frame 6', default=0.0)
+    meshes: Meshes = key(MESHES, default=None)
 
     def chain(self) -> Chain:
         """Joint i turns about the z axis of frame i − 1; the tool lies along z of frame 6."""
@@ -102,6 +109,7 @@ class ModifiedDhConfig:
     )
     home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
     tool_mm: float = quantity(0, PLACE_MM[1], 'to the tool along z of frame 6', default=0.0)
+    meshes: Meshes = key(MESHES, default=None)
 
     def chain(self) -> Chain:
         """Joint i turns about the z axis of frame i; the tool lies along z of frame 6."""
@@ -138,6 +146,7 @@ class ScrewsConfig:
     tool_position_mm: Three = quantity(*PLACE_MM, 'the tool there')
     tool_rpy_deg: Three = quantity(*TURN_DEG, 'its roll, pitch and yaw')
     home_deg: SixAngles = quantity(-MOST_DEG, MOST_DEG, HOME_ANGLES)
+    meshes: Meshes = key(MESHES, default=None)
 
     def chain(self) -> Chain:
         """As given, with axes of unit length."""

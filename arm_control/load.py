@@ -1,10 +1,12 @@
 """From a machine file to a serial arm that the nodes can use, with its `Jogger`."""
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
 from arm_control.arm import SerialArm
+from arm_control.bodies import arm_bodies
 from arm_control.geometry import ArmGeometry, check_axes, placed
 from arm_control.joint_limits import ArmLimits
 from arm_control.rate_scaling import AT_ONCE
@@ -48,11 +50,35 @@ class ArmJogger:
 
     def step(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
         """See `Jogger`; in a corner of the joint ranges the tool slides, so as to get out."""
-        if not self.of_pose.limits or not twist.any():
+        if not self.of_pose.limits:
             return self._within_joints(motion, twist, dt)
-        part, name = self._part_before_limits(motion, twist, dt)
+        part, name = (1.0, '')
+        if twist.any():
+            part, name = self._part_before_limits(motion, twist, dt)
         after = self._within_joints(motion, part * twist, dt)
+        passed = self._passed(motion, after)
+        if passed:
+            still = JogMotion.at_rest(motion.pose, motion.joints)
+            return replace(still, scale=0.0, held_by=passed)
         return replace(after, scale=part * after.scale, held_by=name or after.held_by)
+
+    def _passed(self, before: JogMotion, after: JogMotion) -> str:
+        """Beyond which limit a step leads, that braking in time could not foresee; or ''."""
+        out = self._excess(after)
+        if not out.any():
+            return ''
+        further = out - self._excess(before)
+        worst = int(np.argmax(further))
+        return self._name(worst) if further[worst] > STILL else ''
+
+    def _name(self, index: int) -> str:
+        quantity, owner, _ = self.of_pose.names[index]
+        return quantity or owner
+
+    def _excess(self, motion: JogMotion) -> Array:
+        """How far (k,) the limited values are beyond their limits, 0 inside."""
+        limits, values = self.of_pose, self.of_pose.values(motion.pose, motion.joints)
+        return np.maximum(np.maximum(limits.low - values, values - limits.high), 0.0)
 
     def _part_before_limits(self, motion: JogMotion, twist: Array, dt: float) -> tuple[float, str]:
         """The part of a twist from which the tool can brake in time, and which limit bounds it.
@@ -61,7 +87,8 @@ class ArmJogger:
         """
         limits, joints = self.of_pose, motion.joints
         here = limits.values(motion.pose, joints)
-        rate = (limits.values(motion.pose.moved(twist * dt), joints) - here) / dt
+        ahead = motion.joints + dt * self._joint_rates(motion, twist)
+        rate = (limits.values(motion.pose.moved(twist * dt), ahead) - here) / dt
         is_rising, is_falling = rate > STILL, rate < -STILL
         room = np.where(
             is_rising, limits.high - here, np.where(is_falling, here - limits.low, np.inf)
@@ -70,7 +97,11 @@ class ArmJogger:
         braking = float(ticks_for(twist, self.jog.motion, dt)) * dt / SHARE_BEFORE_STOPS
         parts = 2.0 * time / (dt + np.sqrt(dt**2 + 2.0 * braking * np.minimum(time, LONG)))
         worst = int(np.argmin(parts))
-        return (float(parts[worst]), limits.names[worst][0]) if parts[worst] < 1.0 else (1.0, '')
+        return (float(parts[worst]), self._name(worst)) if parts[worst] < 1.0 else (1.0, '')
+
+    def _joint_rates(self, motion: JogMotion, twist: Array) -> Array:
+        """Those (6,) of a twist of the pivot, damped in singular postures."""
+        return self.jog.damped_rates(motion.joints, self._of_tool(twist, motion.pose))
 
     def _within_joints(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
         """The step, with no limits but those of the joints."""
@@ -116,7 +147,7 @@ class ArmJogger:
             return twist
         to_base = self.frames.T_base_work.rotation
         turn = to_base @ twist[3:]
-        arm = to_base @ T_work_pivot.rotation @ self.frames.T_platform_pivot.position
+        arm = to_base @ T_work_pivot.rotation @ self.frames.arm
         return np.concatenate([to_base @ twist[:3] - np.cross(turn, arm), turn])
 
     def _of_pivot(self, twist: Array, T_work_pivot: Pose) -> Array:
@@ -125,7 +156,7 @@ class ArmJogger:
             return twist
         to_work = self.frames.T_base_work.rotation.T
         turn = to_work @ twist[3:]
-        arm = T_work_pivot.rotation @ self.frames.T_platform_pivot.position
+        arm = T_work_pivot.rotation @ self.frames.arm
         return frozen([*(to_work @ twist[:3] + np.cross(turn, arm)), *turn])
 
 
@@ -140,6 +171,7 @@ def arm(machine_file: MachineFile) -> Machine:
         jog.arm.limits.constraints(),
         jog.motion,
         make_jogger=lambda machine: _jogger(jog, machine),
+        make_bodies=partial(arm_bodies, jog.arm),
     )
 
 

@@ -161,6 +161,10 @@ class ResolvedRate:
         held = drive.scale, drive.held_by, tick.sigma_min
         return JogStep(after, *held, driven, moving)
 
+    def damped_rates(self, joints: Array, twist: Array) -> Array:
+        """Joint rates (6,) of the tool's twist (6,), base axes, damped near singular postures."""
+        return self.posture(joints).damped_rates(twist * self._unit, self._onset)
+
     def posture(self, joints: Array) -> Posture:
         """The Jacobian at joints (6,), its linear velocities in characteristic lengths."""
         return Posture.at(self.arm.chain, self._length, joints)

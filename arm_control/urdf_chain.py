@@ -1,13 +1,13 @@
 """The six axes from base to tip of a URDF, fixed joints folded in: in base axes at zero."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from arm_control.chain import JOINTS, Chain
 from arm_control.geometry import other_axes
-from arm_control.urdf_file import Inertial, UrdfJoint, UrdfRobot
+from arm_control.urdf_file import Inertial, UrdfJoint, UrdfRobot, Visual
 from manipulator.errors import ConfigError
 from manipulator.formatting import shown
 from manipulator.pose import Pose
@@ -25,7 +25,8 @@ class UrdfArm:
     """base and tip are links; joints, base first, have limits of their own.
 
     bodies are what each joint carries up to the next, in base axes at zero; None where the file
-    has no mass for any of it.
+    has no mass for any of it. visuals are the meshes of the base and of what each joint carries,
+    likewise.
     """
 
     base: str
@@ -33,6 +34,7 @@ class UrdfArm:
     joints: tuple[UrdfJoint, ...]
     chain: Chain
     bodies: tuple[Inertial | None, ...]
+    visuals: tuple[tuple[Visual, ...], ...]
 
 
 def arm_of(robot: UrdfRobot, base: str | None = None, tip: str | None = None) -> UrdfArm:
@@ -52,7 +54,8 @@ def arm_of(robot: UrdfRobot, base: str | None = None, tip: str | None = None) ->
     frames = [poses[joint.child] for joint in joints]
     axes = [frame.rotation @ joint.axis for frame, joint in zip(frames, joints, strict=True)]
     chain = Chain(np.array(axes), np.array([frame.position for frame in frames]), poses[tip])
-    return UrdfArm(base, tip, joints, chain, tree.bodies(base, joints))
+    bodies, visuals = tree.bodies(base, joints), tree.visuals(base, joints)
+    return UrdfArm(base, tip, joints, chain, bodies, visuals)
 
 
 class _Tree:
@@ -187,15 +190,32 @@ class _Tree:
 
     def bodies(self, base: str, joints: Sequence[UrdfJoint]) -> tuple[Inertial | None, ...]:
         """What each joint carries up to the next, with all that hangs on it, at zero."""
-        poses, moving = self.poses(base), {joint.child: i for i, joint in enumerate(joints)}
-        owners, found = {base: -1}, list[Inertial | None]([None] * len(joints))
-        for link in self.order(base)[1:]:
-            owner = owners[link] = moving.get(link, owners[self.above[link].parent])
+        poses, found = self.poses(base), list[Inertial | None]([None] * len(joints))
+        for link, owner in self._owners(base, joints).items():
             body = self.robot.bodies[link]
             if owner >= 0 and body is not None:
                 placed, before = body.moved(poses[link]), found[owner]
                 found[owner] = placed if before is None else before.joined(placed)
         return tuple(found)
+
+    def visuals(self, base: str, joints: Sequence[UrdfJoint]) -> tuple[tuple[Visual, ...], ...]:
+        """Of the base, without what moves on it beside the arm, and of what each joint carries."""
+        poses, standing = self.poses(base), self.body(base)
+        found: list[list[Visual]] = [[] for _ in range(len(joints) + 1)]
+        for link, owner in self._owners(base, joints).items():
+            if owner >= 0 or link in standing:
+                found[owner + 1] += [
+                    replace(visual, place=poses[link] @ visual.place)
+                    for visual in self.robot.visuals[link]
+                ]
+        return tuple(map(tuple, found))
+
+    def _owners(self, base: str, joints: Sequence[UrdfJoint]) -> dict[str, int]:
+        """By link from base on the index of the joint that carries it, -1 for none."""
+        moving, owners = {joint.child: i for i, joint in enumerate(joints)}, {base: -1}
+        for link in self.order(base)[1:]:
+            owners[link] = moving.get(link, owners[self.above[link].parent])
+        return owners
 
 
 def _listed(links: Sequence[str]) -> str:

@@ -76,13 +76,28 @@ class UrdfJoint:
 
 
 @dataclass(frozen=True, eq=False)
+class Visual:
+    """A mesh that shows a link: its file as the URDF names it, its scale (3,) in m a unit.
+
+    place is T_link_mesh, or T_base_mesh at zero where an arm has it.
+    """
+
+    file: str
+    scale: Array
+    place: Pose
+
+
+@dataclass(frozen=True, eq=False)
 class UrdfRobot:
-    """All links by name, with what they weigh, and all joints, in the order of the file."""
+    """All links by name, with what they weigh and their meshes, and all joints.
+
+    In the order of the file.
+    """
 
     name: str
     bodies: dict[str, Inertial | None]
     joints: tuple[UrdfJoint, ...]
-    has_meshes: bool
+    visuals: dict[str, tuple[Visual, ...]]
 
 
 def read_urdf(text: str) -> UrdfRobot:
@@ -91,7 +106,7 @@ def read_urdf(text: str) -> UrdfRobot:
     count = len(root.findall('link'))
     if count > MOST_LINKS:
         raise ConfigError([f'{count} links, at most {MOST_LINKS} are read'])
-    links = _named(root, 'link', _inertial, problems)
+    links = _named(root, 'link', _link, problems)
     joints = _named(root, 'joint', _joint, problems)
     for joint in joints.values():
         ends = {'parent': joint.parent, 'child': joint.child}
@@ -102,8 +117,9 @@ def read_urdf(text: str) -> UrdfRobot:
         ]
     if problems:
         raise ConfigError(problems)
-    has_meshes = root.find('link/visual/geometry/mesh') is not None
-    return UrdfRobot(root.get('name', ''), links, tuple(joints.values()), has_meshes)
+    bodies = {name: body for name, (body, _) in links.items()}
+    visuals = {name: meshes for name, (_, meshes) in links.items()}
+    return UrdfRobot(root.get('name', ''), bodies, tuple(joints.values()), visuals)
 
 
 def with_right_angles(robot: UrdfRobot) -> UrdfRobot:
@@ -163,7 +179,17 @@ def _named(
     return found
 
 
-def _inertial(name: str, link: ET.Element) -> Inertial | None:
+def _link(name: str, link: ET.Element) -> tuple[Inertial | None, tuple[Visual, ...]]:
+    meshes = []
+    for visual in link.findall('visual'):
+        mesh = visual.find('geometry/mesh')
+        if mesh is not None:
+            scale = np.array(_numbers(mesh, 'scale', (1.0, 1.0, 1.0)))
+            meshes.append(Visual(mesh.get('filename', ''), scale, _origin(visual)))
+    return _inertial(link), tuple(meshes)
+
+
+def _inertial(link: ET.Element) -> Inertial | None:
     """In the link's axes; None where nothing, or a mass of zero, is given."""
     found = link.find('inertial')
     mass = None if found is None else _number(found.find('mass'), 'value')

@@ -20,7 +20,6 @@ from hexapod_control.platform_limits import (
     SURPLUS,
     SWING,
     TILT,
-    PlatformLimits,
 )
 from hexapod_control.rails import RailPlatform
 from hexapod_control.rotary import RotaryHexapod
@@ -28,6 +27,7 @@ from manipulator.arrays import Array, frozen
 from manipulator.config import PLACE_MM, SIZE_MM, quantity
 from manipulator.errors import ConfigError
 from manipulator.limits.constraints import Constraints
+from manipulator.limits.limit import LimitGroup
 from manipulator.limits.machine_limits import BodyHeight, JointRange
 from manipulator.pose import Pose
 
@@ -40,7 +40,7 @@ LEG_NAMES = tuple(f'leg {leg}' for leg in range(1, LEGS + 1))
 class PlatformLimit:
     """A `Limit` on some of a platform's `limited_values`, within [low, high] each."""
 
-    group: PlatformLimits
+    group: LimitGroup
     columns: slice
     quantity: str
     unit: str

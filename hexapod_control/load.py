@@ -1,7 +1,10 @@
 """From a machine file's sections to a parallel platform that the nodes can use."""
 
+from functools import partial
+
 import numpy as np
 
+from hexapod_control.bodies import platform_bodies
 from hexapod_control.geometry import LEGS, HexagonConfig, JointsConfig, check_architecture
 from hexapod_control.home import home_problems
 from hexapod_control.leg_limits import LinearLimits, RailLimits, RotaryLimits
@@ -13,13 +16,12 @@ from hexapod_control.rotary import RotaryHexapod
 from manipulator.arrays import Array
 from manipulator.errors import ConfigError
 from manipulator.formatting import shown
-from manipulator.kinematics import Kinematics
 from manipulator.limits.constraints import Constraints
 from manipulator.machine import Kind, Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
 from manipulator.teleop.platform_jogger import PlatformJogger
 
-Parts = tuple[Kinematics, Constraints]
+Parts = tuple[ParallelPlatform, Constraints]
 SETTINGS = 8
 """How many settings of the joints must all be singular for the architecture to be so."""
 
@@ -40,7 +42,13 @@ def platform(machine_file: MachineFile) -> Machine:
         raise ConfigError([f'kind: {shown(kind)} is not one of {sorted(KINDS)}'])
     kinematics, constraints = KINDS[kind].build(machine_file)
     motion = MotionLimits.from_config(machine_file.motion)
-    return Machine(kinematics, constraints, motion, make_jogger=PlatformJogger)
+    return Machine(
+        kinematics,
+        constraints,
+        motion,
+        make_jogger=PlatformJogger,
+        make_bodies=partial(platform_bodies, kinematics),
+    )
 
 
 def rotary_hexapod(geometry: JointsConfig | HexagonConfig, limits: RotaryLimits) -> Parts:

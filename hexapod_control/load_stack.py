@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any
 
 from hexapod_control import load
+from hexapod_control.bodies import stack_bodies
 from hexapod_control.stack import Stack
 from hexapod_control.stack_inverse import MOST_SECTIONS
 from hexapod_control.stack_kinematics import StackKinematics
@@ -104,7 +105,13 @@ def _stack(config: StackConfig, limits: StackLimitsConfig, machine_file: Machine
         Stack(sections, transforms), limits.characteristic_length_mm * 1e-3
     )
     motion = MotionLimits.from_config(machine_file.motion)
-    return Machine(kinematics, constraints_of(kinematics), motion, make_jogger=PlatformJogger)
+    return Machine(
+        kinematics,
+        constraints_of(kinematics),
+        motion,
+        make_jogger=PlatformJogger,
+        make_bodies=partial(stack_bodies, kinematics),
+    )
 
 
 KIND: Kind[Callable[[MachineFile], Machine]] = Kind(

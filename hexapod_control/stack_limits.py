@@ -90,7 +90,7 @@ class StackLimits:
 
     def descended(self, search: Search, bounds: Sequence[Bounds], start: Pose) -> Pose:
         """See `LimitGroup`: steps to the nearest pose within the limits as they are about here."""
-        ranges, pose = self.ranges(bounds), start
+        ranges, pose = self.ranges(bounds), _pivot_of(start, -search.pivot)
         length = self.kinematics.characteristic_length
         for _ in range(search.most_steps):
             slack, normals = self._margins(ranges, pose, length)
@@ -102,7 +102,7 @@ class StackLimits:
             if moved is None:
                 break
             pose = moved
-        return pose
+        return _pivot_of(pose, search.pivot)
 
     def first_free_path(self, ranges: Array, paths: BrakingPaths) -> tuple[int, Array]:
         """See `LimitGroup`; each path as kernel/braking.h judges it.

@@ -55,15 +55,23 @@ class Imported:
     assumed: tuple[str, ...]
 
 
-def machine_text(arm: UrdfArm, name: str, source: str, wishes: Wishes) -> Imported:
+def machine_text(
+    arm: UrdfArm,
+    name: str,
+    source: str,
+    wishes: Wishes,
+    meshes: Sequence[str] = (),
+    notes: Sequence[str] = (),
+) -> Imported:
     """The machine file of an arm, which `hexarm check` finds good; ConfigError with its problems.
 
-    name is the robot's, source the URDF's file name: both go into comments.
+    name is the robot's, source the URDF's file name: both go into comments, and so do notes.
+    meshes are the files of the seven links, or none.
     """
-    length = LENGTH_SHARE * _reach(arm.chain)
+    length = LENGTH_SHARE * reach_of(arm.chain)
     sections = (
         _head(arm, name, source),
-        _geometry(arm, length, wishes),
+        [*_geometry(arm, length, wishes), *_meshes(meshes, notes)],
         _limits(arm, length, wishes),
         _motion(arm, wishes),
         _dynamics(arm, length),
@@ -101,6 +109,13 @@ def _geometry(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
     rounded = np.round(exact, 3)
     home = np.where((low <= rounded) & (rounded <= high), rounded, exact)
     yield f'  home_deg: {_list(home)}  # assumed: not near a singular posture'
+
+
+def _meshes(files: Sequence[str], notes: Sequence[str]) -> Iterator[str]:
+    if files:
+        yield '  meshes:                          # of the base and the six links, for the eye'
+        yield from (f'    - {json.dumps(file, ensure_ascii=False)}' for file in files)
+    yield from (f'  # {_plain(note)}' for note in notes)
 
 
 def _limits(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
@@ -213,17 +228,22 @@ def _is_credible(value: float | None, bounds: tuple[float, float], is_angle: boo
 
 
 def home_of(arm: UrdfArm, length: float) -> Array:
+    """Joints (6,) in rad: see `posture`; within the file's ranges."""
+    return posture(arm.chain, *_ends(arm), length)
+
+
+def posture(chain: Chain, low: Array, high: Array, length: float) -> Array:
     """Joints (6,) in rad: of the postures tried, the nearest to zero far from singular ones.
 
-    Of those whose tool and joints are above the base plane, where there are any; within ranges.
+    Of those whose tool and joints are above the base plane, where there are any; within low and
+    high (6,). length (m): what one radian counts.
     """
-    low, high = _ends(arm)
     ends = zip(low.tolist(), high.tolist(), strict=True)
     rest = np.array([0.0 if a <= 0.0 <= b else (a + b) / 2 for a, b in ends])
     bends = np.array([(0.0, *four, 0.0) for four in product(BENDS, repeat=4)])
     postures = np.clip(rest + bends, low, high)
-    sigma = arm.chain.sigma_min(postures, length)
-    is_above = _lowest(arm.chain, postures) >= min(0.0, float(arm.chain.points[:, 2].min()))
+    sigma = chain.sigma_min(postures, length)
+    is_above = _lowest(chain, postures) >= min(0.0, float(chain.points[:, 2].min()))
     allowed = is_above if (sigma[is_above] >= ONSET).any() else np.ones_like(is_above)
     fitting = allowed & (sigma >= WELL * sigma[allowed].max())
     nearest: Array = postures[fitting][np.abs(bends[fitting]).sum(axis=1).argmin()]
@@ -244,7 +264,7 @@ def _ends(arm: UrdfArm) -> tuple[Array, Array]:
     return np.radians([r[0] for r in ranges]), np.radians([r[1] for r in ranges])
 
 
-def _reach(chain: Chain) -> float:
+def reach_of(chain: Chain) -> float:
     """Metres from the base through all joints to the tool."""
     places = np.vstack([np.zeros(3), chain.points, chain.home.position])
     return float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())

@@ -12,7 +12,7 @@ from rclpy.qos import DurabilityPolicy
 
 from hexarm.graph_client import GraphClient
 from manipulator.errors import ManipulatorError, Refused, Stopped
-from manipulator.nodes.messages import pose_message, seconds
+from manipulator.nodes.messages import BASE_FRAME, pose_message, seconds
 from manipulator.nodes.path_goals import path_message
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.trajectory_services import STAMP
@@ -92,16 +92,16 @@ class Client(GraphClient):
         """Switches the servos off."""
         self.switch('serial_bridge/enable', False)
 
-    def publish_goal(self, pose: Pose) -> float:
+    def publish_goal(self, pose: Pose, frame: str = BASE_FRAME) -> float:
         """Publishes a goal and returns its stamp, by which motion_status names it."""
         stamp = self.node.get_clock().now().to_msg()
-        self._goals.publish(pose_message(pose, stamp))
+        self._goals.publish(pose_message(pose, stamp, frame))
         return seconds(stamp)
 
-    def send_goal(self, pose: Pose) -> None:
+    def send_goal(self, pose: Pose, frame: str = BASE_FRAME) -> None:
         """Publishes a goal, once the machine can receive it; `is_there` reports its result."""
         self.wait('a subscriber on goal_pose', lambda: self.reaches(self._goals), 10.0)
-        self._pursue(f'{self.publish_goal(pose):.9f}')
+        self._pursue(f'{self.publish_goal(pose, frame):.9f}')
 
     def send_path(self, poses: Pose, times: Sequence[float] | None = None) -> None:
         """As send_goal, a path of poses (n,), n ≤ 2,000; `times` (s) at which to pass them."""

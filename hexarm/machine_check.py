@@ -12,6 +12,7 @@ from bridge.servo_config import ServosConfig
 from hexapod_control import load as hexapods
 from hexapod_control.home import home_problems
 from hexapod_control.load_stack import StackConfig
+from hexarm.link_meshes import link_meshes
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
 from hexarm.machine_spelling import corrected
 from hexarm.machine_warnings import warnings_of
@@ -93,6 +94,7 @@ def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
     if machine is not None and whole is not None:
         found.of(partial(frames_of, whole, machine.kinematics))
         machine = found.of(partial(machine.within, whole.task_space)) or machine
+        machine = found.of(partial(machine.among, whole.surroundings, whole.bodies)) or machine
     calibration = _calibration(found, sections.get('servos'))
     if machine is not None:
         home = _home_problems(kind, machine, content)
@@ -100,6 +102,8 @@ def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
         if calibration is not None:
             found.problems += contradictions(machine, calibration, is_home_good=not home)
     doubts = [] if machine is None else warnings_of(machine, calibration, content['geometry'])
+    if machine is not None and folder is not None:
+        doubts += link_meshes(content['geometry'], folder)[1]
     return Report(_merged(found.problems), tuple(doubts), machine)
 
 
@@ -182,7 +186,7 @@ def _merged(problems: Sequence[str]) -> tuple[str, ...]:
         where, colon, what = problem.partition(': ')
         groups.setdefault(INDEX.sub('[]', where, count=1) + colon + what, []).append(where)
     return tuple(
-        text.replace('[]', f'[{", ".join(INDEX.findall(" ".join(places)))}]', 1)
+        text.replace('[]', f'[{", ".join(m[1] for m in map(INDEX.search, places) if m)}]', 1)
         for text, places in groups.items()
     )
 

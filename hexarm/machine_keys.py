@@ -20,7 +20,8 @@ from hexapod_control import load as hexapods
 from hexapod_control import load_stack
 from hexarm.simulation.dynamics_config import SCHEMAS, StackDynamicsConfig
 from manipulator.config import forms_of, is_required
-from manipulator.frames import FramesConfig
+from manipulator.frames import FramesConfig, ToolConfig
+from manipulator.limits.surroundings import BodiesConfig, SurroundingsConfig
 from manipulator.limits.task_space import TaskSpaceConfig
 from manipulator.machine import Kind, MachineFile
 from manipulator.motion_limits import MotionConfig
@@ -117,7 +118,13 @@ def tables() -> str:
             schema = sections_of(kind)[name]
             for form in filter(dataclasses.fields, forms_of(schema)):
                 lines += [f'### `{name}` of a `{kind}`{_form(form, schema)}', '', *_table(form)]
-    others = {'frames': FramesConfig, 'task_space': TaskSpaceConfig}
+    others = {
+        'frames': FramesConfig,
+        'tools': ToolConfig,
+        'task_space': TaskSpaceConfig,
+        'surroundings': SurroundingsConfig,
+        'bodies': BodiesConfig,
+    }
     for name, schema in {'motion': MotionConfig, **BRIDGE, **others}.items():
         lines += [f'### `{name}`', '', *_table(schema)]
     return '\n'.join(lines).rstrip('\n') + '\n'

@@ -5,6 +5,7 @@ import os
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +20,9 @@ from manipulator.formatting import reason, shortened, shown
 from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
+from manipulator.pose import Pose
 from manipulator.static_deflection import StaticDeflection
-from manipulator.unit_hints import check_pivot
+from manipulator.unit_hints import check_pivot, check_tool
 
 
 def _hexapod(machine_file: MachineFile) -> Machine:
@@ -202,21 +204,43 @@ def load(name_or_path: str) -> Machine:
     try:
         machine = loader(machine_file.kind)(machine_file)
         machine = machine.within(machine_file.task_space)
+        machine = machine.among(machine_file.surroundings, machine_file.bodies)
         machine = replace(machine, deflection=_deflection(machine_file, machine.kinematics))
-        machine = replace(machine, frames=frames_of(machine_file, machine.kinematics))
+        frames = frames_of(machine_file, machine.kinematics)
+        frames = replace(frames, is_load_fixed=machine.deflection is not None)
+        machine = replace(machine, frames=frames)
     except ConfigError as error:
         raise ConfigError(error.problems, str(find(name_or_path))) from error
     return _with_servos(machine, machine_file)
 
 
 def frames_of(machine_file: MachineFile, kinematics: Kinematics) -> Frames:
-    """The frames of a file; ConfigError for a pivot that is far from the machine."""
-    frames = Frames.from_config(machine_file.frames)
-    try:
-        check_pivot(kinematics, frames.T_platform_pivot)
-    except InvalidInput as error:
-        raise ConfigError([f'frames.pivot_xyz_mm: {error}']) from error
+    """The frames of a file; ConfigError for pivots and tools that do not fit the machine."""
+    frames = Frames.from_config(machine_file.frames, machine_file.tools)
+    problems = []
+    if not frames.tools:
+        check = partial(check_pivot, kinematics, frames.T_platform_pivot)
+        problems += _doubt('frames.pivot_xyz_mm', check)
+    for i, tool in enumerate(frames.tools):
+        problems += _doubt(f'tools[{i}].xyz_mm', partial(check_tool, kinematics, tool))
+        centre = Pose.from_xyz_rpy(1e-3 * np.array(tool.load[1:]), (0.0, 0.0, 0.0))
+        name = f'centre of tool {tool.name!r}'
+        if machine_file.tools[i].centre_mm is not None:
+            problems += _doubt(
+                f'tools[{i}].centre_mm', partial(check_pivot, kinematics, centre, name)
+            )
+    if problems:
+        raise ConfigError(problems)
     return frames
+
+
+def _doubt(place: str, check: Callable[[], None]) -> list[str]:
+    """What a check raises, as problems of the file."""
+    try:
+        check()
+    except InvalidInput as error:
+        return [f'{place}: {error}']
+    return []
 
 
 def _with_servos(machine: Machine, machine_file: MachineFile) -> Machine:

@@ -22,7 +22,7 @@ from manipulator.analysis.reach import Reach, reach
 from manipulator.errors import InvalidInput
 from manipulator.formatting import shown
 from manipulator.machine import Machine
-from manipulator.nodes.messages import BASE_FRAME, pose_of
+from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, pose_of
 from manipulator.pose import Pose
 from manipulator.saved_poses import SavedPoses, checked_name
 from manipulator.states import MotionResult
@@ -143,6 +143,15 @@ class Robot:
         if wait:
             self.wait(timeout)
 
+    def move_tool_to(
+        self, pose: PoseLike, *, wait: bool = True, timeout: float = PATIENCE
+    ) -> None:
+        """Moves the tool in force, or the pivot, to a pose in the work frame."""
+        goal = pose_from(pose)
+        self._client.begin(lambda: self._client.send_goal(goal, WORK_FRAME))
+        if wait:
+            self.wait(timeout)
+
     def move_joints(
         self,
         joints: Mapping[str, float] | None = None,
@@ -221,6 +230,27 @@ class Robot:
     def stop(self) -> None:
         """Brakes along the path and returns when the machine holds; then it may move again."""
         self._client.rest()
+
+    # Tools
+
+    def use_tool(self, name: str) -> None:
+        """Puts a tool of the machine file in force, '' none; returns when it is (docs/tools.md).
+
+        InvalidInput names the tools that there are. A motion under way is waited for.
+        """
+        self._model().frames.with_tool(name)
+        self.wait()
+        self._client.use_tool(name)
+
+    @property
+    def tool(self) -> str:
+        """The name of the tool in force, '' for none; as reported once a second."""
+        return self._client.tool()
+
+    @property
+    def tool_pose(self) -> Pose:
+        """The measured pose of the tool in force, or of the pivot, in the work frame."""
+        return pose_of(self._client.fresh_pivot(), (WORK_FRAME,))
 
     # Saved poses
 

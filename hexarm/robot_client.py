@@ -272,6 +272,27 @@ class RobotClient(Client):
         self._stops.publish(Bool(data=True))
         self.trigger('serial_bridge/stop')
 
+    # Tools
+
+    def use_tool(self, name: str) -> None:
+        """Sends the name of a tool, and waits until it is reported to be in force."""
+        self._received_on(String, 'tool').publish(String(data=name))
+        self.wait(f'tool {name!r} in force', lambda: self.tool() == name, PATIENCE)
+
+    def tool(self) -> str:
+        """The tool in force, as trajectory reports it."""
+        values = {pair.key: pair.value for pair in self.report_of('trajectory').values}
+        return str(values.get('tool', ''))
+
+    def fresh_pivot(self) -> PoseStamped:
+        """As `fresh`, of pivot_pose, which is published while there is a subscriber."""
+        if 'pivot_pose' not in self._publishers:
+            note = partial(self._note, 'pivot_pose')
+            self._publishers['pivot_pose'] = self.node.create_subscription(
+                PoseStamped, 'pivot_pose', note, COMMAND
+            )
+        return self.fresh('pivot_pose')
+
     # Saved poses
 
     def saved_poses(self) -> str:

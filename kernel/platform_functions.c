@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "braking.h"
+#include "capsules.h"
 #include "descent.h"
 #include "least_distance.h"
 #include "limits.h"
@@ -340,6 +341,25 @@ FUNCTION(first_free_path, {WHOLE, NUMBERS(struct platform)}, {WHOLE, NUMBERS(str
          {WHOLE, 9}, {WHOLE, LEGS}, {WHOLE, LEGS}, {ITEMS, 6},
          {WRITTEN, NUMBERS(struct braking_path)})
 
+/* Two segments of six numbers each; their distance. */
+static Py_ssize_t call_segment_distance(real *const *a, Py_ssize_t items)
+{
+    for (Py_ssize_t i = 0; i < items; i++)
+        a[2][i] = segment_distance(a[0] + 6 * i, a[1] + 6 * i);
+    return 0;
+}
+FUNCTION(segment_distance, {ITEMS, 6}, {ITEMS, 6}, {WRITTEN, 1})
+
+/* Segments and boxes; how far each segment is from breaking the rule of its box. */
+static Py_ssize_t call_box_clearance(real *const *a, Py_ssize_t items)
+{
+    const struct box *boxes = (const struct box *)a[1];
+    for (Py_ssize_t i = 0; i < items; i++)
+        a[2][i] = box_clearance(a[0] + 6 * i, boxes + i);
+    return 0;
+}
+FUNCTION(box_clearance, {ITEMS, 6}, {ITEMS, NUMBERS(struct box)}, {WRITTEN, 1})
+
 PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(leg_inverse),
     METHOD(leg_branches),
@@ -363,5 +383,7 @@ PyMethodDef PLATFORM_FUNCTIONS[] = {
     METHOD(least_distance),
     METHOD(descended),
     METHOD(first_free_path),
+    METHOD(segment_distance),
+    METHOD(box_clearance),
     {NULL, NULL, 0, NULL},
 };

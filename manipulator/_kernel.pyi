@@ -218,3 +218,9 @@ def first_free_path(
     paths: Array,
 ) -> int:
     """The first of the twists that can be braked, or how many there are: kernel/braking.h."""
+
+def segment_distance(first: Array, second: Array, distance: Array) -> int:
+    """0; `distance` is written: kernel/capsules.h."""
+
+def box_clearance(segment: Array, box: Array, clearance: Array) -> int:
+    """0; `clearance` is written: kernel/capsules.h."""

@@ -9,6 +9,7 @@ that a section may have; the one with most of the keys is meant.
 import dataclasses
 import difflib
 import math
+import re
 import types
 import typing
 from collections.abc import Mapping
@@ -31,6 +32,9 @@ SIZE_MM = (1e-3, 1e6)
 """Of a length that a machine cannot do without; `unit_hints` judges it beside the others."""
 PLACE_MM = (-1e6, 1e6)
 TURN_DEG = (-360.0, 360.0)
+NAME = re.compile(r'[^\W\d_][\w-]{0,39}')
+NAME_RULE = 'a letter, then letters, digits, _ and -, at most 40'
+"""What users may call a saved pose, a sequence or a tool."""
 RATE = (1e-6, 1e9)
 """Of a speed, acceleration or jerk, whatever the unit."""
 

@@ -19,11 +19,14 @@ from manipulator.links import Link, Stroke
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
+PATH_ROTATION = slice(5, 14)
+"""Of a `braking_path` of kernel/braking.h."""
+
 
 def in_frames(machine: Machine, frames: Frames) -> Machine:
-    """The machine as driven by T_work_pivot; the same machine when the frames are plain."""
+    """The machine as driven by T_work_pivot; with the same kinematics when frames are plain."""
     if frames.are_plain:
-        return machine
+        return replace(machine, frames=frames)
     kinematics = FramedKinematics(machine.kinematics, frames)
     limits, framed = [], dict[LimitGroup, FramedGroup]()
     constraints = machine.constraints
@@ -113,7 +116,10 @@ class FramedKinematics:
 
 @dataclass(frozen=True, eq=False)
 class FramedGroup:
-    """A group of limits of the machine, asked with poses of the pivot in the work frame."""
+    """A group of limits of the machine, asked with poses of the pivot in the work frame.
+
+    The group itself knows pivots that have the platform's axes: poses are turned to those.
+    """
 
     inner: LimitGroup
     frames: Frames
@@ -137,16 +143,25 @@ class FramedGroup:
 
     def descended(self, search: Search, bounds: Sequence[Bounds], start: Pose) -> Pose:
         """See `LimitGroup`: the same search with the pivot's poses in the base frame."""
-        T_base_work = self.frames.T_base_work
+        T_base_work, turn = self.frames.T_base_work, self._pivot_turn.inverse()
         pivot = self.frames.T_platform_pivot.position
-        of_pivot = replace(search, target=T_base_work @ search.target, pivot=pivot)
-        return T_base_work.inverse() @ self.inner.descended(of_pivot, bounds, T_base_work @ start)
+        of_pivot = replace(search, target=T_base_work @ search.target @ turn, pivot=pivot)
+        end = self.inner.descended(of_pivot, bounds, T_base_work @ start @ turn)
+        return T_base_work.inverse() @ end @ self._pivot_turn
 
     def first_free_path(self, ranges: Array, paths: BrakingPaths) -> tuple[int, Array]:
         """See `LimitGroup`."""
         work, pivot = self.frames.T_base_work, self.frames.T_platform_pivot.position
         frame = np.concatenate([work.position, work.rotation.ravel(), pivot])
-        return self.inner.first_free_path(ranges, replace(paths, frame=frame))
+        turned = replace(paths, frame=frame, pose=paths.pose @ self._pivot_turn.inverse())
+        free, found = self.inner.first_free_path(ranges, turned)
+        rotations = found[:free, PATH_ROTATION]
+        rotations[:] = (rotations.reshape(-1, 3, 3) @ self._pivot_turn.rotation).reshape(-1, 9)
+        return free, found
+
+    @property
+    def _pivot_turn(self) -> Pose:
+        return Pose.unchecked(np.zeros(3), self.frames.T_platform_pivot.rotation)
 
 
 @dataclass(frozen=True, eq=False)

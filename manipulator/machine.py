@@ -2,18 +2,20 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Generic, Literal, TypeVar
+from typing import Any, Generic, Literal, TypeVar, cast
 
 import numpy as np
 
 from manipulator.arrays import Array
 from manipulator.config import build_both, key
 from manipulator.errors import ConfigError, InvalidInput
-from manipulator.frames import Frames, FramesConfig
+from manipulator.frames import Frames, FramesConfig, ToolConfig
 from manipulator.kinematics import Kinematics
+from manipulator.limits.clearance import Clearance, ClearGroup
 from manipulator.limits.constraints import Constraints
 from manipulator.limits.limit import LimitOf
 from manipulator.limits.machine_limits import JointRange
+from manipulator.limits.surroundings import Bodies, BodiesConfig, Obstacle, SurroundingsConfig
 from manipulator.limits.task_space import TaskSpaceConfig
 from manipulator.limits.wording import in_words
 from manipulator.motion_limits import MotionConfig, MotionLimits
@@ -55,9 +57,20 @@ class MachineFile:
     )
     dynamics: dict[str, Any] | None = key('masses and drives (docs/physics.md)', default=None)
     frames: FramesConfig = key("the user's frames", default_factory=FramesConfig)
+    tools: tuple[ToolConfig, ...] = key(
+        'that can be on platform or arm, the first at start (docs/tools.md)', default=()
+    )
     task_space: TaskSpaceConfig = key(
         'limits on position, orientation and speed of platform or tool',
         default_factory=TaskSpaceConfig,
+    )
+    surroundings: SurroundingsConfig = key(
+        'what it may not meet: floor, boxes, the sides of a workspace',
+        default_factory=SurroundingsConfig,
+    )
+    bodies: BodiesConfig = key(
+        'how thick its parts are, which then may not meet each other',
+        default_factory=BodiesConfig,
     )
 
     def __post_init__(self) -> None:
@@ -108,7 +121,8 @@ class Machine:
     the same in other frames. deflection: of the drives under load, where it is to be compensated.
     park (n,) are the joints at which the servos are switched on and off, None where the file has
     no usable servos. resolution (n,): the steps in which joints are commanded and reported, None
-    likewise. jog_singularity: one of JOG_SINGULARITIES.
+    likewise. jog_singularity: one of JOG_SINGULARITIES. make_bodies: its parts as capsules;
+    obstacles: what they may not meet.
     """
 
     kinematics: Kinematics
@@ -120,6 +134,8 @@ class Machine:
     park: Array | None = None
     resolution: Array | None = None
     jog_singularity: str = JOG_SINGULARITIES[0]
+    make_bodies: 'Callable[[BodiesConfig], Bodies] | None' = None
+    obstacles: tuple[Obstacle, ...] = ()
 
     def __post_init__(self) -> None:
         """Raises InvalidInput for an unknown jog_singularity."""
@@ -144,6 +160,31 @@ class Machine:
             constraints=Constraints((*constraints.limits, *added)),
             motion=replace(self.motion, axis_speeds=task_space.speeds),
         )
+
+    def among(self, surroundings: SurroundingsConfig, bodies: BodiesConfig) -> 'Machine':
+        """With clearances as limits as well; ConfigError names all that meets at home."""
+        obstacles = surroundings.obstacles()
+        if not obstacles and bodies == BodiesConfig():
+            return self
+        if self.make_bodies is None:
+            raise ConfigError(['surroundings, bodies: not known of this kind of machine'])
+        clearance = Clearance(self.make_bodies(bodies), obstacles)
+        kinematics = self.kinematics
+        found = Constraints((clearance,)).violations(
+            kinematics.home, kinematics.inverse(kinematics.home)
+        )
+        if found:
+            raise ConfigError([f'home: {words}' for words in in_words(found)])
+        return replace(self, constraints=self._with_clearance(clearance), obstacles=obstacles)
+
+    def _with_clearance(self, clearance: Clearance) -> Constraints:
+        """In the group of all other limits, where there is one."""
+        limits = self.constraints.limits
+        if not self.constraints.is_one_group or not clearance.owners:
+            return Constraints((*limits, clearance))
+        group = ClearGroup(self.constraints.checks[0][0], clearance, self.kinematics)
+        own = [replace(cast(Any, limit), group=group) for limit in limits]
+        return Constraints((*own, replace(clearance, group=group, columns=group.columns)))
 
     @property
     def joint_ranges(self) -> tuple[Array, Array]:

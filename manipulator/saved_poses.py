@@ -15,7 +15,7 @@ import numpy as np
 import yaml
 
 from manipulator.arrays import Array, frozen
-from manipulator.config import build, parse_yaml, quantity
+from manipulator.config import NAME, NAME_RULE, build, parse_yaml, quantity
 from manipulator.errors import ConfigError, InvalidInput
 from manipulator.formatting import shown
 from manipulator.machine import Machine
@@ -25,7 +25,6 @@ from manipulator.yaml_edit import flow_list, with_section
 MOST_POSES = 300
 """As many as a machine file's length allows."""
 MOST_STEPS = 1000
-NAME = re.compile(r'[^\W\d_][\w-]{0,39}')
 PER_UNIT = {'rad': ('deg', 180.0 / np.pi), 'm': ('mm', 1e3)}
 """Units of the file by those of the joints, and how many make one."""
 DIGITS = 6
@@ -169,8 +168,7 @@ class SavedPoses:
 def checked_name(name: object) -> str:
     """The name of a pose or a sequence; InvalidInput says what one is made of."""
     if not isinstance(name, str) or NAME.fullmatch(name) is None:
-        rule = 'a letter, then letters, digits, _ and -, at most 40'
-        raise InvalidInput(f'{shown(name)} is not a name of a pose: {rule}')
+        raise InvalidInput(f'{shown(name)} is not a name of a pose: {NAME_RULE}')
     return name
 
 

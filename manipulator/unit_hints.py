@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Unreachable
 from manipulator.formatting import length
+from manipulator.frames import Tool
 from manipulator.kinematics import Kinematics
 from manipulator.pose import Pose
 
@@ -21,6 +23,9 @@ TURNS = ('roll', 'pitch', 'yaw')
 
 FACTOR = 200.0
 """Between a length and the machine's size: beyond it, one of both is more likely in metres."""
+LINK_RADIUS, LINK_END = 0.25, 0.01
+"""Of an arm's last link, as parts of its length: how thick it is taken to be, and a rounding."""
+TINY = 1e-9
 SIZES_MM = (2.0, 1e5)
 """Of machines: below they are more likely in metres, above in micrometres."""
 
@@ -79,12 +84,49 @@ def _lengths(place: str, section: Any) -> Iterable[tuple[str, float, bool]]:
             yield f'{place}.{field.name}', float(np.linalg.norm(points, axis=1).max()), is_size
 
 
-def check_pivot(kinematics: Kinematics, pivot: Pose) -> None:
+def check_tool(kinematics: Kinematics, tool: Tool) -> None:
+    """Raises InvalidInput for a tool that is far from the machine or inside an arm's wrist."""
+    name = f'tool {tool.name!r}'
+    check_pivot(kinematics, tool.T_platform_tool, name)
+    home = kinematics.home
+    joints = kinematics.inverse(home)
+    if any(stroke.part == 'link' for stroke in kinematics.skeleton(home, joints)):
+        wrist = home.rotation.T @ _wrist(kinematics.jacobian(home, joints))
+        _check_outside(wrist, tool.T_platform_tool.position, name)
+
+
+def _wrist(jacobian: Array) -> Array:
+    """Where an arm's last axis comes nearest to the one before it, (3,) from the platform (m).
+
+    jacobian (6, 6) in base axes; the result too. A turn ω about an axis through p moves the
+    platform's origin by v = p × ω.
+    """
+    (v, before), (u, last) = (np.split(column, 2) for column in jacobian.T[4:])
+    gap = np.cross(before, v) - np.cross(last, u)
+    cosine = float(before @ last)
+    along = float(gap @ (last - cosine * before)) / max(1.0 - cosine**2, TINY)
+    wrist: Array = np.cross(last, u) + along * last
+    return wrist
+
+
+def _check_outside(begin: Array, point: Array, name: str) -> None:
+    """For a link (platform frame, m) from `begin` to the platform's origin, where tools begin."""
+    size = float(np.linalg.norm(begin))
+    along = float(point @ begin) / max(size, TINY)
+    aside = float(np.linalg.norm(np.cross(point, begin))) / max(size, TINY)
+    if LINK_END * size < along < size and aside < LINK_RADIUS * size:
+        raise InvalidInput(
+            f'{name} is inside the last link: {length(along)} behind its end, {length(aside)} '
+            f'from its line, needs {length(LINK_RADIUS * size)} there'
+        )
+
+
+def check_pivot(kinematics: Kinematics, pivot: Pose, name: str = 'pivot') -> None:
     """Raises InvalidInput for a pivot (platform frame) that is far from the machine."""
     away = float(np.linalg.norm(pivot.position))
     most = FAR * kinematics.characteristic_length
     if away > most:
         raise InvalidInput(
-            f'pivot {pivot.position.tolist()} is {length(away)} from the platform, at most '
+            f'{name} {pivot.position.tolist()} is {length(away)} from the platform, at most '
             f'{length(most)} fit this machine: is it in another unit?'
         )

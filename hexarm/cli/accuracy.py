@@ -4,6 +4,7 @@ import argparse
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,8 +24,8 @@ from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
 from manipulator.pose import Pose
 
-NOISE = {'rad': math.radians(1.0), 'm': 2e-4}
-"""SG90: 1° (Prokopovich 2019); for linear servos ours."""
+PAPER_MACHINE, PAPER_NOISE = 'robocake', math.radians(1.0)
+"""Prokopovich 2019: 1° of an SG90."""
 TOLERANCE = 1e-4
 DRAWS, FEWEST_DRAWS = 4000, 100
 MACHINES = 400
@@ -55,7 +56,8 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     add_machine(parser)
     parser.add_argument(
         '--noise', type=float, metavar='A',
-        help='uniform servo noise within ±A, rad or m (default 1° or 0.2 mm)',
+        help='uniform servo noise within ±A, rad or m (default: the play of the servos in the '
+        'machine file, 1° for the RoboCake)',
     )  # fmt: skip
     parser.add_argument(
         '--tolerance', type=float, default=TOLERANCE, metavar='M',
@@ -76,13 +78,16 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 def answer(arguments: argparse.Namespace) -> Answer:
     """The spread of the pose at home by each cause, and over the positions reached unturned."""
     machine, file = load(arguments.machine), read(arguments.machine)
-    noise = NOISE[machine.kinematics.joint_unit] if arguments.noise is None else arguments.noise
+    is_papers = file.kind == 'rotary_hexapod' and file.geometry == read(PAPER_MACHINE).geometry
+    noise = arguments.noise
+    if noise is None:
+        noise = PAPER_NOISE if is_papers else play_of(file)
     for name, value in (('--noise', noise), ('--tolerance', arguments.tolerance)):
         if not 0.0 <= value < 1.0:
             raise InvalidInput(f'{name} {value:g} is outside [0, 1)')
     if arguments.draws < FEWEST_DRAWS:
         raise InvalidInput(f'--draws {arguments.draws} is below {FEWEST_DRAWS}')
-    is_papers = file.kind == 'rotary_hexapod' and math.isclose(noise, NOISE['rad'])
+    is_papers = is_papers and math.isclose(noise, PAPER_NOISE)
     errors = servo_errors(machine.kinematics, file, noise)
     common = common_error(file, noise, len(machine.kinematics.joint_names))
     causes = {**servo_causes(errors), **common_causes(common)}
@@ -98,9 +103,20 @@ def answer(arguments: argparse.Namespace) -> Answer:
     if arguments.picture is not None:
         from hexarm.pictures.accuracy import draw  # noqa: PLC0415 (matplotlib is an extra)
 
-        draw(machine, errors, arguments.picture, arguments.machine)
+        draw(machine, errors, arguments.picture, Path(arguments.machine).stem)
         lines.append(str(arguments.picture))
     return for_programs, lines
+
+
+def play_of(file: MachineFile) -> float:
+    """What the machine file says of its servos' play, rad or m; InvalidInput where nothing."""
+    play = BoardConfig.from_machine(file).hysteresis if file.driver == 'serial' else 0.0
+    if play > 0.0:
+        return play
+    raise InvalidInput(
+        'how far the joints are off is not in the machine file (simulation.hysteresis_deg or '
+        'hysteresis_mm): give --noise A, in rad or m'
+    )
 
 
 def servo_errors(kinematics: Kinematics, file: MachineFile, noise: float) -> JointErrors:

@@ -1,12 +1,15 @@
 """`hexarm mjcf` and `hexarm urdf`: a machine as a MuJoCo model, an arm as URDF."""
 
 import argparse
+import sys
 from pathlib import Path
 
 from arm_control.arm import SerialArm
 from arm_control.urdf import urdf
 from hexarm import machines
 from hexarm.cli.answers import Answer, add_machine, answering
+from hexarm.link_meshes import meshes_of
+from hexarm.simulation.arm_model import with_meshes
 from hexarm.simulation.dynamics_config import ArmDynamicsConfig
 from hexarm.simulation.model import mechanism
 from hexarm.simulation.rigid_body import Mechanism
@@ -33,10 +36,14 @@ def _mjcf(arguments: argparse.Namespace) -> Answer:
     """The model, or where it was written; only what assembles at home is."""
     from hexarm.simulation.simulation import Simulation  # noqa: PLC0415 (needs mujoco)
 
-    model = modelled(arguments.machine)
-    kinematics = machines.load(arguments.machine).kinematics
+    model, kinematics = modelled(arguments.machine), machines.load(arguments.machine).kinematics
+    meshes, faults = meshes_of(arguments.machine)
+    if isinstance(kinematics, SerialArm) and meshes:
+        model = with_meshes(model, kinematics, [mesh.file if mesh else None for mesh in meshes])
     simulation = Simulation(model, kinematics.home, kinematics.inverse(kinematics.home))
     if arguments.output is None:
+        for fault in faults:
+            print(fault, file=sys.stderr)
         return {'mjcf': model.xml}, [model.xml.rstrip('\n')]
     try:
         arguments.output.write_text(model.xml, encoding='utf-8')
@@ -48,7 +55,8 @@ def _mjcf(arguments: argparse.Namespace) -> Answer:
         'drives': len(model.joints),
     }
     words = ', '.join(f'{count} {name}' for name, count in counts.items())
-    return {'output': str(arguments.output), **counts}, [f'{arguments.output}: {words}']
+    lines = [f'{arguments.output}: {words}', *faults]
+    return {'output': str(arguments.output), **counts}, lines
 
 
 def modelled(

@@ -10,6 +10,7 @@ from arm_control.urdf_chain import arm_of
 from arm_control.urdf_file import MAX_CHARACTERS, read_urdf, with_right_angles
 from hexarm.arm_import import Wishes, machine_text
 from hexarm.cli.answers import Answer, answering, with_negatives
+from hexarm.mesh_import import ImportedMeshes, Packages, imported_meshes, packages_of
 from manipulator.errors import ConfigError, InvalidInput
 from manipulator.formatting import counted, reason
 
@@ -40,6 +41,9 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
         '--acceleration', type=float, metavar='DEG_S2', help='of each joint; default: assumed'
     )
     parser.add_argument(
+        '--package', action='append', default=[], metavar='NAME=DIR', help='of package://NAME/…'
+    )
+    parser.add_argument(
         '--output', type=Path, metavar='FILE', help='default: NAME.yaml, beside nothing else'
     )
     parser.add_argument('--json', action='store_true', help='answer for programs')
@@ -50,35 +54,48 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 def answer(arguments: argparse.Namespace) -> Answer:
     """Where the machine file is, and what it assumes; an existing file is not written over."""
     source: Path = arguments.file
+    packages = Packages(packages_of(arguments.package), source)
     try:
-        robot = read_urdf(_text_of(source))
+        robot = read_urdf(urdf_text(source))
         robot = with_right_angles(robot) if arguments.right_angles else robot
         arm = arm_of(robot, arguments.base, arguments.tip)
         named = (replace(joint, name=arguments.prefix + joint.name) for joint in arm.joints)
         arm = replace(arm, joints=tuple(named))
         exact = arm_of(with_right_angles(robot), arm.base, arm.tip)
         wishes = Wishes(arguments.home, arguments.acceleration)
-        imported = machine_text(arm, robot.name or source.stem, source.name, wishes)
+        stem = re.sub(r'\W+', '_', robot.name or source.stem).strip('_') or 'arm'
+        output: Path = arguments.output or Path(f'{stem}.yaml')
+        folder = output.with_name(f'{output.stem}_meshes')
+        meshes = imported_meshes(arm.visuals, packages.file)
+        names = meshes.names(folder.name)
+        imported = machine_text(
+            arm, robot.name or source.stem, source.name, wishes, names, meshes.faults
+        )
     except ConfigError as error:
         raise ConfigError(error.problems, str(source)) from error
-    stem = re.sub(r'\W+', '_', robot.name or source.stem).strip('_') or 'arm'
-    output: Path = arguments.output or Path(f'{stem}.yaml')
-    _write(output, imported.text)
+    _write(output, imported.text, meshes if any(names) else None, folder)
     is_rounded = closed_form(arm.chain) is None and closed_form(exact.chain) is not None
+    count = sum(map(bool, names))
     lines = [
         f'{output}: {arm.base} to {arm.tip}, {", ".join(joint.name for joint in arm.joints)}',
         f'{counted(len(imported.assumed), "line")} with assumed values: look for "assumed"',
-        *(['visual meshes are not imported'] if robot.has_meshes else []),
+        *([f'{folder}: meshes of {counted(count, "link")}'] if count else []),
+        *meshes.faults,
         *([HINT] if is_rounded else []),
         f'next: hexarm check {output}; hexarm up {output} --panel',
     ]
-    names = [joint.name for joint in arm.joints]
-    answer = {'output': str(output), 'base': arm.base, 'tip': arm.tip, 'joints': names}
+    joints = [joint.name for joint in arm.joints]
+    answer = {'output': str(output), 'base': arm.base, 'tip': arm.tip, 'joints': joints}
+    answer |= {'meshes': names, 'not_imported': list(meshes.faults)}
     return answer | {'assumed': list(imported.assumed)}, lines
 
 
-def _write(output: Path, text: str) -> None:
-    """InvalidInput where it cannot be written, or is there."""
+def _write(output: Path, text: str, meshes: ImportedMeshes | None, folder: Path) -> None:
+    """InvalidInput where it cannot be written, or is there; the meshes first."""
+    if output.exists():
+        raise InvalidInput(f'{output} exists: another name with --output')
+    if meshes is not None:
+        meshes.write(folder)
     try:
         with output.open('x', encoding='utf-8') as file:
             file.write(text)
@@ -88,7 +105,7 @@ def _write(output: Path, text: str) -> None:
         raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
 
 
-def _text_of(path: Path) -> str:
+def urdf_text(path: Path) -> str:
     """ConfigError for what cannot be read as text, or is huge."""
     try:
         with path.open(encoding='utf-8') as file:

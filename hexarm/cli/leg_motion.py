@@ -4,6 +4,7 @@ The experiment of Lapikov et al. 2014, section 4: `--legs 0.15 --to 0.02 0.02 0.
 """
 
 import argparse
+from pathlib import Path
 
 import numpy as np
 
@@ -46,7 +47,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
     if arguments.picture is not None:
         from hexarm.pictures.leg_motion import draw  # noqa: PLC0415 (needs matplotlib)
 
-        draw(motion, arguments.machine, arguments.picture)
+        draw(motion, Path(arguments.machine).stem, arguments.picture)
     for_programs = {
         'share': motion.share.tolist(),
         'lengths': motion.lengths.tolist(),

@@ -131,7 +131,8 @@ def saved(
     if arguments.picture is not None:
         from hexarm.pictures.simulation import draw  # noqa: PLC0415 (needs matplotlib)
 
-        draw(recording, this.mechanism, arguments.picture, this.load)
+        name = Path(arguments.machine).stem
+        draw(recording, this.mechanism, arguments.picture, this.load, name)
         written.append(arguments.picture)
     if arguments.animation is not None:
         from hexarm.pictures.animation import animate  # noqa: PLC0415 (needs matplotlib, pillow)

@@ -66,7 +66,7 @@ def answer(arguments: argparse.Namespace) -> Answer:
         if arguments.picture is not None:
             from hexarm.pictures.workspace import draw  # noqa: PLC0415 (matplotlib is an extra)
 
-            written += draw(machine, found, arguments.picture, arguments.machine)
+            written += draw(machine, found, arguments.picture, Path(arguments.machine).stem)
             on_progress('pictures', 1.0)
     files = [str(path) for path in written]
     return {**_for_programs(found), 'files': files}, [

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,16 +9,20 @@ from mpl_toolkits.mplot3d import Axes3D
 
 from hexarm.demo.arm_report import ArmResult
 from hexarm.demo.report import Result
+from hexarm.pictures import style
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 
-COLOURS = {'override': '#d4a017', 'square': '#0b6e99', 'look': '#6a994e'}
+COLOURS = dict(zip(('square', 'override', 'look'), style.AXES, strict=True))
+DASHES = dict(zip(COLOURS, style.DASHES, strict=True))
 NAMES = {
     'override': 'stick overrides a goal',
     'square': 'square, orientation held',
     'look': 'to and fro, looking at a point',
 }
-LINK, POINT = '#9aa5b1', '#d1603d'
+COMMANDED, DONE, LINK, POINT = style.LIGHT, style.AXES[0], style.LIGHT, style.LIMIT
+OTHER = style.AXES[1]
+"""Of the curve by the axis on the right."""
 POSTURES = {'square': (0.5,), 'look': (0.25, 0.75)}
 """Parts of each phase at which the arm is drawn."""
 
@@ -33,11 +36,9 @@ def draw_arm(axes: Axes3D, result: ArmResult, machine: Machine) -> None:
             _posture(axes, result, machine, int(inside[int(part * len(inside))]), name)
     for name, colour in COLOURS.items():
         path = 1e3 * result.poses.position[seen.during(name)]
-        axes.plot(*path.T, color=colour, lw=2.0, label=NAMES[name])
+        axes.plot(*path.T, color=colour, ls=DASHES[name], lw=2.0, label=NAMES[name])
     axes.plot(*(1e3 * seen.point), 'o', color=POINT, ms=6, label='the point')
-    axes.set(xlabel='x (mm)', ylabel='y (mm)', zlabel='z (mm)')
-    axes.set_aspect('equal', adjustable='box')
-    axes.set_box_aspect(None, zoom=0.9)
+    style.space(axes)
     axes.view_init(elev=18, azim=-40)
     axes.legend(loc='upper left', frameon=False)
 
@@ -48,7 +49,7 @@ def draw_held(axes: Axes, result: ArmResult) -> None:
     axes.plot(t, 1e3 * result.missed, color=COLOURS['look'], lw=1.1)
     axes.set(xlabel='time (s)', xlim=(0, t[-1]), ylim=(0, None))
     axes.set_ylabel('point missed by (mm)', color=COLOURS['look'])
-    axes.grid(alpha=0.25)
+    axes.grid(True)
     other = axes.twinx()
     other.plot(t, np.degrees(result.turned), color=COLOURS['square'], lw=1.1)
     other.set_ylabel('orientation error (°)', color=COLOURS['square'])
@@ -63,16 +64,9 @@ def _posture(axes: Axes3D, result: ArmResult, machine: Machine, k: int, name: st
         axes.plot(*(1e3 * sight).T, color=POINT, lw=0.8, ls=':')
 
 
-mpl.use('Agg')
-
-
-COMMANDED, DONE = '#9aa5b1', '#0b6e99'
-CRANKS = ('#0b6e99', '#3aa6b9', '#6a994e', '#d4a017', '#d1603d', '#8e4162')
-
-
 def draw(result: Result, arm_result: ArmResult, arm: Machine, picture: Path) -> None:
     """Saves the picture."""
-    plt.rcParams.update({'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False})
+    style.use()
     figure = plt.figure(figsize=(12, 12.8), dpi=110)
     _path(figure.add_axes((0.01, 0.51, 0.46, 0.43), projection='3d'), result)
     _joints(figure.add_axes((0.56, 0.775, 0.37, 0.155)), 'crank of leg', *_angles(result))
@@ -85,9 +79,8 @@ def draw(result: Result, arm_result: ArmResult, arm: Machine, picture: Path) -> 
         (0.475, 'Six-axis arm: driven by a gamepad through joy_teleop', 'its stepper drives'),
     ):
         figure.text(0.02, y, title, size=14, weight='bold')
-        figure.text(0.02, y - 0.0175, f'from the true joint angles of {source}', color='#4a5a6a')
-    figure.savefig(picture)
-    plt.close(figure)
+        figure.text(0.02, y - 0.0175, f'from the true joint angles of {source}', color=style.SOFT)
+    style.save(figure, picture)
 
 
 def _angles(result: Result | ArmResult) -> tuple[Array, Array]:
@@ -105,24 +98,18 @@ def _path(axes: Axes3D, result: Result) -> None:
     axes.plot(*done.T, color=DONE, lw=1.2)
     axes.plot([], [], color=COMMANDED, lw=5, label='commanded')
     axes.plot([], [], color=DONE, lw=1.2, label='done')
-    axes.plot(*done[0], 'o', color='#d1603d', ms=6, label='park')
-    axes.set(
-        xlabel='x (mm)',
-        ylabel='y (mm)',
-        zlabel='z (mm)',
-    )
-    axes.set_aspect('equal', adjustable='box')
-    axes.set_box_aspect(None, zoom=0.95)
+    axes.plot(*done[0], 'o', color=OTHER, ms=6, label='park')
+    style.space(axes, 0.95)
     axes.view_init(elev=28, azim=-55)
     axes.legend(loc='upper left', frameon=False)
 
 
 def _joints(axes: Axes, title: str, t: Array, angles: Array) -> None:
-    for k, colour in enumerate(CRANKS):
-        axes.plot(t, angles[:, k], color=colour, lw=1.1, label=f'{k + 1}')
+    for k in range(angles.shape[1]):
+        axes.plot(t, angles[:, k], label=f'{k + 1}', **style.curve(k))
     axes.set(ylabel='angle (°)', xlim=(0, t[-1]))
     axes.legend(title=title, ncols=6, frameon=False, loc='lower left', bbox_to_anchor=(0, 1.0))
-    axes.grid(alpha=0.25)
+    axes.grid(True)
 
 
 def _errors(axes: Axes, result: Result) -> None:
@@ -130,8 +117,8 @@ def _errors(axes: Axes, result: Result) -> None:
     axes.plot(t, 1e3 * result.contour, color=DONE, lw=1.1)
     axes.set(xlabel='time (s)', xlim=(0, t[-1]), ylim=(0, None))
     axes.set_ylabel('contour error (mm)', color=DONE)
-    axes.grid(alpha=0.25)
+    axes.grid(True)
     other = axes.twinx()
-    other.plot(t, np.degrees(result.orientation), color='#d1603d', lw=1.1)
-    other.set_ylabel('orientation error (°)', color='#d1603d')
+    other.plot(t, np.degrees(result.orientation), color=OTHER, lw=1.1)
+    other.set_ylabel('orientation error (°)', color=OTHER)
     other.set_ylim(0, None)

@@ -13,6 +13,7 @@ from hexarm.panel.pieces import hull, wxyz_of
 from hexarm.panel.room import shares
 from hexarm.panel.view import Stance, View
 from manipulator.arrays import Array
+from manipulator.limits.surroundings import STAY_IN
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
@@ -23,6 +24,7 @@ APART = 5e-3
 
 TRAIL_STEP = 0.004
 TRAIL_COLOUR, HULL_COLOUR = (255, 200, 87), (150, 190, 255)
+BOX_COLOUR = (120, 128, 138)
 REACH_LOOKS: dict[str, dict[str, Any]] = {
     'solid': {'opacity': 0.07},
     'net': {'wireframe': True, 'opacity': 0.22},
@@ -43,6 +45,7 @@ class Scene:
         self._scale = 1.0 / float(np.ptp(points, axis=0).max())
         low, high = points.min(axis=0) * self._scale, points.max(axis=0) * self._scale
         self._floor_height = float(min(low[2], 0.0)) - 0.06
+        self._surroundings()
         self._floor()
         self._camera(server, (low + high) / 2, float(high[2] - low[2]))
         style = kinematics, self._scale
@@ -134,6 +137,20 @@ class Scene:
             handle.position = position
         if not np.allclose(handle.wxyz, wxyz_of(pose), atol=STILL):
             handle.wxyz = wxyz_of(pose)
+
+    def _surroundings(self) -> None:
+        """What the machine may not meet; the grid lies where its floor is."""
+        for i, obstacle in enumerate(self._machine.obstacles):
+            low, high = obstacle.corners * self._scale
+            if obstacle.is_endless:
+                self._floor_height = float(low[2])
+                continue
+            is_workspace = obstacle.side == STAY_IN
+            self._scene.add_box(
+                f'/surroundings/{i}', BOX_COLOUR, tuple(high - low), position=(low + high) / 2,
+                wireframe=is_workspace, opacity=0.25 if is_workspace else 0.55, cast_shadow=False,
+                receive_shadow=False,
+            )  # fmt: skip
 
     def _floor(self) -> None:
         self._scene.add_grid(

@@ -4,23 +4,21 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import matplotlib as mpl
-
-mpl.use('Agg')
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D
 
+from hexapod_control.geometry import LEGS
 from hexapod_control.rotary import RotaryHexapod
 from hexarm import machines
 from hexarm.cli.export import modelled
-from hexarm.demo.picture import CRANKS
 from hexarm.papers.crank_kinematics import MACHINE, SPEED, along_x, crank_speeds, free
 from hexarm.papers.crank_limits import N_CM, SERVO, G, Searches
 from hexarm.papers.crank_noise import AS_UNIFORM, NAMES, PAPER_UM, Laws, subsets
+from hexarm.pictures import style
+from hexarm.pictures.style import JOINTS
 from hexarm.simulation.limit_search import (
     FREQUENCY,
     PAPER_AMPLITUDE,
@@ -77,7 +75,7 @@ def kinematic_scheme(path: Path) -> None:
     _outline(scheme, _hexagon(radius, 0.0), BLUE)
     _outline(scheme, _hexagon(radius, lid), RED)
     _outline(scheme, 1e3 * ends, INK)
-    for leg, colour in enumerate(CRANKS):
+    for leg, colour in enumerate(JOINTS):
         bars = 1e3 * np.array([centres[leg], tips[leg], ends[leg]])
         scheme.plot(*bars.T, color=colour, lw=2.0, marker='o', ms=3)
     scheme.set(xlabel='x (mm)', ylabel='y (mm)', zlabel='z (mm)')
@@ -129,9 +127,9 @@ def crank_cycle(path: Path) -> None:
     angles = np.degrees(machine.kinematics.inverse(along_x(machine, places)))
     speeds = going[:, None] * crank_speeds(machine, places)
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), dpi=DPI, layout='constrained')
-    for k, colour in enumerate(CRANKS):
-        axes[0].plot(times, angles[:, k], color=colour, lw=1.3, label=f'crank {k + 1}')
-        axes[1].plot(times, speeds[:, k], color=colour, lw=1.3)
+    for k in range(LEGS):
+        axes[0].plot(times, angles[:, k], label=f'crank {k + 1}', **style.curve(k))
+        axes[1].plot(times, speeds[:, k], **style.curve(k))
     axes[0].set(xlabel='time (s)', ylabel='crank angle (°)', xlim=(0, period))
     axes[1].set(xlabel='time (s)', ylabel='crank speed (°/s)', xlim=(0, period))
     figure.legend(frameon=False, ncols=6, loc='outside upper center')
@@ -165,7 +163,7 @@ def noise(path: Path) -> None:
         (axes[0], 'one signal on all servos', laws.common),
         (axes[1], 'a signal of its own for each servo', laws.independent),
     ):
-        for (count, paper), colour in zip(PAPER_UM.items(), CRANKS[::2], strict=True):
+        for (count, paper), colour in zip(PAPER_UM.items(), style.AXES, strict=True):
             label = NAMES[count] if each is axes[0] else None
             curve = _mean_error(kinematics, poses, errors, count)
             each.plot(times, curve, color=colour, lw=1.4, label=label)
@@ -188,7 +186,7 @@ def limits(path: Path) -> None:
     searches = Searches()
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.6), dpi=DPI, layout='constrained')
     payloads, speeds = np.linspace(0.0, 0.4, 21), np.linspace(0.0, 0.15, 16)
-    for acceleration, colour in zip((0.1, 0.3, 1.0), CRANKS[::2], strict=True):
+    for acceleration, colour in zip((0.1, 0.3, 1.0), style.AXES, strict=True):
         demands = [Demand(p, 0.05, acceleration * G) for p in payloads]
         torques = [max(c.torque for c in searches.costs(d)) / N_CM for d in demands]
         axes[0].plot(1e3 * payloads, torques, color=colour, lw=1.4, label=f'{acceleration:g} g')
@@ -196,12 +194,9 @@ def limits(path: Path) -> None:
     axes[0].plot([150.0], [_at_paper(searches)], 'o', color=RED, ms=5, label='the paper’s limits')
     axes[0].set(xlabel='payload (g)', ylabel='torque (N·cm)', xlim=(0, 400), ylim=(0, None))
     axes[0].set_title('at 50 mm/s; the servo gives 17.7 … 24.5 N·cm = 1.8 … 2.5 kg·cm', size=9)
-    for k, (name, colour) in enumerate(zip('xyz', CRANKS[1::2], strict=True)):
+    for k, name in enumerate('xyz'):
         rates = [searches.costs(Demand(0.15, v, 0.3 * G))[k].rate for v in speeds]
-        dashes = (0, (4, 4)) if name == 'y' else '-'  # y lies on x
-        axes[1].plot(
-            1e3 * speeds, np.degrees(rates), color=colour, lw=1.4, ls=dashes, label=f'{name} line'
-        )
+        axes[1].plot(1e3 * speeds, np.degrees(rates), label=f'{name} line', **style.axis(k))
     axes[1].axhline(600.0, color=RED, lw=0.9, ls='--')
     axes[1].set(xlabel='platform speed (mm/s)', ylabel='fastest crank (°/s)', xlim=(0, 150))
     for each in axes:
@@ -221,7 +216,7 @@ def sensors(recording: 'Recording', path: Path) -> None:
     from hexarm.simulation.rigid_body import payload  # noqa: PLC0415
 
     load = payload(dynamics_of(machines.read(MACHINE)).payload)
-    draw(recording, modelled(MACHINE), path, load, SENSORS_DPI)
+    draw(recording, modelled(MACHINE), path, load, dpi=SENSORS_DPI)
 
 
 PLAIN: dict[str, Callable[[Path], None]] = {
@@ -235,10 +230,9 @@ PLAIN: dict[str, Callable[[Path], None]] = {
 
 def _finished(figure: Figure, axes: Iterable[Axes], path: Path) -> None:
     for each in axes:
-        each.grid(alpha=0.25)
+        each.grid(True)
     _saved(figure, path)
 
 
 def _saved(figure: Figure, path: Path) -> None:
-    figure.savefig(path)
-    plt.close(figure)
+    style.save(figure, path)

@@ -4,17 +4,14 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import matplotlib as mpl
-
-mpl.use('Agg')
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
 from hexarm.papers import arm_method, arm_modes, crank_pictures, linear_platforms, plates
 from hexarm.papers.finding import Missing
-from hexarm.pictures.leg_motion import COLOURS
+from hexarm.pictures import style
+from hexarm.pictures.leg_motion import defined
 
 if TYPE_CHECKING:
     from hexarm.simulation.experiment import Recording
@@ -24,7 +21,7 @@ FIGURES = 'figures'
 NAMES = {
     **crank_pictures.CAPTIONS,
     'leg-motion.png': 'Leg lengths linear in time: position, ZXZ angles of the 6-3 (figs 6 and 7) '
-    'and of the 6-6 (figs 8 and 9 of Lapikov et al. 2014); dotted: linear motion',
+    'and of the 6-6 (figs 8 and 9 of Lapikov et al. 2014); wide and light: linear motion',
     'equal-angles.png': 'The same motion with φb = φmp: by how much the best pose misses the leg '
     'lengths; positions that the platform takes with the legs of the target, over its tilt',
     'orientation.png': 'Orientation held by three projections (Fadeev and Loginov) and by the '
@@ -34,7 +31,7 @@ NAMES = {
 
 def draw(folder: Path, recording: 'Recording | None') -> Iterator[str | Missing]:
     """Saves the figures in an existing folder; their names, or why one is missing."""
-    plt.rcParams.update({'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False})
+    style.use()
     for name in NAMES:
         try:
             if name in PLAIN:
@@ -56,28 +53,26 @@ def leg_motion(path: Path) -> None:
     for column, (kind, name) in enumerate(linear_platforms.MACHINES.items()):
         found = linear_platforms.motion(name)
         figures = linear_platforms.FIGURES[kind]
-        position, degrees = 1e3 * found.poses.position, np.degrees(found.euler_zxz)
+        position, degrees = 1e3 * found.poses.position, np.degrees(defined(found.euler_zxz))
         upper: Axes = axes[0, column]
         lower: Axes = axes[1, column]
-        for k, colour in enumerate(COLOURS):
-            dashes = (0, (4, 4)) if k == 1 else '-'  # y lies on x
-            upper.plot(found.share, position[:, k], color=colour, ls=dashes, label='xyz'[k])
-            lower.plot(found.share, degrees[:, k], color=colour, label='αβγ'[k])
-        upper.plot(found.share, 1e3 * found.straight.position, color='#4a5a6a', lw=0.8, ls=':')
+        for k in range(3):
+            upper.plot(found.share, position[:, k], label='xyz'[k], **style.axis(k))
+            lower.plot(found.share, degrees[:, k], label='αβγ'[k], **style.axis(k))
+        upper.plot(found.share, 1e3 * found.straight.position, color=style.LIGHT, lw=4.0, zorder=1)
         upper.set_title(f'{kind}, fig. {figures[0]}: position (mm)', size=10)
         lower.set_title(f'{kind}, fig. {figures[1]}: ZXZ angles (°)', size=10)
         lower.set(xlabel='part of the way', xlim=(0, 1), ylim=(-0.4, 0.4))
         for each in (upper, lower):
-            each.grid(alpha=0.25)
-            each.legend(frameon=False)
-    figure.savefig(path)
-    plt.close(figure)
+            each.grid(True)
+            each.legend()
+    style.save(figure, path)
 
 
 def equal_angles(path: Path) -> None:
     """What φb = φmp does: no solution on the way, and many at its end."""
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), dpi=DPI, layout='constrained')
-    for degrees, colour in zip(plates.EQUAL_DEGREES, COLOURS, strict=True):
+    for degrees, colour in zip(plates.EQUAL_DEGREES, style.AXES, strict=True):
         motion = plates.Plates(degrees, degrees).motion()
         misfits = [1e6 * solution.residual for solution in motion]
         label = f'φb = φmp = {degrees:g}°'
@@ -85,16 +80,15 @@ def equal_angles(path: Path) -> None:
     shape = plates.Plates(plates.EQUAL_DEGREES[1], plates.EQUAL_DEGREES[1])
     tilts = np.radians(np.linspace(0.0, 10.0, 11))
     places = 1e3 * np.array([plates.same_legs(shape, tilt).position for tilt in tilts])
-    for k, colour in enumerate(COLOURS):
+    for k in range(3):
         label = f'{"xyz"[k]} − {places[0, k]:.0f} mm'
-        axes[1].plot(np.degrees(tilts), places[:, k] - places[0, k], color=colour, label=label)
+        axes[1].plot(np.degrees(tilts), places[:, k] - places[0, k], label=label, **style.axis(k))
     axes[0].set(xlabel='part of the way', ylabel='leg length missed (µm)', xlim=(0, 1))
     axes[1].set(xlabel='tilt (°), all legs as at the target', ylabel='position (mm)', xlim=(0, 10))
     for each in axes:
-        each.grid(alpha=0.25)
-        each.legend(frameon=False)
-    figure.savefig(path)
-    plt.close(figure)
+        each.grid(True)
+        each.legend()
+    style.save(figure, path)
 
 
 def orientation(path: Path) -> None:
@@ -104,14 +98,13 @@ def orientation(path: Path) -> None:
         'a_x′ = a_z′ = n_z′ = 0, steps of 10 ms': arm_method.followed(is_measured=True).turned,
         'angular velocity, closed loop': arm_modes.held_orientation()[1:],
     }
-    for (label, degrees), colour in zip(series.items(), COLOURS, strict=False):
+    for (label, degrees), colour in zip(series.items(), style.AXES, strict=False):
         times = arm_method.TICK * np.arange(1, len(degrees) + 1)
         axes.semilogy(times, degrees, color=colour, lw=1.3, label=label)
     axes.set(xlabel='time (s)', ylabel='tool turned by (°)', xlim=(0, arm_method.SECONDS))
-    axes.grid(alpha=0.25)
-    axes.legend(frameon=False)
-    figure.savefig(path)
-    plt.close(figure)
+    axes.grid(True)
+    axes.legend()
+    style.save(figure, path)
 
 
 PLAIN: dict[str, Callable[[Path], None]] = {

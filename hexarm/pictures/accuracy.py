@@ -2,15 +2,12 @@
 
 from pathlib import Path
 
-import matplotlib as mpl
-
-mpl.use('Agg')
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-from hexarm.pictures.workspace import INK, PLANES, SOFT, draw_section
+from hexarm.pictures import style
+from hexarm.pictures.workspace import PLANES, draw_section
 from manipulator.analysis.accuracy import JointErrors, linear_spread
 from manipulator.analysis.inside import Section, section
 from manipulator.analysis.volume import bounding_box, with_orientation
@@ -23,24 +20,23 @@ GRID = 141
 
 def draw(machine: Machine, errors: JointErrors, picture: Path, name: str) -> None:
     """Saves the picture."""
-    plt.rcParams.update(
-        {'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False, 'text.color': INK}
-    )
+    style.use()
     home, length = machine.kinematics.home, machine.kinematics.characteristic_length
     box = bounding_box(with_orientation(machine, home.rotation), home.position, length)
     planes = [section(machine, axes, box.low, box.high, GRID) for axes in PLANES]
     values = [1e3 * _position_rms(machine, plane, errors) for plane in planes]
     limits = np.quantile(np.concatenate([v[np.isfinite(v)] for v in values]), [0.0, 0.98])
-    figure: Figure = plt.figure(figsize=(11, 4.2), dpi=100)
-    figure.text(0.02, 0.93, f'{name}: position error by all servo errors', size=13, weight='bold')
-    figure.text(0.02, 0.87, 'rms in mm, to first order; unturned, planes through home', color=SOFT)
+    figure: Figure = plt.figure(figsize=(style.WIDTH, 4.2), dpi=100)
+    style.title(
+        figure, f'{name}: position error by all servo errors',
+        'rms in mm, to first order; unturned, planes through home',
+    )  # fmt: skip
     for column, (plane, value) in enumerate(zip(planes, values, strict=True)):
         axes = figure.add_axes((0.06 + 0.3 * column, 0.11, 0.24, 0.68))
-        drawn = draw_section(axes, plane, value, ('viridis_r', *limits), machine)
+        drawn = draw_section(axes, plane, value, (f'{style.MAP}_r', *limits), machine)
     figure.colorbar(drawn, cax=figure.add_axes((0.94, 0.15, 0.012, 0.6)))
     picture.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(picture)
-    plt.close(figure)
+    style.save(figure, picture)
 
 
 def _position_rms(machine: Machine, plane: Section, errors: JointErrors) -> Array:

@@ -2,20 +2,19 @@
 
 from pathlib import Path
 
-import matplotlib as mpl
-
-mpl.use('Agg')
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import Axes3D
 
-from hexarm.demo.picture import CRANKS
+from hexarm.pictures import style
+from manipulator.analysis.free_paths import is_by_joints
 from manipulator.analysis.inside import AXES, Section, joint_rates, section, surface
-from manipulator.analysis.survey import Survey
+from manipulator.analysis.survey import SEED, Survey
+from manipulator.analysis.volume import Box, Volume, bounding_box, volume, with_orientation
 from manipulator.arrays import Array
 from manipulator.machine import Machine
 
@@ -23,58 +22,59 @@ GRIDS = {True: 161, False: 61}
 RINGS = {True: 37, False: 19}
 """By whether the inverse is explicit; others take up to a millisecond a pose."""
 SPEED = 0.03
-INK, SOFT = '#22313f', '#4a5a6a'
 PLANES = ((0, 1), (0, 2), (1, 2))
 SHAPE, SPEEDS = 'workspace', 'joint_speeds'
 
 
 def draw(machine: Machine, found: Survey, path: Path, name: str) -> list[Path]:
     """Saves both pictures: under these names in a folder, or as FILE and beside it."""
-    plt.rcParams.update(
-        {'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False, 'text.color': INK}
-    )
+    style.use()
     if path.suffix:
         files = [path, path.with_name(f'{path.stem}_{SPEEDS}{path.suffix}')]
     else:
         files = [path / f'{SHAPE}.png', path / f'{SPEEDS}.png']
     files[0].parent.mkdir(parents=True, exist_ok=True)
-    for file, figure in zip(
-        files, (_shape(machine, found, name), _speeds(machine, found, name)), strict=True
-    ):
-        figure.savefig(file)
-        plt.close(figure)
-    return files
+    shape = _shape(machine, found.box, found.constant_orientation, name)
+    return [style.save(shape, files[0]), style.save(_speeds(machine, found, name), files[1])]
 
 
-def _shape(machine: Machine, found: Survey, name: str) -> Figure:
+def draw_quickly(machine: Machine, picture: Path, name: str, points: int) -> Path:
+    """Saves the shape alone, its volume from so few positions: within some seconds."""
+    style.use()
+    home, length = machine.kinematics.home, machine.kinematics.characteristic_length
+    reached = with_orientation(machine, home.rotation)
+    box = bounding_box(reached, home.position, length, points)
+    found = volume(reached, box, points, np.random.default_rng(SEED))
+    return style.save(_shape(machine, box, found, name), picture)
+
+
+def _shape(machine: Machine, box: Box, found: Volume, name: str) -> Figure:
     """The surface, and three planes through home by σmin and by joint speed."""
     figure: Figure = plt.figure(figsize=(12.6, 6.6), dpi=100)
-    volume = found.constant_orientation
-    figure.text(
-        0.02, 0.95, f'{name}: where the platform goes without turning', size=14, weight='bold'
+    what = 'tool' if is_by_joints(machine) else 'platform'
+    style.title(
+        figure,
+        f'{name}: where the {what} goes without turning',
+        f'{1e3 * found.value:.4g} ± {float(f"{1e3 * found.error:.1g}"):g} dm³ within all limits; '
+        'sections through home, which is marked +',
     )
-    figure.text(
-        0.02, 0.915,
-        f'{1e3 * volume.value:.4g} ± {1e3 * volume.error:.1g} dm³ within all limits; '
-        'sections through home', color=SOFT,
-    )  # fmt: skip
     _surface(figure.add_axes((-0.025, 0.02, 0.37, 0.88), projection='3d'), machine)
     grid = GRIDS[machine.kinematics.is_explicit]
-    planes = [section(machine, axes, found.box.low, found.box.high, grid) for axes in PLANES]
+    planes = [section(machine, axes, box.low, box.high, grid) for axes in PLANES]
     rows = (
-        ('sigma_min', 'singularity margin σmin', 'viridis', 1.0),
-        ('joint_speed', _speed_label(machine), 'magma_r', _speed_factor(machine)),
+        ('sigma_min', 'singularity margin σmin', style.MAP, 1.0),
+        ('joint_speed', _speed_label(machine), style.RATE_MAP, _speed_factor(machine)),
     )
     for row, (field, label, colours, factor) in enumerate(rows):
         values = [factor * getattr(plane.conditions, field) for plane in planes]
         inside = np.concatenate([v[np.isfinite(v)] for v in values])
         limits = np.quantile(inside, [0.0, 0.98])
         for column, (plane, value) in enumerate(zip(planes, values, strict=True)):
-            box = (0.385 + 0.185 * column, 0.535 - 0.445 * row, 0.15, 0.32)
-            drawn = draw_section(figure.add_axes(box), plane, value, (colours, *limits), machine)
+            place = (0.385 + 0.19 * column, 0.535 - 0.445 * row, 0.14, 0.32)
+            drawn = draw_section(figure.add_axes(place), plane, value, (colours, *limits), machine)
         bar = figure.add_axes((0.945, 0.55 - 0.445 * row, 0.01, 0.28))
         figure.colorbar(drawn, cax=bar)
-        figure.text(0.385, 0.875 - 0.445 * row, label, color=SOFT)
+        figure.text(0.385, 0.875 - 0.445 * row, label, color=style.SOFT)
     return figure
 
 
@@ -90,8 +90,7 @@ def _surface(axes: Axes3D, machine: Machine) -> None:
     axes.plot_surface(
         x, y, z, cmap='YlGnBu_r', rstride=1, cstride=1, lw=0.15, edgecolor='#ffffff90'
     )
-    axes.set(xlabel='x (mm)', ylabel='y (mm)', zlabel='z (mm)')
-    axes.set_box_aspect([float(np.ptp(v)) for v in (x, y, z)], zoom=0.9)
+    style.space(axes)
     axes.view_init(elev=18, azim=-60)
 
 
@@ -104,12 +103,17 @@ def draw_section(
     drawn = axes.pcolormesh(
         across, up, values, cmap=colours, vmin=low, vmax=high, shading='nearest', rasterized=True
     )
-    axes.contour(across, up, plane.conditions.admitted, levels=[0.5], colors=INK, linewidths=0.9)
+    axes.contour(
+        across, up, plane.conditions.admitted, levels=[0.5], colors=style.INK, linewidths=0.9
+    )
     home = 1e3 * machine.kinematics.home.position
-    axes.plot(home[plane.axes[0]], home[plane.axes[1]], '+', color=INK, ms=7, mew=1.2)
+    for colour, width in ((style.PAPER, 3.2), (style.INK, 1.2)):
+        axes.plot(*home[list(plane.axes)], '+', color=colour, ms=8, mew=width)
     axes.set_xlabel(f'{AXES[plane.axes[0]]} (mm)', labelpad=1)
     axes.set_ylabel(f'{AXES[plane.axes[1]]} (mm)', labelpad=1)
     axes.set_aspect('equal', adjustable='box')
+    for side in (axes.xaxis, axes.yaxis):
+        side.set_major_locator(MaxNLocator(4))
     return drawn
 
 
@@ -132,23 +136,20 @@ def _speeds(machine: Machine, found: Survey, name: str) -> Figure:
     factor, unit = (np.degrees(1.0), '°') if kinematics.joint_unit == 'rad' else (1e3, 'mm')
     joints = factor * kinematics.inverse_or_nan(poses)
     rates = factor * SPEED * joint_rates(machine, poses)[..., 0]
-    figure: Figure = plt.figure(figsize=(11, 4.4), dpi=100)
-    left, right = figure.subplots(1, 2)
-    figure.subplots_adjust(left=0.07, right=0.98, bottom=0.13, top=0.8, wspace=0.2)
-    figure.text(0.02, 0.93, f'{name}: x moves at 30 mm/s through home', size=13, weight='bold')
+    figure: Figure = plt.figure(figsize=(style.WIDTH, 4.4), dpi=100)
+    left, right = map(style.plotted, figure.subplots(1, 2))
+    figure.subplots_adjust(left=0.07, right=0.98, bottom=0.12, top=0.76, wspace=0.2)
+    style.title(figure, f'{name}: joints while x moves at 30 mm/s through home')
     for k, joint in enumerate(kinematics.joint_names):
-        colour = CRANKS[k % len(CRANKS)]
-        left.plot(1e3 * x, joints[:, k], color=colour, lw=1.3, label=joint)
-        right.plot(1e3 * x, rates[:, k], color=colour, lw=1.3)
+        look = style.curve(k)
+        left.plot(1e3 * x, joints[:, k], label=joint, **look)
+        right.plot(1e3 * x, rates[:, k], **look)
     left.set(xlabel='x from home (mm)', ylabel=f'joint position ({unit})')
-    fastest = float(factor * np.max(machine.motion.joint.speed))
+    right.set(xlabel='x from home (mm)', ylabel=f'joint speed ({unit}/s)')
     bound = 1.15 * float(np.quantile(np.abs(rates), 0.985))
-    if np.isfinite(fastest) and fastest < bound * 1.5:
-        for side in (-1.0, 1.0):
-            right.axhline(side * fastest, color=SOFT, lw=0.8, ls=':')
-        bound = max(bound, 1.1 * fastest)
-    right.set(xlabel='x from home (mm)', ylabel=f'joint speed ({unit}/s)', ylim=(-bound, bound))
-    left.legend(ncols=6, frameon=False, loc='lower left', bbox_to_anchor=(0, 1.0), fontsize=8)
-    for axes in (left, right):
-        axes.grid(alpha=0.25)
+    right.set_ylim(-bound, bound)
+    style.limits(right, float(factor * np.max(machine.motion.joint.speed)), f'{unit}/s')
+    figure.legend(
+        *left.get_legend_handles_labels(), ncols=6, loc='upper left', bbox_to_anchor=(0.06, 0.9)
+    )
     return figure

@@ -3,21 +3,19 @@
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
-
-mpl.use('Agg')
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from hexarm.pictures import style
 from hexarm.recording.run_summary import Event, RunSummary, Series
 from manipulator.arrays import Array
 from manipulator.states import MachineState, MotionResult
 
-COMMANDED, DONE, GOAL, BAD, NOTE = '#9aa5b1', '#0b6e99', '#d4a017', '#c1121f', '#4a5a6a'
-JOINTS = ('#0b6e99', '#3aa6b9', '#6a994e', '#d4a017', '#d1603d', '#8e4162', '#5c677d')
+COMMANDED, DONE, GOAL, BAD, NOTE = (
+    style.LIGHT, style.AXES[0], '#d4a017', style.LIMIT, style.SOFT,
+)  # fmt: skip
 RESULTS: dict[str, str] = {MotionResult.MOVING: DONE, MotionResult.PLANNING: '#3aa6b9'}
 STATES: dict[str, str] = {
     MachineState.ENABLED: '#6a994e',
@@ -47,7 +45,7 @@ def draw(summary: RunSummary, begin: float, end: float, picture: Path) -> None:
     listed = numbered(part.events)
     lines = min(len(listed), LISTED) + (len(listed) > LISTED)
     height = 12.2 + 0.24 * lines
-    plt.rcParams.update({'font.size': 9, 'axes.spines.top': False, 'axes.spines.right': False})
+    style.use()
     figure = plt.figure(figsize=(13, height), dpi=110)
     below = (0.55 + 0.24 * lines) / height
     grid = figure.add_gridspec(
@@ -65,13 +63,12 @@ def draw(summary: RunSummary, begin: float, end: float, picture: Path) -> None:
         axes.set_xlim(begin, end)
         axes.tick_params(labelbottom=axes in panels[8:])
     for axes in panels:
-        axes.grid(alpha=0.25)
+        axes.grid(True)
         for _, event in listed:
             axes.axvline(event.time, color=BAD if event.is_bad else NOTE, lw=0.7, alpha=0.55)
     _numbers(strips, listed)
     _words(figure, summary, listed, height)
-    figure.savefig(picture)
-    plt.close(figure)
+    style.save(figure, picture)
 
 
 def numbered(events: tuple[Event, ...]) -> list[tuple[int, Event]]:
@@ -135,23 +132,24 @@ def _errors(panels: list[Axes], part: RunSummary) -> None:
     for k, (axes, scale, label) in enumerate(
         zip(panels, (1e3, np.degrees(1.0)), ('error (mm)', 'error (°)'), strict=True)
     ):
-        _line(axes, Series(error.times, scale * error.values[:, [k]]), color='#d1603d', lw=1.0)
-        axes.set(ylabel=label)
-        axes.set_ylim(0, max(axes.get_ylim()[1], SMALLEST_SPAN / 4))
+        values = scale * error.values[:, [k]]
+        _line(axes, Series(error.times, values), color=style.AXES[1], lw=1.0)
+        largest = float(np.max(values, initial=0.0))
+        axes.set(ylabel=label, ylim=(0.0, max(1.08 * largest, SMALLEST_SPAN / 4)))
 
 
 def _joints(panels: list[Axes], part: RunSummary) -> None:
     is_length = all(name.startswith('leg_') for name in part.joint_names)
     scale, unit = (1e3, 'mm') if is_length else (float(np.degrees(1.0)), '°')
     for k, name in enumerate(part.joint_names):
-        colour = JOINTS[k % len(JOINTS)]
-        for axes, series, style in (
-            (panels[0], part.joint_command, {'lw': 3.2, 'alpha': 0.3}),
+        look = style.curve(k)
+        for axes, series, own in (
+            (panels[0], part.joint_command, {'lw': 3.2, 'alpha': 0.3, 'ls': '-'}),
             (panels[0], part.joint_states, {'lw': 1.1, 'label': name}),
             (panels[1], part.joint_error, {'lw': 1.0}),
         ):
             one = Series(series.times, scale * series.values[:, [k]])
-            _line(axes, one, color=colour, **style)
+            _line(axes, one, **look | own)
     for axes, label in zip(panels, (f'joints ({unit})', f'joint error ({unit})'), strict=True):
         axes.set(xlabel='time since the recording began (s)', ylabel=label)
     if part.joint_names:
@@ -159,10 +157,10 @@ def _joints(panels: list[Axes], part: RunSummary) -> None:
                          fontsize=8, handlelength=1.2, columnspacing=1.0)  # fmt: skip
 
 
-def _line(axes: Axes, series: Series, **style: Any) -> None:
+def _line(axes: Axes, series: Series, **look: Any) -> None:
     """A line that breaks where nothing was received for long."""
     times, values = broken(series)
-    axes.plot(times, values, solid_capstyle='round', **style)
+    axes.plot(times, values, solid_capstyle='round', **look)
 
 
 def broken(series: Series) -> tuple[Array, Array]:

@@ -11,7 +11,7 @@ SHARED = ('/diagnostics', '/rosout', '/tf', '/tf_static')
 
 COMMANDS = frozenset(
     (
-        *('goal_pose', 'goal_path', 'jog_mode', 'look_at', 'speed_override', 'pivot'),
+        *('goal_pose', 'goal_path', 'jog_mode', 'look_at', 'speed_override', 'pivot', 'tool'),
         *('goal_joints', 'joint_trajectory'),
         *('cmd_vel', 'cmd_vel/joy', 'cmd_vel/panel', 'cmd_vel/keyboard'),
         *('cmd_joints', 'cmd_joints/joy', 'cmd_joints/panel', 'cmd_joints/keyboard'),

@@ -1,17 +1,20 @@
 """The MuJoCo model of a serial arm: body frames have the base's axes at zero angles."""
 
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 
 from arm_control.arm import SerialArm
 from hexarm.simulation.drives import Drives
 from hexarm.simulation.dynamics_config import ArmDynamicsConfig
-from hexarm.simulation.platform_parts import add_drives, add_joint
+from hexarm.simulation.platform_parts import add_carried, add_drives, add_joint
 from hexarm.simulation.rigid_body import (
     BLUE,
     METAL,
-    ORANGE,
     Mechanism,
     RigidBody,
     add,
@@ -19,7 +22,6 @@ from hexarm.simulation.rigid_body import (
     document,
     inertial,
     link,
-    payload,
     tube,
     written,
 )
@@ -27,6 +29,8 @@ from manipulator.arrays import Array
 from manipulator.pose import Pose
 
 TOOL = 'tool'
+VISUAL_GROUP = '2'
+"""Of MuJoCo's geoms: by convention what is only seen."""
 
 
 def arm_links(arm: SerialArm, config: ArmDynamicsConfig) -> tuple[RigidBody, ...]:
@@ -56,12 +60,7 @@ def arm_model(name: str, arm: SerialArm, config: ArmDynamicsConfig, drives: Driv
         parent, 'body', name=TOOL, pos=chain.home.position - origin, quat=(w, x, y, z)
     )  # fmt: skip
     add(tool, 'site', name=TOOL)
-    if config.payload.mass_g > 0:
-        load = payload(config.payload)
-        held = add(tool, 'body', name='payload', pos=load.centre)
-        inertial(held, load, load.centre)
-        size = (1e-3 * config.payload.radius_mm, 0.5e-3 * config.payload.height_mm)
-        add(held, 'geom', type='cylinder', size=size, mass='0', rgba=ORANGE)
+    add_carried(tool, config.payload)
     add_drives(root, arm.joint_names, drives)
 
     def seat(pose: Pose, joints: Array) -> Array:
@@ -69,3 +68,29 @@ def arm_model(name: str, arm: SerialArm, config: ArmDynamicsConfig, drives: Driv
 
     names, unit = arm.joint_names, arm.joint_unit
     return Mechanism(name, written(root), names, unit, TOOL, {}, drives, seat)
+
+
+def with_meshes(model: Mechanism, arm: SerialArm, files: Sequence[Path | None]) -> Mechanism:
+    """The model of an arm with meshes of the base and the links in place of their rods.
+
+    Files are named by their whole paths. A mesh has neither mass nor contacts.
+    """
+    root = ET.fromstring(model.xml)
+    bodies = [child(root, 'worldbody'), *(body for body in root.iter('body') if _is_link(body))]
+    origins = [np.zeros(3), *arm.chain.points]
+    for i, (body, origin, file) in enumerate(zip(bodies, origins, files, strict=True)):
+        if file is None:
+            continue
+        for rod in body.findall('geom'):
+            body.remove(rod)
+        name = f'mesh_{i}'
+        add(child(root, 'asset'), 'mesh', name=name, file=str(file), inertia='shell')
+        add(
+            body, 'geom', type='mesh', mesh=name, pos=-origin, mass='0', group=VISUAL_GROUP,
+            rgba=BLUE if i % 2 else METAL,
+        )  # fmt: skip
+    return replace(model, xml=written(root))
+
+
+def _is_link(body: ET.Element) -> bool:
+    return body.get('name', '').startswith('link_')

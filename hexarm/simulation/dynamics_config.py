@@ -11,6 +11,7 @@ import numpy as np
 from manipulator.arrays import Array, frozen
 from manipulator.config import PLACE_MM, SIZE_MM, key, quantity
 from manipulator.errors import ConfigError
+from manipulator.frames import ToolConfig
 
 Three = tuple[float, float, float]
 SOURCE = "where the numbers come from, or 'estimate'"
@@ -88,6 +89,13 @@ class PayloadConfig:
     mass_g: float = quantity(0, MASS_G[1], '0 is nothing')
     radius_mm: float = quantity(*SIZE_MM, 'of a cylinder')
     height_mm: float = quantity(*SIZE_MM, 'of the cylinder')
+
+
+@dataclass(frozen=True)
+class CarriedConfig(PayloadConfig):
+    """The payload of a file, and the tool that is on the machine as well; no section of a file."""
+
+    tool: ToolConfig = key('that weighs something')
 
 
 @dataclass(frozen=True)

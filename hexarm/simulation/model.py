@@ -14,6 +14,7 @@ from hexarm.simulation.drives import Drives, pushing, servo_speeds, turning
 from hexarm.simulation.dynamics_config import (
     SCHEMAS,
     ArmDynamicsConfig,
+    CarriedConfig,
     Dynamics,
     LinearDynamicsConfig,
     RailDynamicsConfig,
@@ -32,7 +33,7 @@ from manipulator.machine import MachineFile
 
 
 def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dynamics:
-    """The section `dynamics`, checked; payload_g in place of its own payload.
+    """The section `dynamics`, checked, with the first tool; payload_g in place of its own payload.
 
     Raises ConfigError where it is missing or wrong, or a payload is negative or not finite.
     """
@@ -47,7 +48,13 @@ def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dy
     section: dict[str, Any] = dict(machine_file.dynamics)
     if payload_g is not None and isinstance(section.get('payload'), dict):
         section['payload'] = {**section['payload'], 'mass_g': float(payload_g)}
-    return build(SCHEMAS[machine_file.kind], section, 'dynamics')
+    dynamics = build(SCHEMAS[machine_file.kind], section, 'dynamics')
+    first = next(iter(machine_file.tools), None)
+    if first is None or first.load[0] == 0.0:
+        return dynamics
+    own = dynamics.payload
+    held = CarriedConfig(own.source, own.mass_g, own.radius_mm, own.height_mm, first)
+    return replace(dynamics, payload=held)
 
 
 def drives_of(dynamics: Dynamics, machine_file: MachineFile) -> Drives:
@@ -106,6 +113,7 @@ def _sections(
             file, driver=machine_file.driver, servos=machine_file.servos, link=machine_file.link
         )
         load = payload_g if i == last else 0.0
+        own = replace(own, tools=machine_file.tools if i == last else ())
         try:
             parts.append(mechanism(f'section_{i + 1}', own, platform, load, torque))
         except ConfigError as error:

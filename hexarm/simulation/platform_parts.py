@@ -16,9 +16,9 @@ from hexarm.simulation.rigid_body import (
     ORANGE,
     RigidBody,
     add,
+    carried_bodies,
     child,
     inertial,
-    payload,
     plate,
     rod,
     tube,
@@ -64,6 +64,8 @@ class UniversalJoint:
 
 
 PLATFORM = 'platform'
+PARTS = {'payload': 'payload', 'tool': 'tool_in_force'}
+"""Names of the bodies that a machine carries: an arm's own end is 'tool'."""
 
 
 def inradius(points: Array) -> float:
@@ -77,10 +79,7 @@ def moving_bodies(
     plate_config: PlateConfig, load: PayloadConfig, points: Array
 ) -> tuple[RigidBody, ...]:
     """The platform and, when it weighs anything, what it carries; in the platform's frame."""
-    bodies = [plate(plate_config, inradius(points))]
-    if load.mass_g > 0:
-        bodies.append(payload(load))
-    return tuple(bodies)
+    return plate(plate_config, inradius(points)), *carried_bodies(load).values()
 
 
 def add_platform(
@@ -91,17 +90,22 @@ def add_platform(
     world = child(root, 'worldbody')
     body = add(world, 'body', name=PLATFORM, pos=home.position, quat=(w, x, y, z))
     add(body, 'freejoint', name=PLATFORM)
-    own, *carried = moving_bodies(plate_config, load, points)
-    inertial(body, own, np.zeros(3))
+    inertial(body, plate(plate_config, inradius(points)), np.zeros(3))
     half = 0.5e-3 * plate_config.thickness_mm
     add_hexagon(root, body, PLATFORM, inradius(points), (-half, half), BLUE)
     for leg, point in enumerate(points, start=1):
         add(body, 'site', name=f'joint_{leg}', pos=point)
-    for other in carried:
-        held = add(body, 'body', name='payload', pos=other.centre)
-        inertial(held, other, other.centre)
-        size = (1e-3 * load.radius_mm, 0.5e-3 * load.height_mm)
-        add(held, 'geom', type='cylinder', size=size, mass='0', rgba=ORANGE)
+    add_carried(body, load)
+
+
+def add_carried(parent: ET.Element, load: PayloadConfig) -> None:
+    """What the platform or arm carries, fixed to it: the payload as a cylinder to look at."""
+    for name, body in carried_bodies(load).items():
+        held = add(parent, 'body', name=PARTS[name], pos=body.centre)
+        inertial(held, body, body.centre)
+        if name == 'payload':
+            size = (1e-3 * load.radius_mm, 0.5e-3 * load.height_mm)
+            add(held, 'geom', type='cylinder', size=size, mass='0', rgba=ORANGE)
 
 
 def add_hexagon(

@@ -11,10 +11,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from hexarm.simulation.drives import Drives
-from hexarm.simulation.dynamics_config import LinkConfig, PayloadConfig, PlateConfig, tensor
+from hexarm.simulation.dynamics_config import (
+    CarriedConfig,
+    LinkConfig,
+    PayloadConfig,
+    PlateConfig,
+    tensor,
+)
 from manipulator.arrays import Array, frozen
 from manipulator.pose import Pose
 
+TOOL_RADIUS = 0.01
+"""Metres: the inertia of a tool is estimated as that of a round rod from the platform to it."""
 Seat = Callable[[Pose, Array], Array]
 """From a pose and its joints (n,) to the model's coordinates qpos."""
 
@@ -83,6 +91,17 @@ def payload(config: PayloadConfig) -> RigidBody:
     across = mass * (3 * radius**2 + height**2) / 12
     inertia = np.diag([across, across, mass * radius**2 / 2])
     return RigidBody(mass, np.array([0.0, 0.0, height / 2]), inertia)
+
+
+def carried_bodies(config: PayloadConfig) -> dict[str, RigidBody]:
+    """What of 'payload' and 'tool' weighs anything, in the moving frame."""
+    bodies = {'payload': payload(config)} if config.mass_g > 0 else {}
+    if isinstance(config, CarriedConfig):
+        mass, *centre = config.tool.load
+        point = 1e-3 * np.array(config.tool.xyz_mm)
+        body = rod(1e-3 * mass, TOOL_RADIUS, np.zeros(3), point)
+        bodies['tool'] = RigidBody(body.mass, 1e-3 * np.array(centre), body.inertia)
+    return bodies
 
 
 def rod(mass: float, radius: float, begin: Array, end: Array) -> RigidBody:

@@ -24,7 +24,7 @@ from hexarm.simulation.dynamics_config import (
     RotaryDynamicsConfig,
 )
 from hexarm.simulation.platform_parts import moving_bodies
-from hexarm.simulation.rigid_body import payload
+from hexarm.simulation.rigid_body import carried_bodies
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, ManipulatorError
 from manipulator.kinematics import Kinematics
@@ -136,12 +136,11 @@ def _linear(kinematics: LinearPlatform, dynamics: LinearDynamicsConfig) -> Stati
 
 def _arm(arm: SerialArm, dynamics: ArmDynamicsConfig) -> StaticLoad:
     links = arm_links(arm, dynamics)
-    carried = payload(dynamics.payload)
-    centres = np.vstack(
-        [*(link.centre for link in links), arm.chain.home.transform(carried.centre[None])]
-    )
-    masses, up = np.array([*(link.mass for link in links), carried.mass]), -dynamics.gravity
-    holders = np.array([1, 2, 3, 4, 5, 6, 6])
+    bodies = carried_bodies(dynamics.payload).values()
+    held_points = [arm.chain.home.transform(body.centre[None])[0] for body in bodies]
+    centres = np.vstack([*(link.centre for link in links), *held_points])
+    masses, up = np.array([body.mass for body in (*links, *bodies)]), -dynamics.gravity
+    holders = np.array([1, 2, 3, 4, 5, 6, *(6 for _ in bodies)])
 
     def load(pose: Pose, joints: Array) -> Array:
         moved = arm.chain.displacements(joints)

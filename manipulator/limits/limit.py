@@ -10,13 +10,16 @@ from manipulator.arrays import Array, Mask, frozen
 from manipulator.pose import Pose
 
 FEWEST_DIGITS, MOST_DIGITS = 4, 12
+ROUNDING = 1e-9
+"""Of a tick, by which braking may take a whole number of them longer."""
 
 
 class Limit(Protocol):
     """k values computed from a pose and its joints, each with its own range.
 
     quantity and unit go into messages; owners are who each value belongs to ('leg 3', or '' when
-    it is the whole platform's).
+    it is the whole platform's). Where the quantity is '', owners are sentences that become true
+    below 0 metres, as 'link 3 meets the floor'.
     """
 
     @property
@@ -114,6 +117,21 @@ class BrakingPaths:
     twists: Array
     frame: Array | None = None
 
+    def poses(self, twist: Array) -> Pose:
+        """Those at the ticks of one of the paths (N,), of the pivot in the work frame."""
+        dt, linear, angular = self.bounds[:3]
+        longest = max(np.linalg.norm(twist[:3]) / linear, np.linalg.norm(twist[3:]) / angular) / dt
+        ticks = int(np.ceil(max(longest - ROUNDING, 1.0)))
+        shares = np.cumsum(1.0 - np.arange(ticks) / ticks)
+        return self.pose.moved(dt * shares[:, None] * twist)
+
+    def of_platform(self, poses: Pose) -> Pose:
+        """Those of the platform in the base frame, for poses of the pivot in the work frame."""
+        if self.frame is None:
+            return poses
+        work = Pose(self.frame[:3], self.frame[3:12].reshape(3, 3))
+        return work @ poses @ Pose(-self.frame[12:], np.eye(3))
+
 
 @runtime_checkable
 class Grouped(Protocol):
@@ -147,7 +165,9 @@ class Violation:
         return max(self.low - self.value, self.value - self.high)
 
     def __str__(self) -> str:
-        """As 'leg 3: crank angle 3.92 rad outside [0.52, 3.67]'."""
+        """As 'leg 3: crank angle 3.92 rad outside [0.52, 3.67]', 'rod 1 meets rod 2 by 4 mm'."""
+        if not self.quantity:
+            return f'{self.owner} by {1e3 * self.excess:.3g} mm'
         owner = f'{self.owner}: ' if self.owner else ''
         unit = f' {self.unit}' if self.unit else ''
         digits = self.digits

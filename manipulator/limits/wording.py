@@ -16,8 +16,10 @@ DECIMALS = 5
 
 def in_words(violations: Iterable[Violation]) -> list[str]:
     """One text for each limit, as 'crank angle -173.8° on all legs, outside [-90, 90]°'."""
-    alike = groupby(violations, key=lambda v: (v.quantity, v.low, v.high))
-    return [_of_one_limit(list(some)) for _, some in alike]
+    found = list(violations)
+    alike = groupby((v for v in found if v.quantity), key=lambda v: (v.quantity, v.low, v.high))
+    limits = [_of_one_limit(list(some)) for _, some in alike]
+    return [*limits, *(str(v) for v in found if not v.quantity)]
 
 
 def degrees_in_words(angles: Array) -> str:

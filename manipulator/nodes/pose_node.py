@@ -16,7 +16,7 @@ from geometry_msgs.msg import Point, PointStamped, PoseStamped, TransformStamped
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
-from std_msgs.msg import ColorRGBA
+from std_msgs.msg import ColorRGBA, String
 from visualization_msgs.msg import Marker, MarkerArray
 
 from manipulator.arrays import Array
@@ -174,6 +174,7 @@ class PoseNode(Node):
         self._transforms = Transforms(self, prefix)
         self._pivot_publisher = self.create_publisher(PoseStamped, 'pivot_pose', MEASUREMENT)
         self.create_subscription(PointStamped, 'pivot', self._on_pivot, COMMAND)
+        self.create_subscription(String, 'tool', self._on_tool, COMMAND)
         process.subscribe(self, JointState, 'joint_states', self._states, MEASUREMENT)
         self._saved = SavedPoseTopics(self, machine, saved_poses(name))
         self._diagnostics = Diagnostics(self, self._report, ('joint_states', 'pose'))
@@ -197,6 +198,12 @@ class PoseNode(Node):
             self._frames = self._frames.with_pivot(point_of(message, PLATFORM_FRAME))
         except InvalidInput as error:
             self.get_logger().warning(f'pivot: {error}', throttle_duration_sec=1.0)
+
+    def _on_tool(self, message: String) -> None:
+        try:
+            self._frames = self._frames.with_tool(message.data)
+        except InvalidInput as error:
+            self.get_logger().warning(f'tool: {error}', throttle_duration_sec=1.0)
 
     def _report(self) -> Report:
         values: dict[str, object] = {

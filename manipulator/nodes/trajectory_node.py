@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PointStamped, PoseStamped
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Float64
+from std_msgs.msg import Float64, String
 
 from manipulator.errors import ManipulatorError
 from manipulator.machine import JOG_SINGULARITIES, Machine
@@ -112,6 +112,7 @@ class TrajectoryNode(Node):
         subscribe(DiagnosticStatus, 'machine_state', self._on_machine_state, LATCHED)
         subscribe(Float64, 'speed_override', self._on_speed_override, COMMAND)
         subscribe(PointStamped, 'pivot', self._on_pivot, COMMAND)
+        subscribe(String, 'tool', self._on_tool, COMMAND)
 
     def _on_machine_state(self, message: DiagnosticStatus) -> None:
         values = {pair.key: pair.value for pair in message.values}
@@ -163,6 +164,12 @@ class TrajectoryNode(Node):
         except ManipulatorError as error:
             self.get_logger().warning(f'pivot: {error}', throttle_duration_sec=1.0)
 
+    def _on_tool(self, message: String) -> None:
+        try:
+            self._controller.supervisor.use_tool(message.data)
+        except ManipulatorError as error:
+            self.get_logger().warning(f'tool: {error}', throttle_duration_sec=1.0)
+
     def _tick(self) -> None:
         self._controller.begin_tick(time.monotonic())
         stamp = self.get_clock().now().to_msg()
@@ -213,6 +220,7 @@ class TrajectoryNode(Node):
             'last_refusal': news.last_refusal,
             **lag_of(supervisor),
             **self._teleop_topics.report(),
+            'tool': supervisor.machine.frames.tool,
             'last_pose_age_s': self._poses.age,
             'tick_jitter_p50_ms': jitter.quantile(0.5) * 1e3,
             'tick_jitter_p99_ms': jitter.quantile(0.99) * 1e3,

@@ -37,8 +37,8 @@ def in_work_axes(command: Array, frame: str, pose: Pose, frames: Frames) -> Arra
     """The pivot's twist (6,) in work axes; pose is T_work_pivot. Refused for unknown frames.
 
     '' and 'base': along the base's axes. 'work': along the work frame's. 'pivot': the same, for
-    users who think of turns about the pivot. 'tool': along the axes of the platform
-    or tool.
+    users who think of turns about the pivot. 'tool': along the axes of the tool in force, of the
+    platform where there is none.
     """
     check_axes(frame)
     axes = AXES[frame](frames, pose)

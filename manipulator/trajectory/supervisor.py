@@ -232,6 +232,10 @@ class MotionSupervisor:
         check_pivot(self.machine.kinematics, frames.T_platform_pivot)
         self._next_frames = frames
 
+    def use_tool(self, name: str) -> None:
+        """Another tool of the machine file, used once at rest; InvalidInput where it has none."""
+        self._next_frames = self.machine.frames.with_tool(name)
+
     def step(self) -> Pose | None:
         """Advances by one tick: the pose to command, None while not driving."""
         if self._next_frames is not None and self._is_settled:

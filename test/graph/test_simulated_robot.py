@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from hexarm import ManipulatorError, Refused, Robot
-from hexarm.machines import load
+from hexarm.machines import find, load
+from manipulator.errors import InvalidInput
+from manipulator.pose import Pose
 
 pytestmark = pytest.mark.graph
 NOTEBOOK = Path(__file__).resolve().parents[2] / 'examples' / 'first_steps.ipynb'
@@ -37,6 +39,36 @@ def test_an_arm_is_simulated_and_nothing_of_it_is_left(processes_left, monkeypat
             robot.move(z=z - 0.02, speed=0.05)
             assert robot.pose.position[2] == pytest.approx(z - 0.02, abs=3e-3)
             assert robot.limits.joints.keys() <= robot.joints.keys()  # and a gripper
+
+    persist(drive)
+    assert processes_left() == {}
+
+
+def test_a_program_changes_tools_and_moves_them(processes_left, monkeypatch, tmp_path):
+    monkeypatch.delenv('ROS_DOMAIN_ID', raising=False)
+    path = tmp_path / 'equipped.yaml'
+    tools = (
+        'tools: [{name: laser, xyz_mm: [0, 30, 60], rpy_deg: [0, 90, 0]}, '
+        '{name: probe, xyz_mm: [0, 0, 90]}]\n'
+    )
+    path.write_text(f'{find("arm_6r").read_text()}\n{tools}')
+    laser = Pose.from_xyz_rpy([0.0, 0.03, 0.06], [0.0, np.pi / 2, 0.0])
+
+    def drive():
+        with Robot.simulated(str(path), '/equipped') as robot:
+            robot.enable()
+            robot.use_tool('probe')
+            assert robot.tool == 'probe'
+            tip = robot.pose.transform([[0.0, 0.0, 0.09]])[0]
+            assert np.abs(robot.tool_pose.position - tip).max() < 2e-3
+            with pytest.raises(InvalidInput, match=r"no tool is called 'saw'.*laser, probe"):
+                robot.use_tool('saw')
+            robot.use_tool('laser')
+            goal = (robot.pose @ laser).moved([0.0, 0.0, -0.02, 0.0, 0.0, 0.1])
+            robot.move_tool_to(goal)
+            for reached in (robot.tool_pose, robot.pose @ laser):
+                gap = np.abs(reached.twist_to(goal)).reshape(2, 3).max(axis=1)
+                assert (gap < [3e-3, 2e-2]).all()
 
     persist(drive)
     assert processes_left() == {}

@@ -9,6 +9,7 @@ import pytest
 from manipulator.analysis.nearest import nearest_reachable
 from manipulator.analysis.readings import distance
 from manipulator.planning.goal import OnUnreachable
+from sampling import enough
 from world.controller import DT
 
 RADIUS = {'robocake': 0.03, 'stewart_6_6': 0.2, 'arm_6r': 0.5}
@@ -50,7 +51,7 @@ def test_a_stream_out_of_reach_is_followed_along_the_limits(make_nearest, name):
     world = make_nearest(name)
     machine, motion = world.machine, world.machine.motion
     poses, since = setpoints_of(world), len(world.controller.statuses)
-    for goal in circle(machine.kinematics.home, RADIUS[name], 2.5):
+    for goal in circle(machine.kinematics.home, RADIUS[name], 2.5, enough(90, 150)):
         stamp = world.send_goal(goal)
         world.run(1 / 60)
     results = {status.result for _, status in world.controller.statuses[since:]}

@@ -71,6 +71,7 @@ class MachineSubscriptions:
         self._reports: dict[str, tuple[DiagnosticStatus, float]] = {}
         subscribe = node.create_subscription
         subscribe(PointStamped, 'pivot', self._on_pivot, COMMAND)
+        subscribe(String, 'tool', self._on_tool, COMMAND)
         subscribe(DiagnosticStatus, 'machine_state', self._on_machine_state, LATCHED)
         subscribe(DiagnosticStatus, 'motion_status', self._on_motion_status, LATCHED)
         subscribe(String, 'saved_poses', self._on_saved_poses, LATCHED)
@@ -153,6 +154,12 @@ class MachineSubscriptions:
             self._frames = self._frames.with_pivot(point_of(message, PLATFORM_FRAME))
         except ManipulatorError as error:
             self._node.get_logger().warning(f'pivot: {error}', throttle_duration_sec=1.0)
+
+    def _on_tool(self, message: String) -> None:
+        try:
+            self._frames = self._frames.with_tool(message.data)
+        except ManipulatorError as error:
+            self._node.get_logger().warning(f'tool: {error}', throttle_duration_sec=1.0)
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         space = self._node.get_namespace().strip('/')

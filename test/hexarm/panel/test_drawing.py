@@ -1,11 +1,15 @@
 """Bars, meshes and margins: what the page draws, without a page."""
 
+from unittest.mock import MagicMock
+
 import numpy as np
 import pytest
 
 from hexarm.machines import load
 from hexarm.panel.pieces import bar, bars_between, hull, pieces, plate, sphere
 from hexarm.panel.room import GOOD, NARROW, NONE_LEFT, colour, shares
+from hexarm.panel.scene import Scene
+from manipulator.limits.surroundings import BodiesConfig, BoxConfig, SurroundingsConfig
 from manipulator.rotation import from_quaternion
 
 
@@ -62,3 +66,24 @@ def test_colours_go_from_red_over_amber_to_green():
     assert colour(-1.0) == colour(0.0) == NONE_LEFT
     assert colour(0.175) == NARROW
     assert colour(1.0) == GOOD
+
+
+def test_the_page_draws_the_surroundings_where_they_are():
+    walls = SurroundingsConfig(
+        floor_mm=-50.0,
+        boxes=(BoxConfig('table', centre_mm=(0.0, 0.0, 900.0), size_mm=(400.0, 300.0, 20.0)),),
+        workspace_mm=((-2000.0, -2000.0, -60.0), (2000.0, 2000.0, 2000.0)),
+    )
+    machine = load('arm_6r').among(walls, BodiesConfig())
+    server = MagicMock()
+    Scene(server, machine, has_gripper=False)
+    kinematics = machine.kinematics
+    strokes = kinematics.skeleton(kinematics.home, kinematics.inverse(kinematics.home))
+    size = float(np.ptp(strokes[0].points, axis=0).max())
+    (table, workspace) = server.scene.add_box.call_args_list
+    np.testing.assert_allclose(np.array(table.args[2]) * size, [0.4, 0.3, 0.02])
+    np.testing.assert_allclose(table.kwargs['position'] * size, [0.0, 0.0, 0.9])
+    assert workspace.kwargs['wireframe']
+    assert not table.kwargs['wireframe']
+    grid = server.scene.add_grid.call_args.kwargs
+    assert grid['position'][2] * size == pytest.approx(-0.05)

@@ -10,7 +10,7 @@ from hexarm.cli.main import main
 from hexarm.simulation.compensation import Compensation
 from hexarm.simulation.model import dynamics_of
 from hexarm.simulation.static_load import static_load
-from manipulator.errors import ConfigError
+from manipulator.errors import ConfigError, InvalidInput
 from manipulator.static_deflection import commanded, deflected
 
 
@@ -81,6 +81,22 @@ def test_nodes_bring_the_platform_where_it_was_wanted(example, tmp_path):
     assert np.abs(real.twist_to(pose)[:3]).max() < 1e-5
     assert np.abs(real.twist_to(reported)[:3]).max() < 1e-5
     assert np.abs(real.twist_to(raw.pose)[:3]).max() > 1e-4
+
+
+def test_the_compensated_load_is_the_first_tools_and_another_is_refused(tmp_path):
+    tools = """
+tools:
+  - {name: drill, xyz_mm: [0, 0, 20], mass_g: 80}
+  - {name: bit, xyz_mm: [0, 0, 50], mass_g: 80, centre_mm: [0, 0, 10]}
+  - {name: saw, xyz_mm: [0, 0, 20], mass_g: 120}
+"""
+    machine = loaded(tmp_path, on=ON, tools=('\ndynamics:', f'{tools}\ndynamics:'))
+    home, joints = machine.kinematics.home, machine.kinematics.inverse(machine.kinematics.home)
+    bare = loaded(tmp_path, on=ON)
+    assert (machine.deflection(home, joints) / bare.deflection(home, joints) > 1.1).all()
+    assert machine.frames.with_tool('bit').tool == 'bit'
+    with pytest.raises(InvalidInput, match=r"'saw' has 120 g at .* is for 'drill', 80 g at"):
+        machine.frames.with_tool('saw')
 
 
 def test_taking_over_again_and_again_moves_nothing(tmp_path):

@@ -17,12 +17,14 @@ from hexarm.simulation.sensors import carrying_force
 from hexarm.simulation.simulation import Simulation
 from hexarm.simulation.static_load import static_load
 from leg_kinds import FLAT_CRANKS, HANGING_LEGS, RAILS
+from manipulator.frames import ToolConfig
 from manipulator.planning.plan import MotionState
 from manipulator.pose import Pose
 
 PLATFORMS = ['robocake', 'stewart_6_6', FLAT_CRANKS, RAILS]
 SIDEWAYS = (3.0, -4.0, 1.0)
 HALF_TURN = np.diag([1.0, -1.0, -1.0])
+DRILL = ToolConfig('drill', (30.0, 0.0, 60.0), mass_g=400.0, centre_mm=(20.0, 5.0, 30.0))
 
 
 def under(file, direction, **changes):
@@ -48,7 +50,7 @@ def upside_down(kinematics):
 def test_efforts_that_hold_a_pose_are_the_slopes_of_the_potential_energy(example, name):
     """Of MuJoCo's masses, with its gravity as the file says: every kind, gravity askew."""
     this = example(name)
-    file = under(this.file, SIDEWAYS)
+    file = replace(under(this.file, SIDEWAYS), tools=(DRILL,))
     home = this.kinematics.home
     joints = this.kinematics.inverse(home)
     simulation = Simulation(mechanism('m', file, this.kinematics), home, joints)
@@ -64,6 +66,28 @@ def test_efforts_that_hold_a_pose_are_the_slopes_of_the_potential_energy(example
             energy.append(simulation.state.energy[0])
         slope = (energy[1] - energy[0]) / 2e-5
         assert slope == pytest.approx(by_work[j], rel=1e-4, abs=1e-4 * np.abs(by_work).max())
+
+
+@pytest.mark.parametrize('name', ['robocake', 'stewart_6_6', 'arm_6r'])
+def test_a_tool_is_held_by_as_much_as_its_weight_rises_with_each_joint(example, name):
+    """Only the first of the tools is on the machine."""
+    this = example(name)
+    home, joints = this.kinematics.home, this.kinematics.inverse(this.kinematics.home)
+    equipped = replace(this.file, tools=(DRILL, replace(DRILL, name='saw', mass_g=900.0)))
+    bare, held = (
+        static_load(this.kinematics, dynamics_of(file))(home, joints)
+        for file in (this.file, equipped)
+    )
+    for j, step in enumerate(1e-6 * np.eye(6)):
+        ends = [this.kinematics.forward(joints + s * step, home).pose for s in (1, -1)]
+        up, down = (end.transform([[0.02, 0.005, 0.03]])[0, 2] for end in ends)
+        assert (held - bare)[j] == pytest.approx(0.4 * 9.80665 * (up - down) / 2e-6, abs=1e-6)
+
+
+def test_the_tool_of_a_stack_is_on_its_uppermost_platform():
+    file, kinematics = read('stack_6_6'), load('stack_6_6').kinematics
+    model = mechanism('stack', replace(file, tools=(DRILL,)), kinematics).xml
+    assert model.count('tool_in_force') == 1
 
 
 @pytest.mark.parametrize('name', PLATFORMS)

@@ -106,8 +106,8 @@ class ControllerProcess(Process):
         self.core.refuse(stamp, error)
         self._publish_news()
 
-    def _take_twist(self, stamp, source, twist):
-        self.teleop.receive(source, twist, '', self.now)
+    def _take_twist(self, stamp, source, twist, frame=''):
+        self.teleop.receive(source, twist, frame, self.now)
 
     def _tick(self):
         self.core.begin_tick(self.now)

@@ -40,6 +40,9 @@ class Requests:
     def pivot(self, point):
         self._supervisor.set_pivot(point)
 
+    def tool(self, name):
+        self._supervisor.use_tool(name)
+
     def mode(self, name, point=None):
         if point is not None:
             self._world.controller.teleop.look_at(np.array(point))

@@ -237,11 +237,12 @@ class World:
         )
         return self.status
 
-    def jog(self, twist, seconds, source='cmd_vel'):
+    def jog(self, twist, seconds, source='cmd_vel', frame=''):
         """Holds a stick for so long, then sends the zero of its release."""
         end = self.now + seconds
         while self.now < end:
-            self.links['twists'].send(self.user.stamp, source, np.array(twist, dtype=float))
+            wanted = np.array(twist, dtype=float)
+            self.links['twists'].send(self.user.stamp, source, wanted, frame)
             self.run(TWIST_PERIOD)
         self.links['twists'].send(self.user.stamp, source, np.zeros(6))
 

@@ -1,0 +1,1 @@
+"""`hexarm new`: a machine file of the measures that people have."""
