@@ -13,7 +13,7 @@ import pytest
 from hexapod_control.geometry import HexagonConfig
 from hexarm.cli.main import main
 from hexarm.machine_check import problems_of, report_of
-from hexarm.machines import content_of, load
+from hexarm.machines import content_of, find, load
 from leg_kinds import TILTED_CRANKS
 from manipulator.config import build, parse_yaml
 from sampling import some
@@ -574,3 +574,12 @@ def test_reach_and_margins_are_there_for_programs(capsys):
         assert not machine.constraints.admits(beyond, machine.kinematics.inverse(beyond))
     margins = {m['quantity']: m['margin'] for m in found['smallest_margins']}
     assert margins['leg length'] == pytest.approx(0.048, abs=1e-6)
+
+
+def test_an_arm_whose_home_is_singular_is_asked_about_it():
+    content = content_of(find('arm_6r'))
+    assert report_of(content).warnings == ()
+    content['geometry']['home_deg'][4] = 0.0
+    content['servos']['park_deg'] = content['geometry']['home_deg']
+    (warning,) = report_of(content).warnings
+    assert warning.startswith('geometry: home is a singular posture (singularity margin 0.000)')
