@@ -8,7 +8,7 @@ import pytest
 
 from hexarm import machines
 from hexarm.machine_check import problems_of
-from hexarm.panel.readout import shares
+from hexarm.panel.room import shares
 from manipulator import rotation as so3
 from manipulator.analysis.nearest import nearest_reachable
 from manipulator.analysis.reach import reach
