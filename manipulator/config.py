@@ -197,9 +197,8 @@ def _convert_list(arguments: Any, value: object, where: str, problems: list[str]
     if arguments[-1] is Ellipsis:
         arguments = (arguments[0],) * len(value)
     if len(value) != len(arguments):
-        problems.append(
-            f'{where}: has {counted(len(value), "entry", "entries")}, needs {len(arguments)}'
-        )
+        entries = counted(len(value), 'entry', 'entries')
+        problems.append(f'{where}: has {entries}, needs {len(arguments)}')
         return ()
     return tuple(
         _convert(kind, entry, f'{where}[{i}]', problems)
