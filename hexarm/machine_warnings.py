@@ -31,6 +31,9 @@ PULSES_US = (450.0, 2550.0)
 US_PER_DEG = (5.5, 11.2)
 """Of servos that turn about 180° within 1000 to 2000 µs, from a third to all of it."""
 
+SINGULAR = 0.01
+"""Smallest singular value below which home counts as singular; those of shipped homes: 0.25 up."""
+
 GEARED_US = 700.0
 """So far from its centre goes a pulse that fills what there is: a geared servo, or a winch's."""
 
@@ -40,7 +43,7 @@ def warnings_of(
 ) -> list[str]:
     """One sentence for each doubt about a machine without problems; geometry is its section."""
     found = [*_assumed_planes(machine, geometry), *_other_bend(machine)]
-    found += _uneven_motion(machine)
+    found += [*_uneven_motion(machine), *_singular_home(machine)]
     if calibration is not None:
         found += _pulses(machine, calibration)
     return found
@@ -65,6 +68,17 @@ def _assumed_planes(machine: Machine, geometry: Mapping[str, Any]) -> Iterator[s
                 f'{_degrees(slopes[legs])} to level, and without crank_axes every crank turns in '
                 'the vertical plane of its tangent: if the planes are tilted, give crank_axes'
             )
+
+
+def _singular_home(machine: Machine) -> Iterator[str]:
+    """A home in which an arm is stretched, or two of its axes are in line; often all zeros."""
+    kinematics = machine.kinematics
+    margin = float(kinematics.sigma_min(kinematics.home, kinematics.inverse(kinematics.home)))
+    if margin < SINGULAR:
+        yield (
+            f'geometry: home is a singular posture (singularity margin {margin:.3f}): from there '
+            'no line leads in some directions, and the reach from home is small; choose another'
+        )
 
 
 def _other_bend(machine: Machine) -> Iterator[str]:

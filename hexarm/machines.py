@@ -195,7 +195,7 @@ def loader(kind: str) -> Callable[[MachineFile], Machine]:
         return KINDS[kind]
     near = difflib.get_close_matches(kind, list(KINDS), n=1)
     hint = f', did you mean {near[0]!r}?' if near else ''
-    raise ConfigError([f'kind: {shown(kind)} is not one of {list(KINDS)}{hint}'])
+    raise ConfigError([f'kind: {shown(kind)} is not one of {", ".join(KINDS)}{hint}'])
 
 
 def load(name_or_path: str) -> Machine:

@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 import yaml
 
 from manipulator.errors import ConfigError
-from manipulator.formatting import shortened, shown, told_apart
+from manipulator.formatting import counted, shortened, shown, told_apart
 from manipulator.strict_yaml import content_of
 
 T = TypeVar('T')
@@ -114,7 +114,8 @@ def _convert(expected: Any, value: object, where: str, problems: list[str]) -> A
     if origin is typing.Literal:
         if value not in arguments:
             hint = _did_you_mean(nearest(str(value), [str(a) for a in arguments]))
-            problems.append(f'{where}: {shown(value)} is not one of {list(arguments)}{hint}')
+            choices = ', '.join(str(a) for a in arguments)
+            problems.append(f'{where}: {shown(value)} is not one of {choices}{hint}')
         return value
     if origin is tuple:
         return _convert_list(arguments, value, where, problems)
@@ -196,7 +197,8 @@ def _convert_list(arguments: Any, value: object, where: str, problems: list[str]
     if arguments[-1] is Ellipsis:
         arguments = (arguments[0],) * len(value)
     if len(value) != len(arguments):
-        problems.append(f'{where}: has {len(value)} entries, needs {len(arguments)}')
+        entries = counted(len(value), 'entry', 'entries')
+        problems.append(f'{where}: has {entries}, needs {len(arguments)}')
         return ()
     return tuple(
         _convert(kind, entry, f'{where}[{i}]', problems)
@@ -244,8 +246,8 @@ _NAMES = {float: 'a number', int: 'a whole number', str: 'a text', bool: 'true o
 
 def _kind(value: object) -> str:
     names = {dict: 'a mapping', list: 'a list', type(None): 'nothing', bool: 'true or false'}
-    name = names.get(type(value))
-    return name or f'{type(value).__name__} {shown(value)}'
+    one = {str: 'the text', int: 'the number', float: 'the number'}.get(type(value), 'the value')
+    return names.get(type(value)) or f'{one} {shown(value)}'
 
 
 def nearest(word: str, choices: list[str]) -> str:

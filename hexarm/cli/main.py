@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 
 from hexarm.cli.commands import Commands, declare
 from hexarm.cli.statuses import INTERRUPTED, PIPE_CLOSED, REFUSED
-from manipulator.errors import ManipulatorError
+from manipulator.errors import ConfigError, InvalidInput, ManipulatorError, Refused
 from manipulator.requirements import missing
 
 EXAMPLES = """\
@@ -73,9 +73,12 @@ def main(words: list[str] | None = None) -> int:
 
 
 def _explained(words: list[str] | None) -> int:
-    """Runs one subcommand; an error is one line and status 1."""
+    """Runs one subcommand; an error is one line, and status 1 or 2."""
     try:
         return _run(words)
+    except (ConfigError, InvalidInput, Refused) as error:
+        print(f'hexarm: {error}', file=sys.stderr)
+        return REFUSED
     except ManipulatorError as error:
         print(f'hexarm: {error}', file=sys.stderr)
     except ModuleNotFoundError as error:

@@ -1,7 +1,7 @@
 """Exit statuses of the `hexarm` command, one table for all subcommands (docs/cli.md)."""
 
 FAILED = 1
-"""Something failed: no machine, a node that ended, a file that cannot be written."""
+"""Something failed: no machine, a node that ended, a disk that is full."""
 
 REFUSED = 2
 """A refusal, or a question that was not understood."""

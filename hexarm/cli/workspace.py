@@ -52,7 +52,7 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
 def answer(arguments: argparse.Namespace) -> Answer:
     """Volumes in m³ with their errors at 95 % confidence; ranges in metres and radians."""
     machine = load(arguments.machine)
-    points = arguments.points or default_points(machine)
+    points = default_points(machine) if arguments.points is None else arguments.points
     if points < FEWEST_POINTS:
         raise InvalidInput(f'--points {points} is below {FEWEST_POINTS}')
     if not 0.0 < arguments.tilt <= np.pi:
@@ -130,7 +130,7 @@ def _sampling(machine: Machine, found: Survey) -> str:
     sides = ' × '.join(f'{1e3 * side:.4g}' for side in found.box.high - found.box.low)
     lines = (
         f'sampled at {counted(found.constant_orientation.points, "position")} spread evenly over '
-        f'{sides} mm, and at {found.some_orientation.points} where orientations are tried'
+        f'{sides} mm, and at {found.some_orientation.points:,} where orientations are tried'
     )
     if isinstance(machine.kinematics, StackKinematics):
         lines += (

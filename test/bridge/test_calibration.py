@@ -157,7 +157,7 @@ def test_a_machine_files_sections_are_checked_at_once():
     )
     with pytest.raises(ConfigError) as caught:
         BoardConfig.from_machine(broken)
-    assert "link.on_link_loss: 'relase' is not one of ['hold', 'release']" in str(caught.value)
+    assert "link.on_link_loss: 'relase' is not one of hold, release" in str(caught.value)
     assert 'simulation.hysteresis: unknown key' in str(caught.value)
 
 

@@ -28,5 +28,5 @@ def test_the_graph_enables_parks_and_leaves_no_board_behind(hexarm, processes_le
 
 def test_a_device_has_no_plant_to_choose(hexarm):
     process = hexarm('up', 'hexapod', '--port', '/dev/null', '--plant', 'mujoco')
-    assert process.wait(60) == 1
+    assert process.wait(60) == 2
     assert '--plant mujoco: for port fake or simavr; /dev/null moves' in process.stdout.read()

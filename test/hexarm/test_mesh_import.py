@@ -275,7 +275,7 @@ def test_a_machine_file_names_seven_meshes(tmp_path, bring):
     content = yaml.safe_load(file.read_text())
     content['geometry']['meshes'] = ['a.stl']
     file.write_text(yaml.safe_dump(content))
-    with pytest.raises(ConfigError, match=r'geometry.meshes: has 1 entries, needs 7'):
+    with pytest.raises(ConfigError, match=r'geometry.meshes: has 1 entry, needs 7'):
         machines.load(str(file))
 
 

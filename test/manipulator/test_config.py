@@ -74,9 +74,9 @@ def test_everything_wrong_is_reported_at_once():
     found = problems(text + 'label: 7\n')
     assert len(found) == 4
     assert 'rod_length_mm: nan is not finite' in found
-    assert 'range_deg: has 1 entries, needs 2' in found
-    assert any(p.startswith('servos[0].sign: 2 is not one of [-1, 1]') for p in found)
-    assert 'label: holds int 7, needs a text' in found
+    assert 'range_deg: has 1 entry, needs 2' in found
+    assert any(p.startswith('servos[0].sign: 2 is not one of -1, 1') for p in found)
+    assert 'label: holds the number 7, needs a text' in found
 
 
 def test_a_number_outside_its_range_is_named_with_both():

@@ -52,7 +52,7 @@ def test_the_header_of_a_table_holds_the_counts_of_its_positions(csv_file, capsy
 )
 def test_a_table_that_is_none_is_refused_by_name(csv_file, capsys, change, words):
     csv_file.write_text(csv_file.read_text().replace(*change, 1))
-    assert main(['firmware-header', 'robocake', '--table', str(csv_file)]) == 1
+    assert main(['firmware-header', 'robocake', '--table', str(csv_file)]) == 2
     assert words in capsys.readouterr().err
 
 

@@ -115,7 +115,7 @@ def test_a_file_that_somebody_else_has_changed_is_left_alone(sit_down):
     person.type('q')
     person.await_words('end:')
     person.type('w')
-    assert person.await_end() == 1
+    assert person.await_end() == 2
     assert 'changed meanwhile' in person.said
     assert file.read_text().endswith('# mine\n')
 
@@ -181,5 +181,5 @@ def test_a_port_that_another_program_holds_is_reported_kindly(sit_down):
 def test_what_cannot_be_is_reported_before_anything_moves(words, text, capsys, monkeypatch):
     with open(os.devnull) as nothing:
         monkeypatch.setattr('sys.stdin', nothing)
-        assert main(['calibrate', 'servos', *words]) == 1
+        assert main(['calibrate', 'servos', *words]) == 2
     assert text in capsys.readouterr().err

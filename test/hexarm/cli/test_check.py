@@ -13,7 +13,7 @@ import pytest
 from hexapod_control.geometry import HexagonConfig
 from hexarm.cli.main import main
 from hexarm.machine_check import problems_of, report_of
-from hexarm.machines import content_of, load
+from hexarm.machines import content_of, find, load
 from leg_kinds import TILTED_CRANKS
 from manipulator.config import build, parse_yaml
 from sampling import some
@@ -151,8 +151,8 @@ def test_problems_of_all_sections_come_at_once():
     )
     for words in (
         'colour: unknown key',
-        "motion.linear_speed_mm_s: holds str 'fast', needs a number",
-        "geometry.rod_length_mm: holds str 'long', needs a number",
+        "motion.linear_speed_mm_s: holds the text 'fast', needs a number",
+        "geometry.rod_length_mm: holds the text 'long', needs a number",
         'limits.crank_rang_deg: unknown key',
         'servos: joints: channels [0, 1, 1, 3, 4, 5]',
         "link.on_link_loss: 'hope' is not one of",
@@ -167,7 +167,7 @@ def test_home_beyond_a_limit_is_found_beside_a_faulty_section():
         changed(ROBOCAKE, ('[30.0, 210.0]', '[130.0, 210.0]'), ('baud: 250000', 'baud: fast'))
     )
     assert 'limits: home has crank angle 120° on all legs, outside [130, 210]°' in found
-    assert "link.baud: holds str 'fast', needs a whole number" in found
+    assert "link.baud: holds the text 'fast', needs a whole number" in found
 
 
 @pytest.mark.parametrize('text', ['', '- 1', 'kind: [', 'kind: 7', 'geometry: 5\nservos: none'])
@@ -295,7 +295,7 @@ def test_file_that_is_no_machine_file_is_one_line_with_its_name(tmp_path, capsys
         'huge.urdf': (urdf.encode() * 20, 'is a URDF: hexarm import FILE makes'),
         'page.yaml': (b'<html>' + b'x' * 20_000, 'is XML or HTML, needs YAML'),
         'mesh.yaml': (bytes(range(256)) * 100, 'cannot be read: it is no text'),
-        'text.yaml': (b'just words ' * 2000, "holds str 'just words"),
+        'text.yaml': (b'just words ' * 2000, "holds the text 'just words"),
         'list.yaml': (b'- 1\n' * 2000, 'holds a list, needs a mapping'),
         'tag.yaml': (b'a: !' + b'x' * 20_000 + b' 1', 'could not determine a constructor'),
         'log.yaml': (b'a' * 500_000, '500000 bytes, a machine file has at most'),
@@ -574,3 +574,12 @@ def test_reach_and_margins_are_there_for_programs(capsys):
         assert not machine.constraints.admits(beyond, machine.kinematics.inverse(beyond))
     margins = {m['quantity']: m['margin'] for m in found['smallest_margins']}
     assert margins['leg length'] == pytest.approx(0.048, abs=1e-6)
+
+
+def test_an_arm_whose_home_is_singular_is_asked_about_it():
+    content = content_of(find('arm_6r'))
+    assert report_of(content).warnings == ()
+    content['geometry']['home_deg'][4] = 0.0
+    content['servos']['park_deg'] = content['geometry']['home_deg']
+    (warning,) = report_of(content).warnings
+    assert warning.startswith('geometry: home is a singular posture (singularity margin 0.000)')

@@ -42,7 +42,7 @@ def test_an_unknown_machine_lists_the_known_as_words(capsys):
 
 
 def test_a_machine_is_named_once(capsys):
-    assert main(['up', 'ur5', '--machine', 'arm_6r']) == 1
+    assert main(['up', 'ur5', '--machine', 'arm_6r']) == 2
     assert "both 'ur5' and --machine arm_6r: name one machine" in capsys.readouterr().err
 
 
@@ -69,7 +69,7 @@ def test_command_without_ros_reports_what_it_needs(tmp_path):
 
 @pytest.mark.parametrize('words', [('hexapod', '--port', '/dev/nothing'), ('ur5', '--port', '/x')])
 def test_a_port_that_does_not_exist_is_named_once_and_before_anything_starts(words, capsys):
-    assert main(['up', *words]) == 1
+    assert main(['up', *words]) == 2
     said = capsys.readouterr().err
     assert f'port {words[-1]} does not exist' in said
     assert said.count('\n') == 1
@@ -92,7 +92,7 @@ def test_picture_of_an_unknown_ending_is_refused_before_anything_is_worked_out(c
     ],
 )
 def test_up_refuses_in_words_before_a_node_is_started(words, said, capsys):
-    assert main(['up', 'hexapod', *words]) == 1
+    assert main(['up', 'hexapod', *words]) == 2
     assert said in capsys.readouterr().err
 
 

@@ -144,7 +144,7 @@ def test_without_an_output_nothing_of_the_source_tree_is_written(monkeypatch, tm
 
 
 def test_a_report_of_another_kind_is_refused(capsys):
-    assert main(['reproduce', '--output', 'report.txt']) == 1
+    assert main(['reproduce', '--output', 'report.txt']) == 2
     assert 'must end in .md' in capsys.readouterr().err
 
 

@@ -50,7 +50,14 @@ def test_pictures_and_a_csv_table_are_written(capsys, tmp_path):
 
 
 @pytest.mark.parametrize(
-    'words', [['--points', '10'], ['--tilt', '-1'], ['--tilt', 'nan'], ['--data', 'table.xls']]
+    'words',
+    [
+        ['--points', '10'],
+        ['--points', '0'],
+        ['--tilt', '-1'],
+        ['--tilt', 'nan'],
+        ['--data', 'table.xls'],
+    ],
 )
 def test_what_makes_no_sense_is_refused(capsys, words):
     assert main(['workspace', 'robocake', *words]) == 2

@@ -338,7 +338,7 @@ def test_bad_surroundings_are_named_all_at_once():
         "surroundings.floor: unknown key, did you mean 'floor_mm'?",
         'surroundings.boxes[0]: needs either corners_mm, or centre_mm and size_mm',
         'surroundings.boxes[1].size_mm[2]: 0 outside [0.001, 1e+06]',
-        'bodies.link_diameters_mm: holds int 5, needs a list',
+        'bodies.link_diameters_mm: holds the number 5, needs a list',
         'bodies.rod_diameter_mm: -1 outside [0.001, 1e+06]',
     ]
     known = 'boxes: [{name: a, corners_mm: [[0, 0, 0], [1, 1, 1]]}]'
