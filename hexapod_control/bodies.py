@@ -9,7 +9,7 @@ from hexapod_control.geometry import LEGS
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.parallel_platform import ParallelPlatform
 from hexapod_control.rotary import RotaryHexapod
-from hexapod_control.stack_kinematics import StackKinematics
+from hexapod_control.stacks.kinematics import StackKinematics
 from manipulator import _kernel
 from manipulator.arrays import Array, frozen
 from manipulator.limits.surroundings import Bodies, BodiesConfig

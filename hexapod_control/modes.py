@@ -8,7 +8,7 @@ import numpy as np
 from hexapod_control.assembly_modes import modes_of
 from hexapod_control.linear import LinearPlatform
 from hexapod_control.parallel_platform import ParallelPlatform
-from hexapod_control.stack_kinematics import StackKinematics
+from hexapod_control.stacks.kinematics import StackKinematics
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution
 from manipulator.framed_machine import FramedKinematics

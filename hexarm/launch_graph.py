@@ -9,7 +9,7 @@ from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
-from hexarm.cli.up import MACHINES, check
+from hexarm.cli.running.up import MACHINES, check
 from hexarm.graph import Executable, environment, machine_graph, ros_arguments
 
 PACKAGE = 'hexarm'

@@ -11,7 +11,7 @@ from bridge.calibration import Calibration
 from bridge.servo_config import ServosConfig
 from hexapod_control import load as hexapods
 from hexapod_control.home import home_problems
-from hexapod_control.load_stack import StackConfig
+from hexapod_control.stacks.load import StackConfig
 from hexarm.link_meshes import link_meshes
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
 from hexarm.machine_spelling import corrected

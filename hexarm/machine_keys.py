@@ -17,7 +17,7 @@ from typing import Any
 from arm_control import load as arms
 from bridge.servo_config import LinkConfig, ServosConfig, SimulationConfig
 from hexapod_control import load as hexapods
-from hexapod_control import load_stack
+from hexapod_control.stacks import load as load_stack
 from hexarm.simulation.dynamics_config import SCHEMAS, StackDynamicsConfig
 from manipulator.config import forms_of, is_required
 from manipulator.frames import FramesConfig, ToolConfig

@@ -38,7 +38,7 @@ def _arm(machine_file: MachineFile) -> Machine:
 
 
 def _stack(machine_file: MachineFile) -> Machine:
-    from hexapod_control.load_stack import stack  # noqa: PLC0415
+    from hexapod_control.stacks.load import stack  # noqa: PLC0415
 
     return stack(machine_file)
 
@@ -125,7 +125,7 @@ def with_sections(content: dict[str, Any], folder: Path) -> dict[str, Any]:
     sections = geometry.get('sections')
     if not isinstance(sections, list):
         return content
-    from hexapod_control.load_stack import check_count  # noqa: PLC0415
+    from hexapod_control.stacks.load import check_count  # noqa: PLC0415
 
     problems, there = [], []
     try:

@@ -120,7 +120,7 @@ def fake_hardware() -> int:
 def joy_teleop() -> int:
     """Runs the node from Joy messages to jog commands."""
     from hexarm.gamepads import load
-    from manipulator.nodes.joy_teleop_node import JoyTeleop
+    from manipulator.nodes.devices.joy_teleop_node import JoyTeleop
 
     return run_nodes([lambda: JoyTeleop(load)])
 
@@ -129,7 +129,7 @@ def gamepad() -> int:
     """Runs the node from a pad of this computer to Joy messages."""
 
     def make() -> Node:
-        from manipulator.nodes.gamepad_node import Gamepad  # needs evdev
+        from manipulator.nodes.devices.gamepad_node import Gamepad  # needs evdev
 
         return Gamepad()
 
@@ -138,8 +138,8 @@ def gamepad() -> int:
 
 def keyboard_teleop() -> int:
     """Runs the node from a terminal's keys to jog commands."""
-    from manipulator.nodes.keyboard_teleop_node import KeyboardTeleop
-    from manipulator.nodes.terminal import Terminal
+    from manipulator.nodes.devices.keyboard_teleop_node import KeyboardTeleop
+    from manipulator.nodes.devices.terminal import Terminal
 
     signal.signal(signal.SIGHUP, signal.SIG_IGN)  # a closed window is seen when reading
     try:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from bridge.calibration import Calibration
-from hexapod_control.stack_kinematics import StackKinematics
+from hexapod_control.stacks.kinematics import StackKinematics
 from manipulator.arrays import Array
 from manipulator.config import nearest
 from manipulator.errors import NoSolution

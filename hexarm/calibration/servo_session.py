@@ -10,7 +10,7 @@ from bridge.servo_config import ServoConfig
 from bridge.servo_wizard import ServoWizard, Stage
 from hexarm.calibration.servo_line import ServoLine
 from manipulator.errors import LinkError, ManipulatorError, Refused
-from manipulator.nodes.terminal import Terminal
+from manipulator.nodes.devices.terminal import Terminal
 
 ARROWS = {'A': 'up', 'B': 'down', 'C': 'right', 'D': 'left'}
 CONTROLS = {'\r': 'enter', '\n': 'enter', '\x7f': 'backspace', '\x08': 'backspace'}

@@ -27,7 +27,7 @@ from hexarm.machines import read
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
 from manipulator.formatting import counted, shown
-from manipulator.nodes.terminal import Terminal
+from manipulator.nodes.devices.terminal import Terminal
 from manipulator.yaml_edit import with_values
 
 MOST_OFF_US = 60.0

@@ -14,8 +14,8 @@ import numpy as np
 
 from hexarm import use_own_domain
 from hexarm.cli.answers import picture_file
+from hexarm.cli.running.up import Interrupted, StopSignal, check_alive
 from hexarm.cli.statuses import INTERRUPTED
-from hexarm.cli.up import Interrupted, StopSignal, check_alive
 from hexarm.demo.report import Curve, Observation, Result, measure
 from hexarm.graph import Executable, Graph, link_folder, machine_graph
 from hexarm.machines import load

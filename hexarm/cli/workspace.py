@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hexapod_control.stack_kinematics import StackKinematics
+from hexapod_control.stacks.kinematics import StackKinematics
 from hexarm.cli.answers import Answer, add_machine, answering, picture_file
 from hexarm.cli.progress import progress
 from hexarm.machines import load

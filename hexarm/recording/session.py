@@ -20,7 +20,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
-from hexarm.cli.up import Interrupted
+from hexarm.cli.running.up import Interrupted
 from hexarm.recording.log_parser import UnknownType
 from hexarm.recording.sink import Sink, Topic
 from hexarm.recording.topics import TopicSelection, missing_topics

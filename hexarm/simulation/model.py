@@ -7,8 +7,8 @@ from typing import Any
 
 from arm_control.joint_limits import ArmLimits
 from hexapod_control.geometry import LEGS
-from hexapod_control.load_stack import section_files
-from hexapod_control.stack_kinematics import StackKinematics
+from hexapod_control.stacks.kinematics import StackKinematics
+from hexapod_control.stacks.load import section_files
 from hexarm.simulation.arm_model import arm_model
 from hexarm.simulation.drives import Drives, pushing, servo_speeds, turning
 from hexarm.simulation.dynamics_config import (

@@ -10,7 +10,7 @@ from dataclasses import fields
 import numpy as np
 
 from hexapod_control.geometry import LEGS
-from hexapod_control.stack_kinematics import StackKinematics
+from hexapod_control.stacks.kinematics import StackKinematics
 from hexarm.simulation.drives import Drives
 from hexarm.simulation.platform_parts import PLATFORM
 from hexarm.simulation.rigid_body import Mechanism, Seat, add, child, document, free_body, written

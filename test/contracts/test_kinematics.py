@@ -9,7 +9,7 @@ import pytest
 
 from arm_control.load import arm
 from hexapod_control.load import hexapod
-from hexapod_control.load_stack import stack
+from hexapod_control.stacks.load import stack
 from hexapod_control.workspace import sample
 from hexarm.machines import content_of
 from leg_kinds import FLAT_CRANKS, HANGING_LEGS, RAILS, SCREW_LEGS, TILTED_CRANKS

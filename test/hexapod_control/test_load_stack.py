@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hexapod_control.load_stack import stack
+from hexapod_control.stacks.load import stack
 from hexarm.machine_check import report_of
 from hexarm.machines import content_of
 from manipulator.config import build, parse_yaml

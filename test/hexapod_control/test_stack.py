@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hexapod_control import load
-from hexapod_control.stack import Stack
+from hexapod_control.stacks.stack import Stack
 from hexapod_control.workspace import sample
 from manipulator.config import build
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable

@@ -36,8 +36,8 @@ from manipulator.analysis.reach import explained
 from manipulator.arrays import Array
 from manipulator.formatting import counted
 from manipulator.machine import Machine
+from manipulator.nodes.devices.jog_topics import NO_TWIST, JogTopics
 from manipulator.nodes.diagnostics import Diagnostics, Report
-from manipulator.nodes.jog_topics import NO_TWIST, JogTopics
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer

@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip('rclpy')
 
-from hexarm.cli.up import Interrupted, enable, park
+from hexarm.cli.running.up import Interrupted, enable, park
 from manipulator.errors import Refused, Stopped
 
 

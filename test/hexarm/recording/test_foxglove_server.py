@@ -70,6 +70,6 @@ def test_a_port_that_is_taken_is_named(server):
 
 def test_a_machine_that_does_not_come_is_status_1_with_the_reason(monkeypatch, capsys):
     monkeypatch.setattr('hexarm.recording.session.record', lambda *_: (set(), 7))
-    monkeypatch.setattr('hexarm.cli.foxglove.StopSignal', lambda: Mock(is_set=False))
+    monkeypatch.setattr('hexarm.cli.running.foxglove.StopSignal', lambda: Mock(is_set=False))
     assert main(['foxglove', 'nowhere', '--port', '0']) == 1
     assert 'no machine found in /nowhere on ROS domain 7' in capsys.readouterr().err

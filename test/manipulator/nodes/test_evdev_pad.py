@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from manipulator.errors import LinkError
-from manipulator.nodes.evdev_pad import SYN, SYN_DROPPED, find_pad
+from manipulator.nodes.devices.evdev_pad import SYN, SYN_DROPPED, find_pad
 from manipulator.teleop.pad import ABS, KEY
 
 SOUTH, SELECT = 0x130, 0x13A

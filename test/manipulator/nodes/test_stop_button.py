@@ -10,9 +10,9 @@ from rclpy.task import Future
 from std_srvs.srv import Trigger
 
 from manipulator.deadlines import RELEASE
-from manipulator.nodes import jog_topics
-from manipulator.nodes import jog_topics as stop_button
-from manipulator.nodes.jog_topics import NO_TWIST, JogTopics
+from manipulator.nodes.devices import jog_topics
+from manipulator.nodes.devices import jog_topics as stop_button
+from manipulator.nodes.devices.jog_topics import NO_TWIST, JogTopics
 
 TICK = 0.02
 

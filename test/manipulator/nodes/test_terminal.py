@@ -9,7 +9,7 @@ import pytest
 
 from hexarm.nodes import keyboard_teleop
 from manipulator.errors import InvalidInput
-from manipulator.nodes.terminal import Terminal
+from manipulator.nodes.devices.terminal import Terminal
 
 
 class Desk:

@@ -4,8 +4,8 @@ import argparse
 from typing import TYPE_CHECKING
 
 from hexarm.cli.answers import Answer, for_programs, units_of
-from hexarm.cli.drive import add_driving, pose
 from hexarm.cli.progress import progress
+from hexarm.cli.running.drive import add_driving, pose
 from manipulator.errors import InvalidInput
 
 if TYPE_CHECKING:

@@ -5,12 +5,12 @@ import time
 
 from rclpy.node import Node
 
+from manipulator.nodes.devices.jog_topics import JogTopics
+from manipulator.nodes.devices.terminal import Terminal
 from manipulator.nodes.diagnostics import OK, Diagnostics, Report
 from manipulator.nodes.graph_check import SubscriberCheck, place
-from manipulator.nodes.jog_topics import JogTopics
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.steady_timer import SteadyTimer
-from manipulator.nodes.terminal import Terminal
 from manipulator.teleop.keyboard import HELP, Keyboard, keys_of
 
 LOOK_AROUND = 0.5

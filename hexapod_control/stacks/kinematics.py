@@ -7,7 +7,7 @@ import numpy as np
 
 from hexapod_control.geometry import LEGS
 from hexapod_control.parallel_platform import ParallelPlatform
-from hexapod_control.stack import FAR, Stack
+from hexapod_control.stacks.stack import FAR, Stack
 from manipulator import rotation as so3
 from manipulator.arrays import Array
 from manipulator.errors import ConfigError, NoSolution, Unreachable

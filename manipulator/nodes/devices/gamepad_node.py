@@ -8,8 +8,8 @@ from rclpy.node import Node
 from sensor_msgs.msg import Joy
 
 from manipulator.errors import LinkError
+from manipulator.nodes.devices.evdev_pad import Device, EvdevPad, find_pad, input_devices
 from manipulator.nodes.diagnostics import ERROR, OK, Diagnostics, Report
-from manipulator.nodes.evdev_pad import Device, EvdevPad, find_pad, input_devices
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import MEASUREMENT
 from manipulator.nodes.steady_timer import SteadyTimer

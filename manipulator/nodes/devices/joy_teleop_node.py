@@ -8,8 +8,8 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Joy
 
 from manipulator.errors import InvalidInput
+from manipulator.nodes.devices.jog_topics import JogTopics
 from manipulator.nodes.diagnostics import ERROR, OK, WARN, Diagnostics, Report
-from manipulator.nodes.jog_topics import JogTopics
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.nodes.subscriptions import FilteredCallback, SoleSubscription

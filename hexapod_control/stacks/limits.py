@@ -7,7 +7,7 @@ import numpy as np
 
 from hexapod_control.geometry import LEGS
 from hexapod_control.platform_limits import VALUES
-from hexapod_control.stack_kinematics import StackKinematics
+from hexapod_control.stacks.kinematics import StackKinematics
 from manipulator.analysis.slope import nearest_point
 from manipulator.arrays import Array, Mask, frozen
 from manipulator.errors import ManipulatorError

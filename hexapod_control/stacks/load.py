@@ -8,10 +8,10 @@ from typing import Any
 
 from hexapod_control import load
 from hexapod_control.bodies import stack_bodies
-from hexapod_control.stack import Stack
-from hexapod_control.stack_inverse import MOST_SECTIONS
-from hexapod_control.stack_kinematics import StackKinematics
-from hexapod_control.stack_limits import constraints_of
+from hexapod_control.stacks.inverse import MOST_SECTIONS
+from hexapod_control.stacks.kinematics import StackKinematics
+from hexapod_control.stacks.limits import constraints_of
+from hexapod_control.stacks.stack import Stack
 from manipulator.config import PLACE_MM, SIZE_MM, TURN_DEG, build, key, quantity
 from manipulator.errors import ConfigError
 from manipulator.formatting import counted

@@ -3,7 +3,7 @@
 import argparse
 import math
 
-from hexarm.cli.up import StopSignal
+from hexarm.cli.running.up import StopSignal
 from hexarm.namespaces import NoMachine, namespace_of
 from hexarm.recording.topics import TopicSelection, nothing_recorded
 

@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
-from hexarm.cli.up import StopSignal
+from hexarm.cli.running.up import StopSignal
 from hexarm.namespaces import namespace_of
 from hexarm.recording.topics import TopicSelection, missing_topics, nothing_recorded
 from manipulator.errors import ManipulatorError

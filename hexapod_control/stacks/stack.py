@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hexapod_control.stack_inverse import NearestToHome
+from hexapod_control.stacks.inverse import NearestToHome
 from hexapod_control.workspace import axis_range
 from manipulator.analysis.free_paths import is_connected
 from manipulator.arrays import Array, frozen

@@ -1,0 +1,1 @@
+"""Platforms on each other: their kinematics, limits and machine file."""

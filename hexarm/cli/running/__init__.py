@@ -1,0 +1,1 @@
+"""Subcommands for machines that run: start, move, stop, watch, record."""

@@ -1,0 +1,1 @@
+"""Input devices of a person: gamepad, keyboard, and what they publish."""
