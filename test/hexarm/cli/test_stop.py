@@ -95,7 +95,7 @@ def test_a_bridge_of_this_computer_is_reported_before_the_graph_is_joined(monkey
 def test_no_other_subcommand_is_loaded_nor_ros_before_the_first_stop_is_out():
     heavy = ['numpy', 'yaml', 'rclpy', 'hexarm.cli.running.up', 'hexarm.client']
     code = (
-        'import sys\nfrom hexarm.cli import main, stop\n'
+        'import sys\nfrom hexarm.cli import main\nfrom hexarm.cli.running import stop\n'
         f'loaded = lambda address: sys.exit(str([m for m in {heavy} if m in sys.modules]))\n'
         'stop.send_stop = loaded\n'
         "main.main(['stop'])"
