@@ -16,7 +16,7 @@ demo: $(ENV)/demo $(LIBRARIES)
 	@$(BIN)/hexarm demo
 
 check: $(ENV)/ready $(LIBRARIES)
-	@echo 'Lint, types, and the quick tests, which start no other program: a minute on two quiet cores.'
+	@echo 'Lint, types, and the quick tests, which start no other program: 80 s on two quiet cores.'
 	@$(MAKE) --no-print-directory -j 2 --output-sync=line lint quick
 
 quick: $(ENV)/ready $(LIBRARIES)
