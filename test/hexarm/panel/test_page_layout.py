@@ -81,7 +81,8 @@ def desk(open_page):
 
 
 @pytest.fixture(params=['phone', 'desk'])
-def page(request):
+def page(browser, request):
+    """`browser`: by which these tests are known to start another program."""
     return request.getfixturevalue(request.param)
 
 
