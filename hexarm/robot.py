@@ -6,6 +6,9 @@ Metres, radians, seconds. Poses are those of the platform, or of the tool, in th
 import asyncio
 from collections.abc import Iterable, Mapping
 
+import numpy as np
+
+from hexarm import saved_goals
 from hexarm.machines import load
 from hexarm.namespaces import NAMESPACE
 from hexarm.robot_client import PATIENCE, Progress, RobotClient
@@ -24,7 +27,7 @@ from manipulator.formatting import shown
 from manipulator.machine import Machine
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, pose_of
 from manipulator.pose import Pose
-from manipulator.saved_poses import SavedPoses, checked_name
+from manipulator.saved_poses import SavedPose, SavedPoses, checked_name
 from manipulator.states import MotionResult
 
 PLANNED_WITHIN = 60.0
@@ -132,14 +135,14 @@ class Robot:
         timeout: float = PATIENCE,
         progress: Progress | None = None,
     ) -> None:
-        """Moves to a pose, or to a saved one by name; with a `speed` (m/s) on a line from rest."""
-        goal = self.saved_poses.of(pose).pose if isinstance(pose, str) else pose_from(pose)
-        if speed is None:
-            self._client.begin(lambda: self._client.send_goal(goal), goal, progress)
-        else:
-            most = checked('speed', speed, above=0.0)
-            self._client.rest()
-            self._client.begin_path(poses_from([self._client.commanded(), goal]), most, progress)
+        """Moves to a pose, or to a saved one by name; with a `speed` (m/s) on a line from rest.
+
+        An arm takes a saved pose with the joints that it had: by a joint move, or on the line; it
+        is Refused where the line leads to other ones.
+        """
+        goal = self._goal(pose)
+        most = None if speed is None else checked('speed', speed, above=0.0)
+        self._begin_move(goal, most, progress)
         if wait:
             self.wait(timeout)
 
@@ -290,7 +293,8 @@ class Robot:
         total = len(steps) * int(checked('repeat', repeat, least=1.0))
         for done in range(total):
             step = steps[done % len(steps)]
-            self.move_to(saved.of(step.pose).pose, speed=most or step.speed)
+            self._begin_move(saved.of(step.pose), most or step.speed)
+            self.wait()
             self._client.spin(step.pause_s if rest is None else rest)
             if progress is not None:
                 progress((done + 1) / total)
@@ -357,9 +361,29 @@ class Robot:
         """Joint ranges and speeds, from the machine file."""
         return Limits.of(self._model())
 
-    def reach(self, pose: PoseLike) -> Reach:
+    def reach(self, pose: PoseLike | str) -> Reach:
         """Whether a pose can be reached, the reason if not, and how near each limit is."""
-        return reach(self._model(), pose_from(pose))
+        return reach(self._model(), self._goal(pose).pose)
+
+    def _goal(self, pose: PoseLike | str) -> SavedPose:
+        return self.saved_poses.of(pose) if isinstance(pose, str) else SavedPose(pose_from(pose))
+
+    def _begin_move(
+        self, saved: SavedPose, speed: float | None, progress: Progress | None = None
+    ) -> None:
+        goal, client = saved.pose, self._client
+        joints = None if saved.joints is None else saved_goals.joints_of(self._model(), saved)
+        if speed is not None:
+            client.rest()
+            start = client.commanded()
+            if joints is not None:
+                near = np.array([self.joints[name] for name in joints])
+                saved_goals.check_line(self._model(), start, near, saved)
+            client.begin_path(poses_from([start, goal]), speed, progress)
+        elif joints is not None:
+            client.begin(lambda: client.send_joints(joints), goal, progress)
+        else:
+            client.begin(lambda: client.send_goal(goal), goal, progress)
 
     def _go(self, place: str, wait: bool, timeout: float) -> None:
         self._client.begin(lambda: self._client.send_to(place))
