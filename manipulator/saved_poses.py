@@ -120,7 +120,7 @@ class SavedPoses:
 
     def of(self, name: str) -> SavedPose:
         """The pose of a name; InvalidInput names those that there are."""
-        if name not in self.poses:
+        if checked_name(name) not in self.poses:
             known = ', '.join(self.poses) or 'none'
             raise InvalidInput(f'no saved pose is called {shown(name)} (there are: {known})')
         return self.poses[name]
@@ -128,7 +128,7 @@ class SavedPoses:
     def steps(self, names: Sequence[str]) -> tuple[Step, ...]:
         """What names of sequences and poses mean, one after the other; InvalidInput as `of`."""
         found: list[Step] = []
-        for name in names:
+        for name in map(checked_name, names):
             if name in self.sequences:
                 found += self.sequences[name]
             else:

@@ -57,12 +57,19 @@ def add_driving(
     name: str,
     act: Act,
     epilog: str | None = None,
+    names_follow: bool = False,
 ) -> argparse.ArgumentParser:
-    """Declares a subcommand of one running machine, whose answer is that of `act`."""
+    """Declares a subcommand of one running machine, whose answer is that of `act`.
+
+    names_follow: of poses, among which a namespace that is left out could not be recognized.
+    """
     parser = commands.add_parser(name, epilog=epilog)
-    parser.add_argument(
-        'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
-    )
+    if names_follow:
+        parser.add_argument('namespace', type=namespace_of, metavar='NAMESPACE')
+    else:
+        parser.add_argument(
+            'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
+        )
     parser.add_argument('--json', action='store_true', help='answer for programs')
     add_units(parser)
     parser.set_defaults(run=running(act))
