@@ -2,7 +2,7 @@
 
 import queue
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from geometry_msgs.msg import PoseStamped
@@ -96,9 +96,14 @@ class RequestClient:
         elif request.do == 'speed':
             self._speeds.publish(Float64(data=min(max(request.value, 0.0), 1.0)))
         elif request.do == 'joint':
-            message = JointState(name=[request.name], position=[request.value])
-            message.header.stamp = self._node.get_clock().now().to_msg()
-            self._joints.publish(message)
+            self.send_joints({request.name: request.value})
+
+    def send_joints(self, named: Mapping[str, float]) -> None:
+        """A goal of joints (rad, m) by name; it replaces a goal that is not yet sent."""
+        self._goal = None
+        message = JointState(name=list(named), position=list(named.values()))
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._joints.publish(message)
 
     def request_goal(self, pose: Pose) -> None:
         """The newest goal replaces one that is not yet sent."""
