@@ -16,6 +16,8 @@ static struct frame pose_of(real *const pose[2])
     return frame;
 }
 
+#define POSE(k) ((struct frame[1]){pose_of(a + (k))})
+
 static int are_finite(const real *numbers, int count)
 {
     for (int k = 0; k < count; k++)
@@ -77,54 +79,33 @@ static Py_ssize_t each_chain_sigma_min(real *const *a)
     return 0;
 }
 
-static Py_ssize_t each_closed_branches(real *const *a)
-{
-    struct frame pose = pose_of(a + 1);
-    closed_branches(AS(struct closed_form, 0), &pose, a[3], ROWS(JOINTS, 4));
-    return 0;
-}
-
-static Py_ssize_t each_closed_gap(real *const *a)
-{
-    struct frame pose = pose_of(a + 1);
-    closed_gap(AS(struct closed_form, 0), &pose, AS(struct gap, 3));
-    return 0;
-}
+DO(closed_branches, closed_branches(AS(struct closed_form, 0), POSE(1), a[3], ROWS(JOINTS, 4)))
+DO(closed_gap, closed_gap(AS(struct closed_form, 0), POSE(1), AS(struct gap, 3)))
 
 /* All branches, unwrapped, and NaN; in sum how many of the joints to be near to are not finite. */
 static Py_ssize_t each_arm_branches(real *const *a)
 {
-    struct frame pose = pose_of(a + 1);
     real(*rows)[JOINTS] = ROWS(JOINTS, 4);
-    int count = arm_branches(AS(struct arm, 0), &pose, a[3], rows);
+    int count = arm_branches(AS(struct arm, 0), POSE(1), a[3], rows);
     for (int k = 0; k < count; k++)
         unwrap(&AS(struct arm, 0)->ranges, a[3], rows[k]);
     fill_nan(rows + count, rows + MOST_BRANCHES);
     return !are_finite(a[3], JOINTS);
 }
 
-static Py_ssize_t each_arm_inverse(real *const *a)
-{
-    struct frame pose = pose_of(a + 1);
-    return !arm_inverse(AS(struct arm, 0), &pose, a[3], a[4]);
-}
+SUM(arm_inverse, !arm_inverse(AS(struct arm, 0), POSE(1), a[3], a[4]))
+DO(arm_miss, arm_miss(AS(struct arm, 0), POSE(1), a[3]))
 
-static Py_ssize_t each_arm_miss(real *const *a)
-{
-    struct frame pose = pose_of(a + 1);
-    arm_miss(AS(struct arm, 0), &pose, a[3]);
-    return 0;
-}
-
-/* Candidates, and NaN; a[1] is the length and the loop. */
+/* Candidates, and NaN; a[1] is the length and the loop. In sum for how many poses they are
+   certain. */
 static Py_ssize_t each_general_candidates(real *const *a)
 {
-    struct frame pose = pose_of(a + 2);
+    int are_certain;
     real(*rows)[JOINTS] = ROWS(JOINTS, 4);
-    int count = general_candidates(AS(struct chain, 0), a[1][0], (int)a[1][1], &pose, rows,
-                                   &(int){0});
+    int count = general_candidates(AS(struct chain, 0), a[1][0], (int)a[1][1], POSE(2), rows,
+                                   &are_certain);
     fill_nan(rows + count, rows + MOST_CANDIDATES);
-    return 0;
+    return are_certain;
 }
 
 static Py_ssize_t all_arm_along(real *const *a, Py_ssize_t items)
@@ -134,29 +115,10 @@ static Py_ssize_t all_arm_along(real *const *a, Py_ssize_t items)
     return 0;
 }
 
-static Py_ssize_t each_decompose(real *const *a)
-{
-    decompose(AS(struct chain, 0), *a[1], a[2], AS(struct decomposed, 3));
-    return 0;
-}
-
-static Py_ssize_t each_turning(real *const *a)
-{
-    turning(AS(struct decomposed, 0), a[1], a[2]);
-    return 0;
-}
-
-static Py_ssize_t each_line_rates(real *const *a)
-{
-    line_rates(AS(struct decomposed, 0), *a[1], a[2], a[3], AS(struct line, 4));
-    return 0;
-}
-
-static Py_ssize_t each_damped_rates(real *const *a)
-{
-    damped_rates(AS(struct decomposed, 0), *a[1], a[2], a[3]);
-    return 0;
-}
+DO(decompose, decompose(AS(struct chain, 0), *a[1], a[2], AS(struct decomposed, 3)))
+DO(turning, turning(AS(struct decomposed, 0), a[1], a[2]))
+DO(line_rates, line_rates(AS(struct decomposed, 0), *a[1], a[2], a[3], AS(struct line, 4)))
+DO(damped_rates, damped_rates(AS(struct decomposed, 0), *a[1], a[2], a[3]))
 
 /* Adds what is missed in a tick of a[1][1] seconds to the way back; it and the tool's twist are in
    metres again. */
@@ -172,24 +134,10 @@ static Py_ssize_t each_part_driven(real *const *a)
     return 0;
 }
 
-static Py_ssize_t each_room_of(real *const *a)
-{
-    room_of(AS(struct joint_limits, 0), a[1], a[2]);
-    return 0;
-}
-
-static Py_ssize_t each_scale_rates(real *const *a)
-{
-    *AS(struct rate_scale, 5) =
-        scale_rates(AS(struct joint_limits, 0), a[1], a[2], a[3], a[4][0], a[4][1]);
-    return 0;
-}
-
-static Py_ssize_t each_follow_rates(real *const *a)
-{
-    follow_rates(AS(struct joint_limits, 0), a[1], a[3][0], a[2], a[3][1], a[4], a[5]);
-    return 0;
-}
+DO(room_of, room_of(AS(struct joint_limits, 0), a[1], a[2]))
+DO(scale_rates, *AS(struct rate_scale, 5) =
+                    scale_rates(AS(struct joint_limits, 0), a[1], a[2], a[3], a[4][0], a[4][1]))
+DO(follow_rates, follow_rates(AS(struct joint_limits, 0), a[1], a[3][0], a[2], a[3][1], a[4], a[5]))
 
 struct function ARM_FUNCTIONS[] = {
     EACH(chain_forward, ONCE(struct chain), IN(real[6]), OUT(real[3]), OUT(real[9])),

@@ -1,7 +1,5 @@
 /* Six revolute joints in a row: docs/arm-kinematics.md, 1. */
-#ifndef KERNEL_CHAIN_H
-#define KERNEL_CHAIN_H
-
+#pragma once
 #include "real.h"
 
 enum { JOINTS = 6 };
@@ -38,5 +36,3 @@ void chain_jacobian(const posture *turned, real jacobian[6][JOINTS]);
 
 /* Divides the metres of a Jacobian by a length. */
 void scale_jacobian(real length, real jacobian[6][JOINTS]);
-
-#endif

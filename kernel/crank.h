@@ -1,7 +1,5 @@
 /* Legs with a crank and a rod: docs/kinematics.md, 2. */
-#ifndef KERNEL_CRANK_H
-#define KERNEL_CRANK_H
-
+#pragma once
 #include "real.h"
 
 enum { LEGS = 6 };
@@ -27,5 +25,3 @@ void leg_gaps(const struct crank_legs *legs, const real position[3], const real 
    (2.2); `in` may be null. NaN for a leg that does not close. Returns how many do not. */
 int crank_elbows(const struct crank_legs *legs, const real position[3], const real rotation[9],
                  real out[LEGS], real *in);
-
-#endif

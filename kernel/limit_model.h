@@ -1,7 +1,5 @@
 /* A platform's limits about one place, and distances from it: docs/workspace.md, 1 and 2. */
-#ifndef KERNEL_LIMIT_MODEL_H
-#define KERNEL_LIMIT_MODEL_H
-
+#pragma once
 #include "descent.h"
 
 enum { BOUNDS = 2 * VALUES };
@@ -42,5 +40,3 @@ static inline real length_of(const real v[6])
         square += v[k] * v[k];
     return real_sqrt(square);
 }
-
-#endif

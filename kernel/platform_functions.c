@@ -35,15 +35,8 @@ static void copy_pose(real *const start[2], real *const there[2])
     memcpy(there[1], start[1], 9 * sizeof(real));
 }
 
-static Py_ssize_t each_leg_inverse(real *const *a)
-{
-    return leg_inverse(AS(struct legs, 0), a[1], a[2], a[3], a[4]);
-}
-
-static Py_ssize_t each_leg_branches(real *const *a)
-{
-    return leg_branches(AS(struct legs, 0), a[1], a[2], a[3], a[4]);
-}
+SUM(leg_inverse, leg_inverse(AS(struct legs, 0), a[1], a[2], a[3], a[4]))
+SUM(leg_branches, leg_branches(AS(struct legs, 0), a[1], a[2], a[3], a[4]))
 
 static Py_ssize_t each_leg_points(real *const *a)
 {
@@ -118,11 +111,7 @@ static Py_ssize_t each_platform_forward(real *const *a)
     return 0;
 }
 
-static Py_ssize_t each_limited_values(real *const *a)
-{
-    limited_values(AS(struct platform, 0), a[1], a[2], a[3], a[4]);
-    return 0;
-}
+DO(limited_values, limited_values(AS(struct platform, 0), a[1], a[2], a[3], a[4]))
 
 /* Stack; whether each end begins where the one before came to, all of the row then ending with the
    first that does not settle; ends; free twists; sections; whether they settled. */
@@ -135,7 +124,8 @@ static Py_ssize_t all_stack_sections(real *const *a, Py_ssize_t items)
         if (i > 0 && *a[1] != 0) {
             if (a[7][i - 1] == 0)
                 continue;
-            memcpy(free, free - 6 * MOST_SECTIONS, 6 * MOST_SECTIONS * sizeof(real));
+            for (int k = 0; k < 6 * MOST_SECTIONS; k++)
+                free[k] = free[k - 6 * MOST_SECTIONS];
         }
         memcpy(end.position, a[2] + 3 * i, sizeof end.position);
         memcpy(end.rotation, a[3] + 9 * i, sizeof end.rotation);
@@ -148,11 +138,7 @@ static Py_ssize_t all_stack_sections(real *const *a, Py_ssize_t items)
     return 0;
 }
 
-static Py_ssize_t each_limit_ranges(real *const *a)
-{
-    *AS(struct limit_ranges, 3) = limit_ranges(AS(struct platform, 0), a[1], a[2]);
-    return 0;
-}
+DO(limit_ranges, *AS(struct limit_ranges, 3) = limit_ranges(AS(struct platform, 0), a[1], a[2]))
 
 /* Writes 1 for a configuration that keeps all limits, else 0; in sum how many do. */
 static Py_ssize_t each_keeps_limits(real *const *a)
@@ -162,23 +148,9 @@ static Py_ssize_t each_keeps_limits(real *const *a)
     return kept;
 }
 
-static Py_ssize_t each_rotation_exp(real *const *a)
-{
-    rotation_exp(a[0], a[1]);
-    return 0;
-}
-
-static Py_ssize_t each_rotation_log(real *const *a)
-{
-    rotation_log(a[0], a[1]);
-    return 0;
-}
-
-static Py_ssize_t each_quaternion_of(real *const *a)
-{
-    quaternion_of(a[0], a[1]);
-    return 0;
-}
+DO(rotation_exp, rotation_exp(a[0], a[1]))
+DO(rotation_log, rotation_log(a[0], a[1]))
+DO(quaternion_of, quaternion_of(a[0], a[1]))
 
 /* Tolerance; quaternions. In sum how many are longer or shorter than one by more than that. */
 static Py_ssize_t each_rotation_of(real *const *a)
@@ -199,11 +171,7 @@ static Py_ssize_t each_moved(real *const *a)
     return !(sum < INFINITY);
 }
 
-static Py_ssize_t each_twist_between(real *const *a)
-{
-    se3_twist(a[0], a[1], a[2], a[3], a[4]);
-    return 0;
-}
+DO(twist_between, se3_twist(a[0], a[1], a[2], a[3], a[4]))
 
 static Py_ssize_t all_least_distance(real *const *a, Py_ssize_t items)
 {
@@ -238,18 +206,10 @@ static Py_ssize_t all_first_free_path(real *const *a, Py_ssize_t items)
 }
 
 /* Two segments of six numbers each; their distance. */
-static Py_ssize_t each_segment_distance(real *const *a)
-{
-    *a[2] = segment_distance(a[0], a[1]);
-    return 0;
-}
+DO(segment_distance, *a[2] = segment_distance(a[0], a[1]))
 
 /* Segments and boxes; how far each segment is from breaking the rule of its box. */
-static Py_ssize_t each_box_clearance(real *const *a)
-{
-    *a[2] = box_clearance(a[0], AS(struct box, 1));
-    return 0;
-}
+DO(box_clearance, *a[2] = box_clearance(a[0], AS(struct box, 1)))
 
 struct function PLATFORM_FUNCTIONS[] = {
     EACH(leg_inverse, ONCE(struct legs), IN(real[3]), IN(real[9]), MAYBE(real[6]), OUT(real[6])),

@@ -40,6 +40,19 @@ struct function {
 #define MAYBE(type) {OPTIONAL, NUMBERS(type)}
 #define OUT(type) {WRITTEN, NUMBERS(type)}
 
+/* each_NAME where one call is all; what DO calls adds nothing. */
+#define DO(name, ...)                                                                             \
+    static Py_ssize_t each_##name(real *const *a)                                                 \
+    {                                                                                             \
+        __VA_ARGS__;                                                                              \
+        return 0;                                                                                 \
+    }
+#define SUM(name, ...)                                                                            \
+    static Py_ssize_t each_##name(real *const *a)                                                 \
+    {                                                                                             \
+        return __VA_ARGS__;                                                                       \
+    }
+
 /* An array that holds structs, or rows of n numbers. */
 #define AS(type, k) ((type *)a[k])
 #define ROWS(n, k) ((real(*)[n])a[k])

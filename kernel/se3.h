@@ -1,7 +1,5 @@
 /* Displacements: docs/kinematics.md, 3. A twist is v, then the rotation vector, both base axes. */
-#ifndef KERNEL_SE3_H
-#define KERNEL_SE3_H
-
+#pragma once
 #include "real.h"
 
 /* Rodrigues' formula: the rotation by |w| about w. */
@@ -20,5 +18,3 @@ void se3_move(const real twist[6], real position[3], real rotation[9]);
 /* The twist that moves one pose to another. */
 void se3_twist(const real from_position[3], const real from_rotation[9],
                    const real to_position[3], const real to_rotation[9], real twist[6]);
-
-#endif

@@ -1,7 +1,5 @@
 /* Platforms on platforms, their redundancy resolved: docs/kinematics.md, 9. */
-#ifndef KERNEL_STACK_H
-#define KERNEL_STACK_H
-
+#pragma once
 #include "real.h"
 
 enum { MOST_SECTIONS = 6 };
@@ -26,5 +24,3 @@ struct stack {
    begins; written. */
 int stack_sections(const struct stack *stack, const struct placement *end, real *free,
                    struct placement sections[MOST_SECTIONS]);
-
-#endif

@@ -1,7 +1,5 @@
 /* The sum (9.2) that a stack makes least, and its slopes: docs/kinematics.md, 9.2. */
-#ifndef KERNEL_STACK_SUM_H
-#define KERNEL_STACK_SUM_H
-
+#pragma once
 #include "stack.h"
 
 enum { FREE = 6 * (MOST_SECTIONS - 1) };
@@ -25,5 +23,3 @@ real stack_sum(const struct stack *stack, const struct placement *end, const rea
 
 void put_stack_normal(const struct stack *stack, const struct placement *end, const real *free,
                       struct normal *normal);
-
-#endif
