@@ -1,14 +1,8 @@
 /* Six revolute joints in a row: docs/arm-kinematics.md, 1. */
 #pragma once
-#include "real.h"
+#include "se3.h"
 
 enum { JOINTS = 6 };
-
-/* What maps coordinates of one frame to another: rotation, row by row, and the frame's origin. */
-struct frame {
-    real rotation[9];
-    real position[3];
-};
 
 /* At zero angles, in base axes: unit axes, a point of each axis, the tool. Metres. */
 struct chain {
@@ -24,9 +18,8 @@ typedef struct chain posture;
 void chain_displacements(const struct chain *chain, const real joints[JOINTS],
                          struct frame moved[JOINTS + 1]);
 
-/* D = T M^-1: how far the pose displaces what the last joint carries; a point displaced so. */
+/* D = T M^-1: how far the pose displaces what the last joint carries. */
 void displacement(const struct chain *chain, const struct frame *pose, struct frame *moved);
-void moved_point(const struct frame *moved, const real point[3], real there[3]);
 
 /* Axes, points and tool where the joints take them. */
 void chain_posture(const struct chain *chain, const real joints[JOINTS], posture *turned);

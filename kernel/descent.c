@@ -61,7 +61,7 @@ static int put_step(const struct model *model, real curvature[6][6], real step[6
 /* Puts a trial back inside the limits that the step touches, by Newton's method; returns whether
    it keeps all then. */
 static int is_put_right(const struct descent *d, const struct model *model,
-                        const real multipliers[BOUNDS], struct place *trial)
+                        const real multipliers[BOUNDS], struct frame *trial)
 {
     real margins[BOUNDS], normals[BOUNDS][6], slack[BOUNDS], weights[BOUNDS], step[6];
     const real nothing[6] = {0};
@@ -92,16 +92,16 @@ static int is_put_right(const struct descent *d, const struct model *model,
 
 /* The nearest to the target of parts of a step, from all of it down; 0 where none is nearer. */
 static int searched(const struct descent *d, const struct model *model, const real step[6],
-                    const real multipliers[BOUNDS], struct place *place)
+                    const real multipliers[BOUNDS], struct frame *place)
 {
-    const struct place from = *place;
+    const struct frame from = *place;
     real best = length_of(model->goal) * (1 - REAL(1e-12)), share = 1;
     int is_found = 0;
     for (int i = 0; i < SHARES; i++, share /= 2) {
         real part[6], offset[6];
         for (int k = 0; k < 6; k++)
             part[k] = share * step[k];
-        struct place trial = displaced(d, from, part);
+        struct frame trial = displaced(d, from, part);
         int is_inside = is_put_right(d, model, multipliers, &trial);
         put_offset(d, &trial, d->target_position, d->target_rotation, offset);
         if (is_inside && length_of(offset) < best) {
@@ -170,7 +170,7 @@ static void learn(real curvature[6][6], const struct model *here, const struct m
 
 void descend(const struct descent *descent, int most_steps, real position[3], real rotation[9])
 {
-    struct place place;
+    struct frame place;
     struct model models[2], *here = &models[0], *there = &models[1];
     real curvature[6][6], step[6], multipliers[BOUNDS], taken[6];
     int is_fresh = 1;
@@ -179,7 +179,7 @@ void descend(const struct descent *descent, int most_steps, real position[3], re
     reset(curvature);
     put_model(descent, &place, here);
     for (int count = 0; count < most_steps; count++) {
-        const struct place from = place;
+        const struct frame from = place;
         if (!put_step(here, curvature, step, multipliers) ||
             !searched(descent, here, step, multipliers, &place)) {
             if (is_fresh)

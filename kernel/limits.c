@@ -3,6 +3,7 @@
 #include "matrix6.h"
 #include "rods.h"
 #include "trigonometry.h"
+#include "vector.h"
 
 #define BEYOND_ANY_SINE 2
 /* Below, pivots no longer tell singular values apart. */
@@ -27,12 +28,8 @@ static struct products products_of(const struct platform *platform, const struct
 {
     struct products p;
     const real(*home)[LEGS] = platform->home_rod, (*normal)[LEGS] = platform->legs.shape.normal;
-    const real *h = platform->home_rotation;
     real r[9]; /* from home's orientation */
-    for (int i = 0; i < 9; i++) {
-        const real *row = rotation + i / 3 * 3, *of_home = h + i % 3 * 3;
-        r[i] = row[0] * of_home[0] + row[1] * of_home[1] + row[2] * of_home[2];
-    }
+    product9_back(rotation, platform->home_rotation, r);
     for (int i = 0; i < LEGS; i++) {
         real x = rods->unit[0][i], y = rods->unit[1][i], z = rods->unit[2][i];
         real a = home[0][i], b = home[1][i], c = home[2][i];

@@ -118,7 +118,7 @@ DO(limited_values, limited_values(AS(struct platform, 0), a[1], a[2], a[3], a[4]
 static Py_ssize_t all_stack_sections(real *const *a, Py_ssize_t items)
 {
     for (Py_ssize_t i = 0; i < items; i++) {
-        struct placement end, sections[MOST_SECTIONS];
+        struct frame end, sections[MOST_SECTIONS];
         real *free = a[4] + 6 * MOST_SECTIONS * i;
         a[7][i] = 0;
         if (i > 0 && *a[1] != 0) {

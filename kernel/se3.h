@@ -2,6 +2,19 @@
 #pragma once
 #include "real.h"
 
+/* What maps coordinates of one frame to another: the frame's origin, and the rotation, row by row. */
+struct frame {
+    real position[3];
+    real rotation[9];
+};
+
+/* a b: from b's frame, through a's. */
+struct frame composed(const struct frame *a, const struct frame *b);
+struct frame inverted(const struct frame *a);
+
+/* A point of the inner frame in the outer one. */
+void moved_point(const struct frame *moved, const real point[3], real there[3]);
+
 /* Rodrigues' formula: the rotation by |w| about w. */
 void rotation_exp(const real w[3], real rotation[9]);
 

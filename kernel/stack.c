@@ -14,7 +14,7 @@ enum { MOST_STEPS = 30, MOST_CUTS = 6 };
 
 /* The Hessian of half the sum by differences of its gradient, into the lower triangle of `matrix`.
    J'J is no substitute for it: where sections are far from home, steps by it alternate for ever. */
-static void put_hessian(const struct stack *stack, const struct placement *end, const real *free,
+static void put_hessian(const struct stack *stack, const struct frame *end, const real *free,
                         const struct normal *here, real matrix[FREE][FREE])
 {
     real moved[FREE];
@@ -64,7 +64,7 @@ static real solve(int size, real L[FREE][FREE], const real gradient[FREE], real 
 }
 
 /* Goes along the step as far as the sum does not grow; 0 where it grows at once. */
-static int advance(const struct stack *stack, const struct placement *end,
+static int advance(const struct stack *stack, const struct frame *end,
                    const struct normal *normal, const real step[FREE], real *free)
 {
     real share = 1, trial[FREE];
@@ -80,7 +80,7 @@ static int advance(const struct stack *stack, const struct placement *end,
 }
 
 /* A Hessian serves as long as steps shrink well with it. Returns whether the descent settled. */
-static int descended(const struct stack *stack, const struct placement *end, real *free)
+static int descended(const struct stack *stack, const struct frame *end, real *free)
 {
     struct normal normal;
     real L[FREE][FREE], step[FREE], before = 0;
@@ -104,8 +104,8 @@ static int descended(const struct stack *stack, const struct placement *end, rea
     return 0;
 }
 
-int stack_sections(const struct stack *stack, const struct placement *end, real *free,
-                   struct placement sections[MOST_SECTIONS])
+int stack_sections(const struct stack *stack, const struct frame *end, real *free,
+                   struct frame sections[MOST_SECTIONS])
 {
     int is_settled = stack->count == 1 || descended(stack, end, free);
     struct stack_placed p = stack_placed(stack, end, free);
