@@ -58,9 +58,8 @@ static Py_ssize_t each_leg_gains(real *const *a)
 static Py_ssize_t each_screw_turns(real *const *a)
 {
     const struct legs *legs = AS(struct legs, 0);
-    real base[3][LEGS], columns[6][LEGS] = {{0}};
-    memcpy(base, legs->shape.centre, sizeof base);
-    struct rods rods = rods_of(base, legs->shape.end, a[1], a[2]);
+    real columns[6][LEGS] = {{0}};
+    struct rods rods = rods_of(legs->shape.centre, legs->shape.end, a[1], a[2]);
     screw_lengths(&legs->screws, &rods, a[2], a[3]);
     add_screw_columns(&legs->screws, &rods, a[2], 1, columns);
     by_leg(columns, a[4], 6);
@@ -70,12 +69,10 @@ static Py_ssize_t each_screw_turns(real *const *a)
 /* Platform joints, base points, poses: the rods' unit vectors, and the leg Jacobian. */
 static Py_ssize_t each_leg_jacobian(real *const *a)
 {
-    struct newton_problem problem;
-    const struct newton_problem *ends = &problem;
-    real columns[6][LEGS];
-    by_axis(a[0], problem.end, 3);
-    by_axis(a[1], problem.base, 3);
-    struct rods rods = rods_of(problem.base, ends->end, a[2], a[3]);
+    real end[3][LEGS], base[3][LEGS], columns[6][LEGS];
+    by_axis(a[0], end, 3);
+    by_axis(a[1], base, 3);
+    struct rods rods = rods_of(base, end, a[2], a[3]);
     by_leg(rods.unit, a[4], 3);
     leg_columns(&rods, 1, columns);
     by_leg(columns, a[5], 6);

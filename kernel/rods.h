@@ -9,7 +9,7 @@ struct rods {
     real length[LEGS];
 };
 
-struct rods rods_of(real base[3][LEGS], const real end[3][LEGS], const real position[3],
+struct rods rods_of(const real base[3][LEGS], const real end[3][LEGS], const real position[3],
                     const real rotation[9]);
 
 /* The Jacobian's columns, row i of which says how fast rod i grows with a twist: (3.1). Rotations
