@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "cholesky.h"
 #include "least_distance.h"
 #include "limit_model.h"
 
@@ -9,52 +10,25 @@
 #define LEAST_CURVATURE REAL(0.2)
 enum { SHARES = 10, RESTORATIONS = 2 };
 
-/* Cholesky's factor L of a symmetric matrix; 0 where it is not positive. */
-static int put_root(real matrix[6][6], real root[6][6])
-{
-    for (int i = 0; i < 6; i++)
-        for (int j = 0; j <= i; j++) {
-            real rest = matrix[i][j];
-            for (int k = 0; k < j; k++)
-                rest -= root[i][k] * root[j][k];
-            if (i == j && !(rest > 0))
-                return 0;
-            root[i][j] = i == j ? real_sqrt(rest) : rest / root[j][j];
-        }
-    return 1;
-}
-
-static void divide_by_root(real root[6][6], real v[6])
-{
-    for (int i = 0; i < 6; i++) {
-        for (int k = 0; k < i; k++)
-            v[i] -= root[i][k] * v[k];
-        v[i] /= root[i][i];
-    }
-}
-
 /* The best step within the limits, by a quadratic model, and the limits' multipliers: (2.1). */
 static int put_step(const struct model *model, real curvature[6][6], real step[6],
                     real multipliers[BOUNDS])
 {
-    real root[6][6], normals[BOUNDS][6];
-    if (!put_root(curvature, root))
+    real factor[6][6], normals[BOUNDS][6];
+    memcpy(factor, curvature, sizeof factor);
+    if (!factorise(6, 6, factor[0], 0))
         return 0;
     memcpy(step, model->goal, sizeof model->goal);
     memcpy(normals, model->normal, sizeof normals);
-    divide_by_root(root, step);
+    divide_by_factor(6, 6, factor[0], step);
     for (int i = 0; i < model->count; i++)
-        divide_by_root(root, normals[i]);
+        divide_by_factor(6, 6, factor[0], normals[i]);
     if (!least_distance(step, (const real(*)[6])normals, model->slack, model->count, multipliers))
         return 0;
     for (int i = 0; i < model->count; i++)
         for (int k = 0; k < 6; k++)
             step[k] += multipliers[i] * normals[i][k];
-    for (int i = 5; i >= 0; i--) {
-        for (int k = i + 1; k < 6; k++)
-            step[i] -= root[k][i] * step[k];
-        step[i] /= root[i][i];
-    }
+    divide_by_transposed(6, 6, factor[0], step);
     return 1;
 }
 

@@ -1,5 +1,6 @@
 #include <string.h>
 
+#include "cholesky.h"
 #include "stack_sum.h"
 
 enum { MOST_STEPS = 30, MOST_CUTS = 6 };
@@ -29,37 +30,16 @@ static void put_hessian(const struct stack *stack, const struct frame *end, cons
     }
 }
 
-/* By Cholesky, the lower triangle in place; 0 for a matrix that is not positive definite. */
-static int factored(int size, real matrix[FREE][FREE])
-{
-    for (int i = 0; i < size; i++)
-        for (int k = 0; k <= i; k++) {
-            real sum = matrix[i][k];
-            for (int j = 0; j < k; j++)
-                sum -= matrix[i][j] * matrix[k][j];
-            if (i == k && !(sum > 0))
-                return 0;
-            matrix[i][k] = i == k ? real_sqrt(sum) : sum / matrix[k][k];
-        }
-    return 1;
-}
-
 /* step = -(L L')^-1 gradient. Returns its longest component. */
 static real solve(int size, real L[FREE][FREE], const real gradient[FREE], real step[FREE])
 {
     real longest = 0;
-    for (int i = 0; i < size; i++) {
+    for (int i = 0; i < size; i++)
         step[i] = -gradient[i];
-        for (int j = 0; j < i; j++)
-            step[i] -= L[i][j] * step[j];
-        step[i] /= L[i][i];
-    }
-    for (int i = size - 1; i >= 0; i--) {
-        for (int j = i + 1; j < size; j++)
-            step[i] -= L[j][i] * step[j];
-        step[i] /= L[i][i];
+    divide_by_factor(size, FREE, L[0], step);
+    divide_by_transposed(size, FREE, L[0], step);
+    for (int i = 0; i < size; i++)
         longest = fmax(longest, real_fabs(step[i]));
-    }
     return longest;
 }
 
@@ -89,9 +69,9 @@ static int descended(const struct stack *stack, const struct frame *end, real *f
         real longest = before > 0 ? solve(normal.size, L, normal.gradient, step) : INFINITY;
         if (!(longest <= SHRINKING * before)) {
             put_hessian(stack, end, free, &normal, L);
-            if (!factored(normal.size, L)) {
+            if (!factorise(normal.size, FREE, L[0], 0)) {
                 memcpy(L, normal.matrix, sizeof L);
-                factored(normal.size, L); /* J'J is at least the unit matrix */
+                factorise(normal.size, FREE, L[0], 0); /* J'J is at least the unit matrix */
             }
             longest = solve(normal.size, L, normal.gradient, step);
         }
