@@ -16,6 +16,7 @@ from hexarm.machine_check import problems_of, report_of
 from hexarm.machines import content_of, find, load
 from leg_kinds import TILTED_CRANKS
 from manipulator.config import build, parse_yaml
+from manipulator.errors import ConfigError
 from sampling import some
 
 CONFIG = Path(__file__).parents[3] / 'config'
@@ -54,6 +55,22 @@ def test_shipped_files_are_good(file):
     if 'kind:' in file.read_text():
         report = report_of(content_of(file))
         assert (report.problems, report.warnings) == ((), ())
+
+
+@pytest.mark.parametrize(
+    ('text', 'words'),
+    [
+        ((CONFIG / 'joystick_xbox.yaml').read_text(), 'its keys are those of a gamepad'),
+        ('poses: {}', 'its keys are those of saved poses'),
+        ('servers: {}', 'kind, geometry, limits, motion are missing'),
+    ],
+)
+def test_a_file_for_something_else_is_one_line(tmp_path, text, words):
+    (problem,) = problems_of(text)
+    assert problem.startswith(f'this is no machine file: {words}')
+    (tmp_path / 'other.yaml').write_text(text)
+    with pytest.raises(ConfigError, match='this is no machine file'):
+        load(str(tmp_path / 'other.yaml'))
 
 
 def test_misspelt_key_names_itself_and_the_nearest():
