@@ -141,7 +141,10 @@ class PanelNode(Node):
 
     def _tick(self) -> None:
         for request in self._requests.new():
-            self._take(request)
+            try:
+                self._take(request)
+            except ManipulatorError as error:
+                self._requests.notice = str(error)
         stick = self._joystick.stick()
         twist = NO_TWIST if stick is None else stick * self._full * self._share
         self._topics.drive(twist, '', stick is not None)
@@ -166,6 +169,8 @@ class PanelNode(Node):
             self._topics.choose(request.name)
         elif request.do == 'share':
             self._share = min(max(request.value, 0.01), 1.0)
+        elif request.do == 'tool':
+            self._machine.frames.with_tool(request.name)  # raises what trajectory logs
         elif request.do == 'show_reach':
             self._scene.set_reach_visible(request.value > 0)
         elif request.do == 'clear_trail':
@@ -213,11 +218,7 @@ class PanelNode(Node):
         self._ask_reach(pose)
 
     def _go_to(self, saved: SavedPose) -> None:
-        try:
-            joints = saved_goals.joints_of(self._machine, saved)
-        except ManipulatorError as error:
-            self._requests.notice = str(error)
-            return
+        joints = saved_goals.joints_of(self._machine, saved)
         self._controls.follow(saved.pose)
         if joints is None:
             self._request_goal(saved.pose)
