@@ -17,7 +17,9 @@ CHECKS_PER_STEP = 12
 BURN_IN = 80
 THINNING = 8
 WALKERS = 1000
-BISECTIONS = 50
+BISECTIONS = 30
+MOST_LENGTHS = 100
+"""Characteristic lengths within which an axis has its end."""
 
 
 def sample(
@@ -88,8 +90,11 @@ def _is_path_free(machine: Machine, pose: Pose, twist: Array) -> Mask:
 
 def _travel(machine: Machine, axis: int, step: float) -> float:
     """The distance from home to the first limit, along `axis` in the direction of `step`."""
-    steps = np.arange(1, 100 * CHECKS_PER_LENGTH)
-    inside = admits(machine, _shifted(machine.kinematics.home, axis, step * steps))
+    for lengths in (1, 10, MOST_LENGTHS):
+        steps = np.arange(1, lengths * CHECKS_PER_LENGTH)
+        inside = admits(machine, _shifted(machine.kinematics.home, axis, step * steps))
+        if not inside.all():
+            break
     last = int(np.argmin(inside))
     low, high = last * step, (last + 1) * step
     for _ in range(BISECTIONS):
