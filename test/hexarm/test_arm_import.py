@@ -44,7 +44,7 @@ def robot(links, joints, name='arm'):
 
 
 def plain(*changes, links=(), kind='revolute', count=6):
-    """link_0 to link_6, each joint's axis across the one before; changes: further joints."""
+    """link_0 to link_6, the last three axes through one point; changes: further joints."""
     names = [f'link_{i}' for i in range(count + 1)]
     axes = [(0, 0, 1), (0, 1, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0)]
     joints = [
@@ -53,7 +53,7 @@ def plain(*changes, links=(), kind='revolute', count=6):
             names[i],
             names[i + 1],
             kind,
-            (0.05, 0, 0.1),
+            (0.05, 0, 0.1 if i < 4 else 0),
             axis=axes[i],
         )
         for i in range(count)
