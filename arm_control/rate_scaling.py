@@ -72,8 +72,8 @@ class RateScaling:
     ) -> Scale:
         """The part of `rates` that every joint can drive, and brake from before its stop.
 
-        joints (6,) are where they are; bend (6,) in rad/s² is how `rates` change while the tool goes
-        straight on with all of them.
+        joints (6,) are where they are; bend (6,) in rad/s² is how `rates` change while the tool
+        goes straight on with all of them.
         slowing: the part of itself (1/s) by which the rates may fall before a stop.
         """
         scale, time = np.empty(3), np.array((dt, slowing))
