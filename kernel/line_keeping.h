@@ -1,7 +1,7 @@
 /* Joint rates that keep the tool on its line: docs/arm-kinematics.md, 8. */
 #pragma once
 #include "chain.h"
-#include "linear6.h"
+#include "matrix6.h"
 
 /* The Jacobian with its metres divided by the arm's length, J = U S V'. Twists are scaled alike. */
 struct decomposed {
