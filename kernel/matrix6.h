@@ -2,8 +2,8 @@
 #pragma once
 #include "real.h"
 
-/* Solves M x = b by Gauss's elimination with row pivots. M is destroyed, b becomes x. Returns the
-   determinant; where it is 0, b is of no use. */
+/* For (3.2) of docs/kinematics.md: solves M x = b by Gauss's elimination with row pivots. M is
+   destroyed, b becomes x. Returns the determinant; where it is 0, b is of no use. */
 real eliminate6(real matrix[6][6], real b[6]);
 
 /* Solves (A' A + damping I) x = A' b, damping > 0, by Cholesky's factors: the damped step of

@@ -16,9 +16,9 @@ struct rate_scale {
     real joint; /* from 1 */
 };
 
-/* The part of `rates` that every joint can drive, and brake from before its stop: 8.1 and 8.4. `bend` is how
-   they change while the tool goes straight on with all of them, `slowing` the part of itself (1/s)
-   by which they may fall before a stop. */
+/* The part of `rates` that every joint can drive, and brake from before its stop: 8.1 and 8.4.
+   `bend` is how they change while the tool goes straight on with all of them, `slowing` the part of
+   itself (1/s) by which they may fall before a stop. */
 struct rate_scale scale_rates(const struct joint_limits *limits, const real joints[JOINTS],
                               const real rates[JOINTS], const real bend[JOINTS], real dt,
                               real slowing);
