@@ -46,11 +46,20 @@ def profile_within(bounds: Sequence[float], slowdown: float = 1.0) -> Profile:
     names = ('velocity', 'acceleration', 'jerk')
     for power, (name, bound) in enumerate(zip(names, bounds, strict=True), start=1):
         setattr(request, f'max_{name}', [min(bound, FASTEST) / slowdown**power])
-    trajectory = ruckig.Trajectory(1)
-    result = ruckig.Ruckig(1).calculate(request, trajectory)
-    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise Refused(f'no jerk-limited profile was found ({result.name})')
+    trajectory = _calculated(request, 1)
     return Profile(float(trajectory.duration), trajectory)
+
+
+def _calculated(request: Any, coordinates: int) -> Any:
+    """The trajectory of so many coordinates; Refused where ruckig finds none, or fails."""
+    trajectory = ruckig.Trajectory(coordinates)
+    try:
+        result = ruckig.Ruckig(coordinates).calculate(request, trajectory)
+    except ruckig.RuckigError as error:
+        raise Refused('no jerk-limited move was found (ruckig failed)') from error
+    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
+        raise Refused(f'no jerk-limited move was found ({result.name})')
+    return trajectory
 
 
 def coordinates(state: MotionState, reference: Array) -> tuple[Array, Array, Array]:
@@ -178,8 +187,5 @@ def plan_move_in_motion(
             bounds = np.minimum(bounds, limits.axis_speeds / slowdown).tolist()
         ruckig_name = 'velocity' if name == 'speed' else name
         setattr(request, f'max_{ruckig_name}', bounds)
-    trajectory = ruckig.Trajectory(6)
-    result = ruckig.Ruckig(6).calculate(request, trajectory)
-    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise Refused(f'no jerk-limited move was found ({result.name})')
+    trajectory = _calculated(request, 6)
     return MoveInMotion(goal, float(trajectory.duration), trajectory)
