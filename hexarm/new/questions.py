@@ -17,9 +17,8 @@ from hexarm.new.reading import (
     words,
 )
 from hexarm.new.servos import SERVOS
-from manipulator.config import nearest
 from manipulator.errors import InvalidInput
-from manipulator.formatting import shown
+from manipulator.formatting import did_you_mean, nearest, shown
 
 Answers = Mapping[str, Any]
 
@@ -200,9 +199,7 @@ def checked(given: Mapping[str, Any]) -> dict[str, Any]:
     for key in given:
         if key not in known:
             near = nearest(str(key), sorted(known))
-            problems.append(
-                f'{shown(key)}: unknown' + (f', did you mean {near!r}?' if near else '')
-            )
+            problems.append(f'{shown(key)}: unknown{did_you_mean(near)}')
         elif key not in answers and not any(p.startswith(f'{key}:') for p in problems):
             problems.append(f'{key}: not a measure of this kind of machine')
     if problems:

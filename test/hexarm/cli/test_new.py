@@ -156,7 +156,7 @@ def test_everything_that_is_wrong_is_named_at_once():
     assert str(refused.value).splitlines() == [
         'rod_length_mm: -3 is outside 0.001 … 1e+06',
         "servo: 'SG9' is not one of SG90, MG90S, MG996R, DS3218, DS3218-270, XL330, STS3215, "
-        'other, driver, did you mean SG90?',
+        "other, driver, did you mean 'SG90'?",
         "'rod_lenght_mm': unknown, did you mean 'rod_length_mm'?",
     ]
     with pytest.raises(InvalidInput, match='stroke_mm: not a measure of this kind of machine'):
@@ -202,7 +202,7 @@ def test_a_person_is_asked_again_until_all_is_understood():
     assert text == new.machine_text(checked({'description': 'mine', **LEVEL}))
     said = '\n'.join(told)
     for reason in (
-        "'cranck' is not one of crank, linear, arm, did you mean crank?",
+        "'cranck' is not one of crank, linear, arm, did you mean 'crank'?",
         "'wide' is not a number",
         'an answer is needed',
         'These measures do not fit each other:\nrod_length_mm: 30 mm, but leg 1 has',
