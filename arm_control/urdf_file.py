@@ -14,7 +14,7 @@ import numpy as np
 
 from manipulator.arrays import Array
 from manipulator.errors import ConfigError
-from manipulator.formatting import counted, shown
+from manipulator.formatting import counted, not_one_of, shown
 from manipulator.pose import Pose
 
 T = TypeVar('T')
@@ -207,7 +207,7 @@ def _inertial(link: ET.Element) -> Inertial | None:
 def _joint(name: str, element: ET.Element) -> UrdfJoint:
     kind = element.get('type', '')
     if kind not in KINDS:
-        raise ConfigError([f'type {shown(kind)} is not one of {list(KINDS)}'])
+        raise ConfigError([f'type {not_one_of(kind, KINDS)}'])
     parent, child = (_attribute(element.find(end), 'link') for end in ('parent', 'child'))
     limit, mimic = element.find('limit'), element.find('mimic')
     keys = ('lower', 'upper', 'velocity', 'effort')

@@ -1,5 +1,6 @@
 """How messages write lengths, counts and the reasons of the operating system."""
 
+import difflib
 import math
 from collections.abc import Iterable
 
@@ -45,6 +46,23 @@ def counted(count: int, one: str, many: str = '') -> str:
 def shown(value: object) -> str:
     """An input as a message repeats it: as Python writes it, its beginning where it is long."""
     return shortened(repr(value[: MOST_SHOWN + 1] if isinstance(value, str) else value))
+
+
+def nearest(word: str, choices: Iterable[str]) -> str:
+    """The choice that a misspelt word means; empty where none is near."""
+    return next(iter(difflib.get_close_matches(word, list(choices), n=1)), '')
+
+
+def did_you_mean(word: str) -> str:
+    """The end of a sentence about a misspelt word: empty for none."""
+    return f', did you mean {word!r}?' if word else ''
+
+
+def not_one_of(value: object, choices: Iterable[object]) -> str:
+    """Of an input that must be one of a few words: "'fre' is not one of free, parallel, …"."""
+    words = [str(choice) for choice in choices]
+    near = nearest(str(value)[:MOST_SHOWN], words)
+    return f'{shown(value)} is not one of {", ".join(words)}{did_you_mean(near)}'
 
 
 def shortened(text: str, most: int = MOST_SHOWN) -> str:

@@ -1,6 +1,6 @@
 import pytest
 
-from manipulator.formatting import counted, decimals, length, reason, told_apart
+from manipulator.formatting import counted, decimals, length, not_one_of, reason, told_apart
 
 
 @pytest.mark.parametrize(
@@ -57,3 +57,11 @@ def test_small_numbers_get_the_decimals_that_show_them():
         4,
         4,
     ]
+
+
+def test_a_word_that_is_none_of_a_few_is_told_them_and_the_nearest():
+    known = {'free': 0, 'parallel': 1}
+    assert not_one_of('paralel', known) == (
+        "'paralel' is not one of free, parallel, did you mean 'parallel'?"
+    )
+    assert not_one_of(7, known) == '7 is not one of free, parallel'

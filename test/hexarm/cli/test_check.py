@@ -485,15 +485,15 @@ def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
     assert '0.190000  0.190000 m' in capsys.readouterr().out
 
 
-def bent_the_other_way(content):
+def bent_the_other_way(content, legs=range(6)):
     """The same machine with its tangents along the horns, as they are published; undoes itself."""
-    ranges = np.array(content['limits']['crank_range_deg'])
-    content['limits']['crank_range_deg'] = (180.0 - ranges[..., ::-1]).tolist()
-    tangents = content['geometry']['crank_tangents']
-    content['geometry']['crank_tangents'] = [[-c for c in tangent] for tangent in tangents]
-    servos = content['servos']
-    servos['park_deg'] = [180.0 - angle for angle in servos['park_deg']]
-    for joint in servos['joints']:
+    ranges, park = content['limits']['crank_range_deg'], content['servos']['park_deg']
+    tangents, joints = content['geometry']['crank_tangents'], content['servos']['joints']
+    for leg in legs:
+        low, high = ranges[leg]
+        ranges[leg], park[leg] = [180.0 - high, 180.0 - low], 180.0 - park[leg]
+        tangents[leg] = [-c for c in tangents[leg]]
+        joint = joints[leg]
         joint['centre_deg'], joint['sign'] = 180.0 - joint['centre_deg'], -joint['sign']
     return content
 
@@ -503,10 +503,18 @@ def test_horns_as_hobbyists_enter_them_are_told_what_to_write():
     (problem,) = report_of(naive).problems
     assert problem.startswith('limits: home has crank angle ')
     assert 'on legs 1, 3, 4, 6, outside [-48, 80]°; bent the other way it is 31.34°, ' in problem
-    assert 'on all legs: negate the crank_tangents' in problem
+    assert 'on all legs: negate their crank_tangents' in problem
     assert 'crank_range_deg: [[100, 228], [100, 250], ' in problem
-    assert ', centre_deg and park_deg 180 minus' in problem
+    assert ', centre_deg and park_deg of these legs 180 minus' in problem
     assert report_of(bent_the_other_way(naive)).problems == ()
+
+
+def test_some_horns_entered_the_other_way_are_named():
+    naive = bent_the_other_way(parse_yaml(BY_COORDINATES), (1, 4))
+    (problem,) = report_of(naive).problems
+    assert 'outside [-70, 80]°; bent the other way it is 39.6° on legs 2, 5: negate' in problem
+    assert 'crank_range_deg: [[100, 228], [100, 250], [100, 228], ' in problem
+    assert report_of(bent_the_other_way(naive, (1, 4))).problems == ()
 
 
 def test_ranges_of_each_leg_are_turned_each():
