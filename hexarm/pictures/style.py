@@ -42,6 +42,8 @@ NEAR_LIMIT = 4.0
 """Times the largest value in view, so far a limit is drawn as a line."""
 MOST_NUMBERS = 5
 """Beside the longest axis in space."""
+BESIDE_NUMBERS = 9.0
+"""Points from the axis z to its name, which is upright in a tall box."""
 LEAST_SHARE = 0.35
 """Of the longest axis in space, what the others are at least."""
 WIDTH = 11.0
@@ -92,6 +94,7 @@ def space(axes: Axes3D, zoom: float = 0.9) -> None:
         getattr(axes, f'set_{name}lim3d')(middle - size / 2, middle + size / 2)
         numbers = MaxNLocator(max(2, round(MOST_NUMBERS * size / sizes.max())))
         getattr(axes, f'{name}axis').set_major_locator(numbers)
+    axes.zaxis.labelpad = BESIDE_NUMBERS
     axes.set_box_aspect(sizes / sizes.max(), zoom=zoom)
 
 
