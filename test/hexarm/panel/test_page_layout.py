@@ -134,8 +134,12 @@ def desk(open_page):
 
 
 @pytest.fixture(params=['phone', 'desk'])
-def page(request):
-    return request.getfixturevalue(request.param)
+def page(request, browser, shown):
+    """Each page once it shows what a test begins with. `browser`: test/conftest.py reads it."""
+    page = request.getfixturevalue(request.param)
+    shown.show(machine_state='enabled', mode='hold')
+    page.locator('#state').get_by_text('enabled').wait_for()
+    return page
 
 
 def test_stop_stands_still_whatever_the_texts_are(page, shown):
@@ -163,7 +167,7 @@ def test_stop_is_sent_on_press_and_stays_in_reach_when_scrolled(page, shown):
 
 
 def test_buttons_without_effect_are_disabled_and_the_next_step_is_offered(page, shown):
-    assert page.get_by_role('button', name='Enable', exact=True).is_disabled()
+    assert page.locator('#drive').get_by_role('button', name='Enable', exact=True).is_disabled()
     shown.show(machine_state='disarmed')
     page.locator('#state').get_by_text('disarmed').wait_for()
     assert page.get_by_role('button', name='Home').is_disabled()
