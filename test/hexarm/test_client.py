@@ -41,7 +41,7 @@ class Enabling(Client):
             self._next += SAID_EVERY
 
     def answer_of(self, *_):
-        return SimpleNamespace(success=True, message='')
+        return SimpleNamespace(success=True, message='arming')
 
 
 @pytest.fixture
@@ -66,9 +66,10 @@ def test_enabling_goes_on_for_as_long_as_the_bridge_reports_that_it_arms(enablin
     def bridge(seconds):
         return ('arming', '', 'disabled') if seconds < long else ('enabled', '', 'hold')
 
-    user = enabling(bridge)
-    user.enable()
+    user, answers = enabling(bridge), []
+    user.enable(report=answers.append)
     assert user.motion('mode') == 'hold'
+    assert answers == ['arming']
 
 
 def test_enabling_ends_with_the_reason_where_the_machine_is_stopped_meanwhile(enabling):
