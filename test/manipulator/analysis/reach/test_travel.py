@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from hexapod_control.workspace import axis_range
 from manipulator.analysis.free_paths import admits
 from manipulator.analysis.travel import travel
 from manipulator.errors import InvalidInput
@@ -14,9 +13,11 @@ def test_travel_from_home_ends_where_the_axis_does(platform, axis):
     twist[axis] = 0.5
     length = platform.kinematics.characteristic_length
     left = travel(platform, platform.kinematics.home, twist)
-    _, high = axis_range(platform, axis, length)
-    assert 0.5 * left.seconds == pytest.approx(high, abs=1e-8)
-    assert left.metres == pytest.approx(high * (1.0 if axis < 3 else length))
+    end = left.seconds * twist
+    on_the_way = platform.kinematics.home.moved(np.linspace(0.0, 1.0 - 1e-6, 200)[:, None] * end)
+    assert admits(platform, on_the_way).all()
+    assert not admits(platform, platform.kinematics.home.moved((1.0 + 1e-6) * end))
+    assert left.metres == pytest.approx(end[axis] * (1.0 if axis < 3 else length))
 
 
 def test_travel_names_the_limit_that_ends_it(robocake):
