@@ -5,10 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from manipulator.analysis.free_paths import admits, is_by_joints, last_free
-from manipulator.analysis.reach import reach
 from manipulator.analysis.readings import CHECKS_PER_LENGTH, displaced, scale
 from manipulator.arrays import Array
-from manipulator.errors import InvalidInput
+from manipulator.errors import InvalidInput, Unreachable
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
@@ -53,8 +52,17 @@ def travel(machine: Machine, pose: Pose, twist: Array, near: Array | None = None
     reason = ''
     if free < longest:
         beyond = displaced(machine, pose, (free + BEYOND * length) * direction)
-        reason = reach(machine, beyond, near).reason
+        reason = _refusal(machine, beyond, near)
     return Travel(free / speed, free, end, reason)
+
+
+def _refusal(machine: Machine, pose: Pose, near: Array | None) -> str:
+    """Why a pose is out of reach."""
+    try:
+        machine.constraints.check(pose, machine.kinematics.inverse(pose, near))
+    except Unreachable as error:
+        return str(error)
+    return ''
 
 
 def _followed(machine: Machine, pose: Pose, near: Array | None) -> Array | None:
