@@ -8,13 +8,12 @@ w = 0, far from the edge at |w| = π. docs/motion.md, section 2.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import ruckig
 
 from manipulator import rotation as so3
-from manipulator.arrays import Array
+from manipulator.arrays import Array, frozen
 from manipulator.errors import Refused
 from manipulator.motion_limits import MotionLimits
 from manipulator.planning.plan import MotionState, PosePlan
@@ -25,18 +24,50 @@ FASTEST = 1e9
 
 
 @dataclass(frozen=True, eq=False)
+class Cubics:
+    """A ruckig trajectory of d coordinates as its polynomials: plans keep no object of ruckig.
+
+    Each coordinate has its own times `begins` (d, k), and from each of them on a cubic: position,
+    velocity, acceleration and jerk there, `states` (4, d, k).
+    """
+
+    begins: Array
+    states: Array
+
+    @staticmethod
+    def of(trajectory: ruckig.Trajectory) -> 'Cubics':
+        """Its braking to within the bounds, its seven phases, and the rest at its end."""
+        (profiles,) = trajectory.profiles
+        lasting = np.array([[*one.brake.t, *one.t] for one in profiles])
+        begins = np.pad(np.cumsum(lasting, axis=1), ((0, 0), (1, 0)))
+        states = [
+            [[*getattr(one.brake, name), *getattr(one, name)] for one in profiles]
+            for name in ('p', 'v', 'a')
+        ]
+        jerks = [[*one.brake.j, *one.j, 0.0] for one in profiles]
+        return Cubics(frozen(begins), frozen([*states, jerks]))
+
+    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+        """Positions, velocities and accelerations (..., d) at the times (...) from 0 on."""
+        t = np.asarray(times)[..., None]
+        phase = (self.begins <= t[..., None]).sum(axis=-1) - 1
+        each = np.arange(len(self.begins))
+        t = t - self.begins[each, phase]
+        p, v, a, j = self.states[:, each, phase]
+        return p + t * (v + t * (a / 2 + t * (j / 6))), v + t * (a + t * (j / 2)), a + t * j
+
+
+@dataclass(frozen=True, eq=False)
 class Profile:
-    """A ruckig trajectory of one coordinate."""
+    """A trajectory of one coordinate, from 0 to 1."""
 
     duration: float
-    _trajectory: Any
+    cubics: Cubics
 
     def at(self, times: Array | float) -> tuple[Array, Array, Array]:
         """s, ṡ and s̈ at each of the times (...), those of the ends before and after."""
-        flat = np.clip(np.ravel(times), 0.0, self.duration)
-        samples = np.array([self._trajectory.at_time(t)[:3] for t in flat.tolist()])
-        s, rate, pull = np.moveaxis(samples.reshape(*np.shape(times), 3), -1, 0)
-        return np.clip(s, 0.0, 1.0), rate, pull
+        s, rate, pull = self.cubics.at(np.clip(times, 0.0, self.duration))
+        return np.clip(s[..., 0], 0.0, 1.0), rate[..., 0], pull[..., 0]
 
 
 def profile_within(bounds: Sequence[float], slowdown: float = 1.0) -> Profile:
@@ -47,10 +78,10 @@ def profile_within(bounds: Sequence[float], slowdown: float = 1.0) -> Profile:
     for power, (name, bound) in enumerate(zip(names, bounds, strict=True), start=1):
         setattr(request, f'max_{name}', [min(bound, FASTEST) / slowdown**power])
     trajectory = _calculated(request, 1)
-    return Profile(float(trajectory.duration), trajectory)
+    return Profile(float(trajectory.duration), Cubics.of(trajectory))
 
 
-def _calculated(request: Any, coordinates: int) -> Any:
+def _calculated(request: ruckig.InputParameter, coordinates: int) -> ruckig.Trajectory:
     """The trajectory of so many coordinates; Refused where ruckig finds none, or fails."""
     trajectory = ruckig.Trajectory(coordinates)
     try:
@@ -144,11 +175,11 @@ def plan_line_move(
 
 @dataclass(frozen=True, eq=False)
 class MoveInMotion(PosePlan):
-    """A ruckig trajectory in the coordinates about the goal's orientation."""
+    """A trajectory in the coordinates about the goal's orientation."""
 
     goal: Pose
     duration: float
-    _trajectory: Any
+    cubics: Cubics
 
     @property
     def checked_duration(self) -> float:
@@ -157,9 +188,7 @@ class MoveInMotion(PosePlan):
 
     def at(self, times: Array | float) -> MotionState:
         """Position, velocity and acceleration of the coordinates, turned into a state."""
-        flat = np.clip(np.ravel(times), 0.0, self.duration)
-        samples = np.array([self._trajectory.at_time(t)[:3] for t in flat.tolist()])
-        x, v, a = np.moveaxis(samples.reshape(*np.shape(times), 3, 6), -2, 0)
+        x, v, a = self.cubics.at(np.clip(times, 0.0, self.duration))
         return state_of(x, v, a, self.goal.rotation)
 
     def where(self, time: float) -> str:
@@ -188,4 +217,4 @@ def plan_move_in_motion(
         ruckig_name = 'velocity' if name == 'speed' else name
         setattr(request, f'max_{ruckig_name}', bounds)
     trajectory = _calculated(request, 6)
-    return MoveInMotion(goal, float(trajectory.duration), trajectory)
+    return MoveInMotion(goal, float(trajectory.duration), Cubics.of(trajectory))
