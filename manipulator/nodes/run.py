@@ -1,5 +1,6 @@
 """Running nodes in a process: clean start, clean stop, one line for what went wrong."""
 
+import atexit
 import faulthandler
 import gc
 import os
@@ -56,6 +57,7 @@ def run_nodes(makers: Makers, describe: Callable[[str], str] | None = None) -> i
 @contextmanager
 def context(arguments: Sequence[str]) -> Iterator[None]:
     """The context of ROS of this process, with these arguments for all its nodes."""
+    atexit.register(_mute)
     rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
     try:
         yield
@@ -119,6 +121,12 @@ def _leave() -> None:
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(0)
+
+
+def _mute() -> None:
+    """Likewise at the end of a process whose status others decide: nothing is printed after it."""
+    sys.stderr.flush()
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
 
 
 def _keep_for_good() -> None:
