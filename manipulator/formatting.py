@@ -59,5 +59,5 @@ def shortened(text: str, most: int = MOST_SHOWN) -> str:
 def reason(error: Exception) -> str:
     """Why a file could not be used, without numbers of errors and the file's name again."""
     if isinstance(error, UnicodeDecodeError):
-        return f'it is no text (byte {error.start})'
+        return f'it is no text in UTF-8 (byte {error.start})'
     return (isinstance(error, OSError) and error.strerror) or str(error)

@@ -40,7 +40,7 @@ def test_files_that_cannot_be_read_are_reported_without_error_numbers(tmp_path):
     (tmp_path / 'picture').write_bytes(b'a\xff')
     with pytest.raises(UnicodeDecodeError) as binary:
         (tmp_path / 'picture').read_text(encoding='utf-8')
-    assert reason(binary.value) == 'it is no text (byte 1)'
+    assert reason(binary.value) == 'it is no text in UTF-8 (byte 1)'
     assert reason(ValueError('not a number')) == 'not a number'
 
 
