@@ -1,6 +1,4 @@
 /* What Python calls of the arms' mathematics. */
-#include <string.h>
-
 #include "arm.h"
 #include "general.h"
 #include "line_keeping.h"

@@ -1,7 +1,5 @@
 /* What Python calls of the platforms' mathematics. Points and directions come as Python has them,
    leg by leg. */
-#include <string.h>
-
 #include "braking.h"
 #include "capsules.h"
 #include "descent.h"
