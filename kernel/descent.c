@@ -77,7 +77,7 @@ static int searched(const struct descent *d, const struct model *model, const re
             part[k] = share * step[k];
         struct frame trial = displaced(d, from, part);
         int is_inside = is_put_right(d, model, multipliers, &trial);
-        put_offset(d, &trial, d->target_position, d->target_rotation, offset);
+        put_offset(d, &trial, &d->target, offset);
         if (is_inside && length_of(offset) < best) {
             best = length_of(offset);
             *place = trial;
@@ -142,28 +142,25 @@ static void learn(real curvature[6][6], const struct model *here, const struct m
     update(curvature, taken, after);
 }
 
-void descend(const struct descent *descent, int most_steps, real position[3], real rotation[9])
+void descend(const struct descent *descent, int most_steps, struct frame *place)
 {
-    struct frame place;
     struct model models[2], *here = &models[0], *there = &models[1];
     real curvature[6][6], step[6], multipliers[BOUNDS], taken[6];
     int is_fresh = 1;
-    memcpy(place.position, position, sizeof place.position);
-    memcpy(place.rotation, rotation, sizeof place.rotation);
     reset(curvature);
-    put_model(descent, &place, here);
+    put_model(descent, place, here);
     for (int count = 0; count < most_steps; count++) {
-        const struct frame from = place;
+        const struct frame from = *place;
         if (!put_step(here, curvature, step, multipliers) ||
-            !searched(descent, here, step, multipliers, &place)) {
+            !searched(descent, here, step, multipliers, place)) {
             if (is_fresh)
                 break;
             reset(curvature);
             is_fresh = 1;
             continue;
         }
-        put_model(descent, &place, there);
-        put_offset(descent, &from, place.position, place.rotation, taken);
+        put_model(descent, place, there);
+        put_offset(descent, &from, place, taken);
         learn(curvature, here, there, multipliers, taken);
         struct model *last = here;
         here = there;
@@ -172,6 +169,4 @@ void descend(const struct descent *descent, int most_steps, real position[3], re
             break;
         is_fresh = 0;
     }
-    memcpy(position, place.position, sizeof place.position);
-    memcpy(rotation, place.rotation, sizeof place.rotation);
 }

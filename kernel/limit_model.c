@@ -11,14 +11,14 @@ struct frame displaced(const struct descent *d, struct frame from, const real st
     real twist[6];
     for (int k = 0; k < 6; k++)
         twist[k] = k < 3 ? step[k] : step[k] / d->platform->length;
-    se3_move(twist, from.position, from.rotation);
+    se3_move(twist, &from);
     return from;
 }
 
-void put_offset(const struct descent *d, const struct frame *from, const real position[3],
-                const real rotation[9], real offset[6])
+void put_offset(const struct descent *d, const struct frame *from, const struct frame *to,
+                real offset[6])
 {
-    se3_twist(from->position, from->rotation, position, rotation, offset);
+    se3_twist(from, to, offset);
     for (int k = 3; k < 6; k++)
         offset[k] *= d->platform->length;
 }
@@ -74,5 +74,5 @@ void put_model(const struct descent *d, const struct frame *place, struct model 
         model->steepness[model->count] = steepness;
         model->row[model->count++] = i;
     }
-    put_offset(d, place, d->target_position, d->target_rotation, model->goal);
+    put_offset(d, place, &d->target, model->goal);
 }

@@ -15,7 +15,7 @@ enum { NEARBY_STEPS = 4, LOOK_BACK = 10 };
 
 void twist_to_pose(const struct frame *here, const struct frame *pose, real twist[6])
 {
-    se3_twist(here->position, here->rotation, pose->position, pose->rotation, twist);
+    se3_twist(here, pose, twist);
 }
 
 static real largest(const real a[JOINTS], const real b[JOINTS])
