@@ -169,9 +169,8 @@ class MoveInMotion(PosePlan):
 
     def at(self, times: Array | float) -> MotionState:
         """Position, velocity and acceleration of the coordinates, turned into a state."""
-        flat = np.clip(np.ravel(times), 0.0, self.duration)
-        samples = np.array([self._trajectory.at_time(t)[:3] for t in flat.tolist()])
-        x, v, a = np.moveaxis(samples.reshape(*np.shape(times), 3, 6), -2, 0)
+        parts = sampled(self._trajectory, np.ravel(times))
+        x, v, a = (part.reshape(*np.shape(times), 6) for part in parts)
         return state_of(x, v, a, self.goal.rotation)
 
     def where(self, time: float) -> str:
@@ -187,17 +186,34 @@ def plan_move_in_motion(
     slowdown k ≥ 1 divides speed by k, acceleration by k² and jerk by k³. Raises Refused where
     ruckig finds none.
     """
-    request = ruckig.InputParameter(6)
-    x, v, a = coordinates(start, goal.rotation)
-    request.current_position, request.current_velocity = x.tolist(), v.tolist()
-    request.current_acceleration = a.tolist()
-    request.target_position = [*goal.position.tolist(), 0.0, 0.0, 0.0]
-    for name, power in (('speed', 1), ('acceleration', 2), ('jerk', 3)):
-        bounds = [getattr(limits.linear, name) / slowdown**power] * 3
-        bounds += [getattr(limits.angular, name) / slowdown**power] * 3
-        if name == 'speed':
-            bounds = np.minimum(bounds, limits.axis_speeds / slowdown).tolist()
-        ruckig_name = 'velocity' if name == 'speed' else name
-        setattr(request, f'max_{ruckig_name}', bounds)
-    trajectory = _calculated(request, 6)
+    bounds = [
+        np.repeat(
+            [getattr(part, name) / slowdown**power for part in (limits.linear, limits.angular)], 3
+        )
+        for power, name in enumerate(('speed', 'acceleration', 'jerk'), start=1)
+    ]
+    bounds[0] = np.minimum(bounds[0], limits.axis_speeds / slowdown)
+    target = np.concatenate([goal.position, np.zeros(3)])
+    trajectory = quickest(coordinates(start, goal.rotation), target, bounds)
     return MoveInMotion(goal, float(trajectory.duration), trajectory)
+
+
+def quickest(start: tuple[Array, Array, Array], target: Array, bounds: Sequence[Array]) -> Any:
+    """Ruckig's trajectory from coordinates with two derivatives, each (n,), to rest at a target.
+
+    bounds: of speed, acceleration and jerk, (n,) each. Raises Refused where there is none.
+    """
+    request = ruckig.InputParameter(len(target))
+    for name, values in zip(('position', 'velocity', 'acceleration'), start, strict=True):
+        setattr(request, f'current_{name}', values.tolist())
+    request.target_position = target.tolist()
+    for name, most in zip(('velocity', 'acceleration', 'jerk'), bounds, strict=True):
+        setattr(request, f'max_{name}', np.minimum(most, FASTEST).tolist())
+    return _calculated(request, len(target))
+
+
+def sampled(trajectory: Any, times: Array) -> tuple[Array, Array, Array]:
+    """Coordinates (k, n) with two derivatives, at times (k,), those of the ends outside."""
+    inside = np.clip(times, 0.0, trajectory.duration).tolist()
+    samples = np.array([trajectory.at_time(t)[:3] for t in inside])
+    return samples[:, 0], samples[:, 1], samples[:, 2]
