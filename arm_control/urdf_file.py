@@ -154,7 +154,9 @@ def _root(text: str) -> ET.Element:
         root: ET.Element = ET.fromstring(text.lstrip('\ufeff \t\r\n'), parser)
     except ET.ParseError as error:
         raise ConfigError([f'is not XML: {error}']) from error
-    if any(XACRO in element.tag for element in root.iter()):
+    macros = [element.tag for element in root.iter() if XACRO in element.tag]
+    is_used = '${' in text or any(not tag.endswith('}property') for tag in macros)
+    if macros and is_used:
         raise ConfigError(['is xacro, needs plain URDF: run  xacro FILE > arm.urdf  first'])
     if root.tag != 'robot':
         raise ConfigError([f'its root is {shown(root.tag)}, needs <robot> (URDF)'])

@@ -71,6 +71,8 @@ def parse_yaml(text: str, source: str = '') -> dict[str, Any]:
         )
     try:
         content = content_of(text)
+    except yaml.MarkedYAMLError as error:
+        raise ConfigError([_short(_at_its_line(error))], source) from error
     except yaml.YAMLError as error:
         raise ConfigError([_short(error)], source) from error
     except (ValueError, TypeError, OverflowError) as error:
@@ -278,7 +280,18 @@ def _join(where: str, key: object) -> str:
     return f'{where}.{name}' if where else name
 
 
-def _short(error: Exception) -> str:
+def _at_its_line(error: yaml.MarkedYAMLError) -> str:
+    """What YAML does not allow, and the line of the text."""
+    mark = error.problem_mark
+    if mark is None:
+        return str(error)
+    place, written = f'line {mark.line + 1}', (mark.get_snippet() or '').split('\n')[0].strip()
+    if error.problem and "'\\t'" in error.problem:
+        return f'{place} begins with a tab, YAML needs spaces there: {shown(written)}'
+    return f'{place}: {", ".join(filter(None, (error.context, error.problem)))}: {shown(written)}'
+
+
+def _short(error: object) -> str:
     return shortened(' '.join(str(error).split()), MOST_OF_A_REASON)
 
 

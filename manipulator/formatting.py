@@ -17,8 +17,12 @@ METRES_FROM = 0.9999
 def length(metres: float, digits: int = 4) -> str:
     """A length for people, without powers of ten: '22.8 mm', from a metre on '45.2 m'."""
     value, unit = (metres, 'm') if abs(metres) > METRES_FROM else (1e3 * metres, 'mm')
-    written = f'{float(f"{value:.{digits}g}"):.10f}'.rstrip('0').rstrip('.')
-    return f'{written} {unit}'
+    return f'{plain(value, digits)} {unit}'
+
+
+def plain(value: float, digits: int = 4) -> str:
+    """With so many digits that count, without powers of ten and zeros at the end."""
+    return f'{float(f"{value:.{digits}g}"):.10f}'.rstrip('0').rstrip('.')
 
 
 def told_apart(numbers: Iterable[float], fewest: int = 6) -> list[str]:
@@ -73,5 +77,5 @@ def shortened(text: str, most: int = MOST_SHOWN) -> str:
 def reason(error: Exception) -> str:
     """Why a file could not be used, without numbers of errors and the file's name again."""
     if isinstance(error, UnicodeDecodeError):
-        return f'it is no text (byte {error.start})'
+        return f'it is no text in UTF-8 (byte {error.start})'
     return (isinstance(error, OSError) and error.strerror) or str(error)

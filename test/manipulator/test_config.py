@@ -41,7 +41,10 @@ def problems(text):
 
 
 def test_a_mistake_of_syntax_is_shown_in_its_line():
-    assert 'line 2, column 3: b: 2 ^' in problems('a: 1\n b: 2')[0]
+    assert problems('a: 1\n b: 2')[0] == "line 2: mapping values are not allowed here: 'b: 2'"
+    assert problems('a: 1\nc:\n\tb: 2')[0] == (
+        "line 3 begins with a tab, YAML needs spaces there: 'b: 2'"
+    )
 
 
 @pytest.mark.parametrize('path', sorted(CONFIG.glob('*.yaml')), ids=lambda path: path.stem)
