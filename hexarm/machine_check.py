@@ -15,7 +15,7 @@ from hexapod_control.home import home_problems
 from hexapod_control.stacks.load import StackConfig
 from hexarm.link_meshes import link_meshes
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
-from hexarm.machine_warnings import warnings_of
+from hexarm.machine_warnings import radians_for_degrees, warnings_of
 from hexarm.machines import check_is_machine, frames_of, loader, with_sections
 from hexarm.servo_check import contradictions
 from hexarm.simulation.dynamics_config import SCHEMAS
@@ -108,7 +108,8 @@ def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
         found.problems += home
         if calibration is not None:
             found.problems += contradictions(machine, calibration, is_home_good=not home)
-    doubts = [] if machine is None else warnings_of(machine, calibration, content['geometry'])
+    doubts = [*radians_for_degrees(content).values()]
+    doubts += [] if machine is None else warnings_of(machine, calibration, content['geometry'])
     if machine is not None and folder is not None:
         doubts += link_meshes(content['geometry'], folder)[1]
     return Report(_merged(found.problems), tuple(doubts), machine)

@@ -1,4 +1,4 @@
-/* Whether a platform that is jogged can still brake: docs/teleop.md. */
+/* Whether a platform that is jogged can still brake: docs/teleop.md, Limits, 3. */
 #pragma once
 #include "limits.h"
 

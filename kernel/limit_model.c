@@ -27,8 +27,7 @@ void put_margins(const struct descent *d, const struct frame *place, real margin
 {
     real arm[3], origin[3], joints[LEGS], values[VALUES];
     rotate3(place->rotation, d->pivot, arm);
-    for (int k = 0; k < 3; k++)
-        origin[k] = place->position[k] - arm[k];
+    minus3(place->position, arm, origin);
     leg_inverse(&d->platform->legs, origin, place->rotation, NULL, joints);
     limited_values(d->platform, origin, place->rotation, joints, values);
     for (int i = 0; i < VALUES; i++) {

@@ -10,7 +10,7 @@ struct newton_problem {
     const struct screws *screws; /* of joints given for lengths; null: none */
 };
 
-/* What is trusted of what is found. */
+/* What is trusted of what is found: 3.3. */
 struct newton_rules {
     real length; /* L of (5.1), in metres: makes rotations lengths in sigma */
     real side;   /* the sign that det J must have; NaN: the one that it has at the start */

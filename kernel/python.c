@@ -51,8 +51,8 @@ static int fits(const struct function *f, int index, Py_ssize_t length, Py_ssize
     }
     if (length == needed * size)
         return 1;
-    PyErr_Format(PyExc_ValueError, "%s: array %d has %zd numbers, needs %zd", f->method.name, index + 1,
-                 length / size, needed);
+    PyErr_Format(PyExc_ValueError, "%s: array %d has %zd numbers, needs %zd", f->method.name,
+                 index + 1, length / size, needed);
     return 0;
 }
 
@@ -91,7 +91,8 @@ PyObject *python_call(PyObject *row, PyObject *const *arguments, Py_ssize_t coun
     while (wanted < MOST_ARRAYS && f->arrays[wanted].kind != END)
         wanted++;
     if (count != wanted)
-        return PyErr_Format(PyExc_TypeError, "%s takes %d arrays, not %zd", f->method.name, wanted, count);
+        return PyErr_Format(PyExc_TypeError, "%s takes %d arrays, not %zd", f->method.name, wanted,
+                            count);
     for (int k = 0; is_good && k < wanted; k++) {
         if (f->arrays[k].kind == OPTIONAL && arguments[k] == &_Py_NoneStruct)
             continue;

@@ -16,7 +16,7 @@ void moved_point(const struct frame *moved, const real point[3], real there[3])
 
 struct frame composed(const struct frame *a, const struct frame *b)
 {
-    struct frame both;
+    struct frame both = {{0}, {0}};
     moved_point(a, b->position, both.position);
     product9(a->rotation, b->rotation, both.rotation);
     return both;

@@ -1,8 +1,10 @@
-/* Displacements: docs/kinematics.md, 3. A twist is v, then the rotation vector, both base axes. */
+/* Displacements: docs/kinematics.md, 3.1. A twist is v, then the rotation vector, both base axes.
+   */
 #pragma once
 #include "real.h"
 
-/* What maps coordinates of one frame to another: the frame's origin, and the rotation, row by row. */
+/* What maps coordinates of one frame to another: the frame's origin, and the rotation, row by row.
+   */
 struct frame {
     real position[3];
     real rotation[9];
@@ -25,7 +27,7 @@ void rotation_of(const real q[4], real rotation[9]);
 /* The rotation vector of a matrix, at most pi long. */
 void rotation_log(const real rotation[9], real w[3]);
 
-/* p + v and exp(w) R: origin and orientation advance each on its own. */
+/* p + v and exp(w) R, (3.2): origin and orientation advance each on its own. */
 void se3_move(const real twist[6], real position[3], real rotation[9]);
 
 /* The twist that moves one pose to another. */

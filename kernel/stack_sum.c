@@ -85,8 +85,8 @@ real stack_sum(const struct stack *stack, const struct frame *end, const real *f
 
 /* How the last section's platform moves on its base, in the base's axes, as a free twist of section
    i carries that base; the platform stands still with the end. */
-static void put_carried(const struct stack *stack, const struct stack_placed *p, int i, const real *free,
-                        real carried[6][FREE])
+static void put_carried(const struct stack *stack, const struct stack_placed *p, int i,
+                        const real *free, real carried[6][FREE])
 {
     int last = (int)stack->count - 1;
     const real *range = stack->sections[i].range;

@@ -14,6 +14,12 @@ static inline void cross3(const real a[3], const real b[3], real product[3])
     product[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+static inline void minus3(const real a[3], const real b[3], real difference[3])
+{
+    for (int i = 0; i < 3; i++)
+        difference[i] = a[i] - b[i];
+}
+
 /* R v. */
 static inline void rotate3(const real rotation[9], const real v[3], real turned[3])
 {

@@ -16,7 +16,7 @@ from manipulator.planning.joint_move import KNOTS, plan_joint_move
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import MotionState, Plan
 from manipulator.planning.point_to_point import plan_line_move, plan_move_in_motion
-from manipulator.planning.stream import SHORTEST, STILL, plan_stream_move
+from manipulator.planning.stream_move import STILL, STREAM_ATTEMPTS, plan_stream_move
 from manipulator.planning.worker import Effort, TooLong
 from manipulator.pose import Pose
 from manipulator.unit_hints import hint_at_metres
@@ -146,13 +146,14 @@ def _plan_stream(
     """The move that follows a stream, None where it would pass a limit, or nothing moves."""
     if start.state.is_at_rest and np.abs(flow.twist).max() < STILL:
         return None
-    seconds = max(flow.due - start.time, SHORTEST / 2.0)
-    try:
-        move = plan_stream_move(start.state, pose, flow, seconds, machine.motion.for_plans)
-        if move is not None and check_plan(move, machine, start.joints, start.dt, effort).fits:
-            return move
-    except Refused:
-        pass
+    limits = machine.motion.for_plans
+    for attempt in STREAM_ATTEMPTS:
+        try:
+            move = plan_stream_move(start.state, pose, flow, start.time, limits, attempt)
+            if move is not None and check_plan(move, machine, start.joints, start.dt, effort).fits:
+                return move
+        except Refused:
+            continue
     return None
 
 

@@ -77,14 +77,20 @@ def profile_within(bounds: Sequence[float], slowdown: float = 1.0) -> Profile:
     names = ('velocity', 'acceleration', 'jerk')
     for power, (name, bound) in enumerate(zip(names, bounds, strict=True), start=1):
         setattr(request, f'max_{name}', [min(bound, FASTEST) / slowdown**power])
-    trajectory = ruckig.Trajectory(1)
-    result = ruckig.Ruckig(1).calculate(request, trajectory)
-    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise Refused(f'no jerk-limited profile was found ({result.name})')
+    trajectory = _calculated(request, 1)
     return Profile(float(trajectory.duration), Cubics.of(trajectory))
 
 
-DIFFERENCE_STEP = 1e-4
+def _calculated(request: ruckig.InputParameter, coordinates: int) -> ruckig.Trajectory:
+    """The trajectory of so many coordinates; Refused where ruckig finds none, or fails."""
+    trajectory = ruckig.Trajectory(coordinates)
+    try:
+        result = ruckig.Ruckig(coordinates).calculate(request, trajectory)
+    except ruckig.RuckigError as error:
+        raise Refused('no jerk-limited move was found (ruckig failed)') from error
+    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
+        raise Refused(f'no jerk-limited move was found ({result.name})')
+    return trajectory
 
 
 def coordinates(state: MotionState, reference: Array) -> tuple[Array, Array, Array]:
@@ -92,7 +98,8 @@ def coordinates(state: MotionState, reference: Array) -> tuple[Array, Array, Arr
     w = so3.log(state.pose.rotation @ reference.T)
     inverse = np.linalg.inv(so3.left_jacobian(w))
     w_rate = inverse @ state.twist[3:]
-    w_acceleration = inverse @ (state.acceleration[3:] - _jacobian_change(w, w_rate))
+    _, change = so3.turning(w, w_rate, np.zeros(3))
+    w_acceleration = inverse @ (state.acceleration[3:] - change)
     return (
         np.concatenate([state.pose.position, w]),
         np.concatenate([state.twist[:3], w_rate]),
@@ -102,23 +109,13 @@ def coordinates(state: MotionState, reference: Array) -> tuple[Array, Array, Arr
 
 def state_of(x: Array, v: Array, a: Array, reference: Array) -> MotionState:
     """The inverse of `coordinates`, for arrays of any shape; reference (..., 3, 3)."""
-    w, w_rate = x[..., 3:], v[..., 3:]
-    jacobian = so3.left_jacobian(w)
-    omega = np.einsum('...ij,...j->...i', jacobian, w_rate)
-    alpha = np.einsum('...ij,...j->...i', jacobian, a[..., 3:]) + _jacobian_change(w, w_rate)
+    w = x[..., 3:]
+    omega, alpha = so3.turning(w, v[..., 3:], a[..., 3:])
     return MotionState(
         Pose(x[..., :3], so3.exp(w) @ reference),
         np.concatenate([v[..., :3], omega], axis=-1),
         np.concatenate([a[..., :3], alpha], axis=-1),
     )
-
-
-def _jacobian_change(w: Array, w_rate: Array) -> Array:
-    """J̇(w)·ẇ by a central difference along ẇ."""
-    h = DIFFERENCE_STEP
-    ahead, behind = so3.left_jacobian(w + h * w_rate), so3.left_jacobian(w - h * w_rate)
-    change: Array = np.einsum('...ij,...j->...i', (ahead - behind) / (2 * h), w_rate)
-    return change
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,8 +216,5 @@ def plan_move_in_motion(
             bounds = np.minimum(bounds, limits.axis_speeds / slowdown).tolist()
         ruckig_name = 'velocity' if name == 'speed' else name
         setattr(request, f'max_{ruckig_name}', bounds)
-    trajectory = ruckig.Trajectory(6)
-    result = ruckig.Ruckig(6).calculate(request, trajectory)
-    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise Refused(f'no jerk-limited move was found ({result.name})')
+    trajectory = _calculated(request, 6)
     return MoveInMotion(goal, float(trajectory.duration), Cubics.of(trajectory))

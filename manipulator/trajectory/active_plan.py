@@ -13,7 +13,7 @@ from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
 from manipulator.planning.point_to_point import LineMove, MoveInMotion
-from manipulator.planning.stream import StreamMove
+from manipulator.planning.stream_move import StreamMove
 from manipulator.states import MotionMode
 
 MODES: dict[type, MotionMode] = {

@@ -37,12 +37,16 @@ class Commanded:
         rise = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
         return self.amplitude * rise * np.sin(2 * np.pi * self.frequency * np.asarray(times))
 
-    def stream(self, seconds, rate, late=0.0):
-        """Goals, each up to `late` periods later than it should be; its stamp is when it is."""
+    def stream(self, seconds, rate, late=0.0, is_even=False):
+        """Goals, each sent up to `late` periods later than it should be, which its stamp says.
+
+        is_even: it is nevertheless the pose of when it should have been sent.
+        """
         rng, count = np.random.default_rng(1), 0
         while self.world.now < self.begin + seconds:
             now = self.world.now - self.begin
-            self.world.send_goal(self.home.moved(self.sine(now) * np.eye(6)[self.axis]))
+            at = self.sine(count / rate if is_even else now)
+            self.world.send_goal(self.home.moved(at * np.eye(6)[self.axis]))
             count += 1
             due = (count + late * rng.uniform()) / rate
             self.world.run(max(due - now, 1e-3))
@@ -99,6 +103,41 @@ def test_a_stream_without_stamps_is_followed_as_smoothly_however_late_its_goals_
     ideal = 0.005 * (2 * np.pi * frequency) ** 2
     assert np.abs(commanded.accelerations).max() < SMOOTH * ideal
     assert commanded.distance(0.04) < 0.06 * 0.005
+
+
+@pytest.mark.parametrize('is_even', [False, True])
+def test_a_stream_stays_smooth_though_goals_are_lost_and_stamps_are_not_exact(world, is_even):
+    rng, link = np.random.default_rng(2), world.links['goals']
+    link.loses = lambda: rng.uniform() < 0.04
+    commanded = Commanded(world, 0, 0.005, 0.5)
+    commanded.stream(3.2, 60.0, 0.3, is_even)
+    assert np.abs(commanded.accelerations).max() < SMOOTH * 0.005 * np.pi**2
+    assert commanded.distance(0.04) < 0.06 * 0.005
+
+
+def test_the_play_of_measured_joints_is_taken_up_as_smoothly(make_world):
+    world = make_world('arm_6r_stepper', np.radians(2.0))
+    commanded = Commanded(world, 2, 0.03, 0.5)
+    commanded.stream(3.2, 60.0)
+    assert np.abs(commanded.accelerations).max() < SMOOTH * 0.03 * np.pi**2
+
+
+def test_a_circle_near_the_limits_is_followed_as_smoothly_from_its_beginning(make_world):
+    world, radius = make_world('arm_6r'), 0.028
+    commanded = Commanded(world, 0, 0.0, 0.5)
+
+    def offset(time):
+        share, angle = min(time, 1.0), np.pi * time
+        rise = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+        return radius * rise * np.array([np.sin(angle), 1.0 - np.cos(angle), 0, 0, 0, 0])
+
+    while world.now < commanded.begin + 2.5:
+        world.send_goal(commanded.home.moved(offset(world.now - commanded.begin)))
+        world.run(1 / 60)
+    rows = np.array([offset(k * DT)[:3] for k in range(250)])
+    ideal = np.linalg.norm(np.diff(rows, 2, axis=0), axis=1).max() / DT**2
+    changes = np.diff(commanded.twists[:, :3], axis=0) / DT
+    assert np.linalg.norm(changes, axis=1).max() < SMOOTH * ideal
 
 
 @pytest.mark.parametrize('name', ['robocake', 'arm_6r'])
