@@ -53,8 +53,8 @@ class Scale:
     joint: int = 0
 
     def words(self, owners: tuple[str, ...]) -> str:
-        """As in 'speed of joint 2'; owners are what the joints are called."""
-        return f'{self.limit} of {owners[self.joint - 1]}' if self.limit else ''
+        """Of a limit: as in 'speed of joint 2'; owners are what the joints are called."""
+        return f'{self.limit} of {owners[self.joint - 1]}'
 
 
 @dataclass(frozen=True, eq=False)

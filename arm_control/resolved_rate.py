@@ -151,7 +151,7 @@ class ResolvedRate:
         if drive.is_sliding:
             off_line, moving = STRAIGHT, driven * wanted
         is_leaving = drive.is_leaving or (state.is_leaving and tick.is_singular)
-        is_moving = bool(rates.any())
+        is_moving = any(rates.tolist())
         is_on_line = is_moving and not (drive.is_sliding or is_leaving)
         is_asked = is_moving or bool(wanted.any())
         is_under_way = is_on_line or (state.is_under_way and is_asked)
@@ -242,7 +242,7 @@ class _Tick:
         return _Drive(line.rates, scale.part, held_by)
 
     def _words(self, scale: Scale) -> str:
-        return scale.words(self._jog.arm.limits.owners)
+        return scale.words(self._jog.arm.limits.owners) if scale.limit else ''
 
     def _is_too_near(self, part: float, growth: float) -> bool:
         """Whether a singular posture ahead leaves only creep, or is about to be stepped over."""

@@ -20,7 +20,8 @@ def home_problems(machine: Machine, has_tangents: bool = True) -> list[str]:
     found = machine.constraints.violations(home, kinematics.inverse(home))
     problems = [f'limits: home has {words}' for words in in_words(found)]
     if isinstance(kinematics, RotaryHexapod) and len({v.quantity for v in found}) == 1:
-        problems[0] += _other_bend(machine, kinematics, has_tangents)
+        bend = _other_bend(machine, kinematics, has_tangents)
+        return [problems[0] + bend] if bend else problems
     if isinstance(kinematics, RailPlatform) and problems:
         problems[0] += _other_side(machine, kinematics)
     return problems
@@ -40,7 +41,7 @@ def _other_side(machine: Machine, kinematics: RailPlatform) -> str:
 
 
 def _other_bend(machine: Machine, kinematics: RotaryHexapod, has_tangents: bool) -> str:
-    """What to write for cranks that are out of range, and in it if bent the other way."""
+    """What to write for cranks that are all out of range, and in it if bent the other way."""
     low, high = machine.joint_ranges
     bends = kinematics.inverse_all(kinematics.home)
     joints, other = bends[0], bends[-1]

@@ -3,7 +3,7 @@
 import difflib
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -52,6 +52,15 @@ KINDS: dict[str, Callable[[MachineFile], Machine]] = {
 }
 
 
+NEEDED = ('kind', 'geometry', 'limits', 'motion')
+"""Keys of which every machine file has some."""
+OTHER_FILES = {
+    'deadman': 'a gamepad (docs/joystick.md)',
+    'sticks': 'a gamepad (docs/joystick.md)',
+    'poses': 'saved poses (docs/teach.md)',
+    'sequences': 'saved poses (docs/teach.md)',
+}
+"""By one of its keys, what another file of this project is for."""
 OF_A_SECTION = ('kind', 'geometry', 'limits', 'dynamics')
 """What a stack's section takes of the machine file that it names."""
 
@@ -109,9 +118,19 @@ def content_of(path: Path) -> dict[str, Any]:
     """What a machine file holds, see `with_sections`."""
     content = parse_yaml(text_of(path), str(path))
     try:
+        check_is_machine(content)
         return with_sections(content, path.parent)
     except ConfigError as error:
         raise ConfigError(error.problems, str(path)) from error
+
+
+def check_is_machine(content: Mapping[str, Any]) -> None:
+    """Raises ConfigError, with one problem, for a file that is for something else."""
+    if any(name in content for name in NEEDED):
+        return
+    other = next((words for key, words in OTHER_FILES.items() if key in content), '')
+    are = f'its keys are those of {other}' if other else f'{", ".join(NEEDED)} are missing'
+    raise ConfigError([f'this is no machine file: {are}'])
 
 
 def with_sections(content: dict[str, Any], folder: Path) -> dict[str, Any]:

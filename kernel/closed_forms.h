@@ -1,7 +1,5 @@
 /* Arms whose inverse is a closed form, with eight branches: docs/arm-kinematics.md, 4 and 5. */
-#ifndef KERNEL_CLOSED_FORMS_H
-#define KERNEL_CLOSED_FORMS_H
-
+#pragma once
 #include "chain.h"
 
 enum { CLOSED_BRANCHES = 8 };
@@ -26,5 +24,3 @@ struct gap {
 };
 
 void closed_gap(const struct closed_form *form, const struct frame *pose, struct gap *gap);
-
-#endif

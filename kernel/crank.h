@@ -1,7 +1,5 @@
 /* Legs with a crank and a rod: docs/kinematics.md, 2. */
-#ifndef KERNEL_CRANK_H
-#define KERNEL_CRANK_H
-
+#pragma once
 #include "real.h"
 
 enum { LEGS = 6 };
@@ -19,6 +17,18 @@ struct crank_legs {
     real middle[LEGS];     /* angles are given within half a turn of it */
 };
 
+/* The product of two vectors of leg i. */
+static inline real leg_dot(const real a[3][LEGS], const real b[3][LEGS], int i)
+{
+    return a[0][i] * b[0][i] + a[1][i] * b[1][i] + a[2][i] * b[2][i];
+}
+
+/* Of v, fixed to the platform, the vector of leg i along base axis k. */
+static inline real leg_turned(const real rotation[9], const real v[3][LEGS], int k, int i)
+{
+    return rotation[3 * k] * v[0][i] + rotation[3 * k + 1] * v[1][i] + rotation[3 * k + 2] * v[2][i];
+}
+
 /* From crank axes to platform joints, base axes. */
 void leg_gaps(const struct crank_legs *legs, const real position[3], const real rotation[9],
               real gap[3][LEGS]);
@@ -27,5 +37,3 @@ void leg_gaps(const struct crank_legs *legs, const real position[3], const real 
    (2.2); `in` may be null. NaN for a leg that does not close. Returns how many do not. */
 int crank_elbows(const struct crank_legs *legs, const real position[3], const real rotation[9],
                  real out[LEGS], real *in);
-
-#endif

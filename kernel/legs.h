@@ -1,7 +1,5 @@
 /* Six legs of one kind between base and platform: docs/kinematics.md, 1, 2, 8 and 10. */
-#ifndef KERNEL_LEGS_H
-#define KERNEL_LEGS_H
-
+#pragma once
 #include "crank.h"
 #include "screws.h"
 
@@ -49,5 +47,3 @@ void leg_gains(const struct legs *legs, const real joints[LEGS], real unit[3][LE
 #define NEVER REAL(1e9) /* m; finite, so that margins to no bound are no NaN */
 void leg_misfits(const struct legs *legs, const real position[3], const real rotation[9],
                  real shortfall[LEGS], real surplus[LEGS]);
-
-#endif

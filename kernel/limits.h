@@ -1,7 +1,5 @@
 /* What limits a platform: docs/kinematics.md, 5 and 6. */
-#ifndef KERNEL_LIMITS_H
-#define KERNEL_LIMITS_H
-
+#pragma once
 #include "platform.h"
 
 /* The limited values of a configuration, in m and rad, one after the other. */
@@ -41,5 +39,3 @@ struct limit_ranges limit_ranges(const struct platform *platform, const real low
 /* Whether the joints exist (are finite) and all values are in their ranges. */
 int keeps_limits(const struct platform *platform, const struct limit_ranges *ranges,
                  const real position[3], const real rotation[9], const real joints[LEGS]);
-
-#endif

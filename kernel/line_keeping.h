@@ -1,7 +1,5 @@
 /* Joint rates that keep the tool on its line: docs/arm-kinematics.md, 8. */
-#ifndef KERNEL_LINE_KEEPING_H
-#define KERNEL_LINE_KEEPING_H
-
+#pragma once
 #include "chain.h"
 #include "linear6.h"
 
@@ -36,5 +34,3 @@ void damped_rates(const struct decomposed *at, real onset, const real twist[6],
 /* The tool's twist at these rates; the part of `twist` that it has, and what of it was missed. */
 real part_driven(const struct decomposed *at, const real twist[6], const real rates[JOINTS],
                  real missed[6], real moving[6]);
-
-#endif

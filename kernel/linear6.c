@@ -1,5 +1,6 @@
 #include "linear6.h"
 
+#include "cholesky.h"
 #include "matrix6.h"
 
 static void swap(real *a, real *b)
@@ -28,27 +29,11 @@ static void normal_equations(real a[6][6], real damping, const real b[6],
 
 void damped6(real matrix[6][6], real damping, const real right[6], real solution[6])
 {
-    real l[6][6], inverse[6] = {0};
-    normal_equations(matrix, damping, right, l, solution);
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j <= i; j++) {
-            real sum = l[i][j];
-            for (int k = 0; k < j; k++)
-                sum -= l[i][k] * l[j][k];
-            if (i > j)
-                l[i][j] = sum * inverse[j];
-            else
-                inverse[i] = 1 / real_sqrt(sum > damping / 2 ? sum : damping / 2); /* rounding */
-        }
-        for (int k = 0; k < i; k++)
-            solution[i] -= l[i][k] * solution[k];
-        solution[i] *= inverse[i];
-    }
-    for (int i = 5; i >= 0; i--) {
-        for (int k = i + 1; k < 6; k++)
-            solution[i] -= l[k][i] * solution[k];
-        solution[i] *= inverse[i];
-    }
+    real normal[6][6];
+    normal_equations(matrix, damping, right, normal, solution);
+    factorise(6, 6, normal[0], damping / 2); /* rounding */
+    divide_by_factor(6, 6, normal[0], solution);
+    divide_by_transposed(6, 6, normal[0], solution);
 }
 
 /* Exchanges rows so that the lengths of `columns` fall. */

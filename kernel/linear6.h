@@ -1,7 +1,5 @@
 /* Six damped equations, and singular vectors: docs/arm-kinematics.md, 6 and 8. */
-#ifndef KERNEL_LINEAR6_H
-#define KERNEL_LINEAR6_H
-
+#pragma once
 #include "real.h"
 
 /* Solves (A' A + damping I) x = A' b, damping > 0, by Cholesky's factors: the damped step of
@@ -17,5 +15,3 @@ struct svd6 {
 
 /* By rotations from one side (matrix6.h): small values keep their digits. */
 void svd6(real matrix[6][6], struct svd6 *parts);
-
-#endif

@@ -1,7 +1,5 @@
 /* What the legs need of 6 x 6 matrices, row by row. */
-#ifndef KERNEL_MATRIX6_H
-#define KERNEL_MATRIX6_H
-
+#pragma once
 #include "real.h"
 
 /* Solves M x = b by Gauss's elimination with row pivots. M is destroyed, b becomes x. Returns the
@@ -30,5 +28,3 @@ real smallest_singular_value(real matrix[6][6]);
 /* Whether it is at least `minimum`: at a fraction of the cost, for M M' - minimum^2 I has no
    eigenvalue below 0 then, which its pivots tell. docs/workspace.md, 3. */
 int keeps_singular_value(real matrix[6][6], real minimum);
-
-#endif

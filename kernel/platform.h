@@ -1,7 +1,5 @@
 /* A platform on six legs, and its pose for given joints: docs/kinematics.md, 3. */
-#ifndef KERNEL_PLATFORM_H
-#define KERNEL_PLATFORM_H
-
+#pragma once
 #include "legs.h"
 #include "newton.h"
 
@@ -18,5 +16,3 @@ struct platform {
 struct newton_report platform_forward(const struct platform *platform,
                                       const struct newton_rules *rules, const real joints[LEGS],
                                       real position[3], real rotation[9]);
-
-#endif

@@ -1,7 +1,5 @@
 /* How much of wanted joint rates the joints can drive: docs/arm-kinematics.md, 8. */
-#ifndef KERNEL_RATE_SCALING_H
-#define KERNEL_RATE_SCALING_H
-
+#pragma once
 #include "branches.h"
 
 /* In rad, rad/s and rad/s^2. */
@@ -34,5 +32,3 @@ struct rate_scale scale_rates(const struct joint_limits *limits, const real room
    later. Stops outrank accelerations: a step that would pass one is shortened as a whole. */
 void follow_rates(const struct joint_limits *limits, const real room[2 * JOINTS], real part,
                   const real rates[JOINTS], real dt, real before[JOINTS], real joints[JOINTS]);
-
-#endif

@@ -1,7 +1,5 @@
 /* Vectors of three numbers and rotation matrices of nine, row by row. */
-#ifndef KERNEL_VECTOR_H
-#define KERNEL_VECTOR_H
-
+#pragma once
 #include "real.h"
 
 static inline real dot3(const real a[3], const real b[3])
@@ -39,5 +37,3 @@ static inline void product9_back(const real a[9], const real b[9], real product[
         for (int column = 0; column < 3; column++)
             product[row + column] = dot3(a + row, b + 3 * column);
 }
-
-#endif

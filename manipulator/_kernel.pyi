@@ -138,7 +138,7 @@ def arm_inverse(arm: Array, position: Array, rotation: Array, near: Array, joint
 def general_candidates(
     chain: Array, length_and_first: Array, position: Array, rotation: Array, candidates: Array
 ) -> int:
-    """Writes sixteen rows an item: see kernel/general.h."""
+    """For how many poses they are certain; writes 48 rows an item: see kernel/general.h."""
 
 def arm_miss(arm: Array, position: Array, rotation: Array, miss: Array) -> int:
     """Writes the twist that is left after the best attempt."""

@@ -69,5 +69,5 @@ READ: dict[str, Callable[[str, Any], Any]] = {'axis': _axis, 'value': _number, '
 NEEDS: dict[str, tuple[str, ...]] = {
     'goal': ('axis', 'value'), 'joint': ('name', 'value'), 'speed': ('value',), 'grip': ('value',),
     'share': ('value',), 'show_reach': ('value',), 'mode': ('name',), 'save': ('name',),
-    'go_to': ('name',), 'delete': ('name',),
+    'go_to': ('name',), 'delete': ('name',), 'tool': ('name',),
 }  # fmt: skip

@@ -58,7 +58,7 @@ def within_speed(twist: Array, motion: MotionLimits) -> tuple[Array, float]:
         raise InvalidInput(f'twist {target.ravel().tolist()} is not six finite numbers')
     axes = map(truediv, map(abs, target.tolist()), motion.axis_speeds.tolist())
     part = max(linear / motion.linear.speed, angular / motion.angular.speed, *axes, 1.0)
-    return target / part, 1.0 / part
+    return (target, 1.0) if part == 1.0 else (target / part, 1.0 / part)
 
 
 def towards(twist: Array, target: Array, motion: MotionLimits, dt: float) -> Array:
@@ -120,7 +120,7 @@ class JogMotion:
     @property
     def is_at_rest(self) -> bool:
         """Whether nothing moves."""
-        return not (self.twist.any() or self.rates.any())
+        return not (any(self.twist.tolist()) or any(self.rates.tolist()))
 
 
 class Jogger(Protocol):

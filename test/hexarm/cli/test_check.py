@@ -16,6 +16,7 @@ from hexarm.machine_check import problems_of, report_of
 from hexarm.machines import content_of, find, load
 from leg_kinds import TILTED_CRANKS
 from manipulator.config import build, parse_yaml
+from manipulator.errors import ConfigError
 from sampling import some
 
 CONFIG = Path(__file__).parents[3] / 'config'
@@ -54,6 +55,22 @@ def test_shipped_files_are_good(file):
     if 'kind:' in file.read_text():
         report = report_of(content_of(file))
         assert (report.problems, report.warnings) == ((), ())
+
+
+@pytest.mark.parametrize(
+    ('text', 'words'),
+    [
+        ((CONFIG / 'joystick_xbox.yaml').read_text(), 'its keys are those of a gamepad'),
+        ('poses: {}', 'its keys are those of saved poses'),
+        ('servers: {}', 'kind, geometry, limits, motion are missing'),
+    ],
+)
+def test_a_file_for_something_else_is_one_line(tmp_path, text, words):
+    (problem,) = problems_of(text)
+    assert problem.startswith(f'this is no machine file: {words}')
+    (tmp_path / 'other.yaml').write_text(text)
+    with pytest.raises(ConfigError, match='this is no machine file'):
+        load(str(tmp_path / 'other.yaml'))
 
 
 def test_misspelt_key_names_itself_and_the_nearest():
@@ -483,8 +500,8 @@ def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
 
 def bent_the_other_way(content):
     """The same machine with its tangents along the horns, as they are published; undoes itself."""
-    low, high = content['limits']['crank_range_deg']
-    content['limits']['crank_range_deg'] = [180.0 - high, 180.0 - low]
+    ranges = np.array(content['limits']['crank_range_deg'])
+    content['limits']['crank_range_deg'] = (180.0 - ranges[..., ::-1]).tolist()
     tangents = content['geometry']['crank_tangents']
     content['geometry']['crank_tangents'] = [[-c for c in tangent] for tangent in tangents]
     servos = content['servos']
@@ -498,16 +515,17 @@ def test_horns_as_hobbyists_enter_them_are_told_what_to_write():
     naive = bent_the_other_way(parse_yaml(BY_COORDINATES))
     (problem,) = report_of(naive).problems
     assert problem.startswith('limits: home has crank angle ')
-    assert 'outside [-80, 80]°; bent the other way it is 31.34°, 39.6°, ' in problem
+    assert 'on legs 1, 3, 4, 6, outside [-48, 80]°; bent the other way it is 31.34°, ' in problem
     assert 'on all legs: negate the crank_tangents' in problem
-    assert 'crank_range_deg: [100, 260], centre_deg and park_deg 180 minus' in problem
+    assert 'crank_range_deg: [[100, 228], [100, 250], ' in problem
+    assert ', centre_deg and park_deg 180 minus' in problem
     assert report_of(bent_the_other_way(naive)).problems == ()
 
 
 def test_ranges_of_each_leg_are_turned_each():
     naive = bent_the_other_way(parse_yaml(BY_COORDINATES))
     naive['limits']['crank_range_deg'] = [[-80.0, 80.0]] * 5 + [[-80.0, 70.0]]
-    (problem,) = (p for p in report_of(naive).problems if 'the other way' in p)
+    (problem,) = report_of(naive).problems
     assert f'crank_range_deg: [{"[100, 260], " * 5}[110, 260]], ' in problem
 
 

@@ -72,6 +72,13 @@ def test_a_page_receives_the_joints_and_finite_ranges(name):
     assert np.isfinite(words['bounds']).all()
 
 
+def test_the_tool_that_trajectory_reports_is_shown_and_before_that_the_files():
+    assert state()['tool'] == ''
+    report = NodeReport('trajectory', 0, 'running', {'tool': 'probe'}, 0.1)
+    assert state(nodes=(report,))['tool'] == 'probe'
+    assert parsed('{"do": "tool", "name": ""}') == Request('tool')
+
+
 def test_a_silent_node_is_an_error():
     silent = NodeReport('ik', 0, 'running', {}, 5.0)
     (shown,) = json.loads(nodes_text((silent,)))['nodes']
