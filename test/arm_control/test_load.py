@@ -59,7 +59,7 @@ def test_a_geometry_of_no_form_or_two_is_refused(machine_file):
     dh = machine_file('ur5').geometry['dh']
     neither, both = {'home_deg': [0.0] * 6}, {**file.geometry, 'dh': dh}
     for geometry, said in (
-        (neither, r"one of \['L1_mm', 'dh', 'modified_dh', 'screws'\]"),
+        (neither, 'one of L1_mm, dh, modified_dh, screws'),
         (both, 'dh: unknown'),
     ):
         with pytest.raises(ConfigError, match=said):

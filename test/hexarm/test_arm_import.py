@@ -253,7 +253,7 @@ def test_of_several_tips_tool0_is_taken_and_without_one_all_are_named():
     ]
 
 
-AHEAD = ['--xyz', '0.2', '0', '0.5']
+AHEAD = ['--xyz', '0.15', '0', '0.4']
 PROPERTY = '<xacro:property xmlns:xacro="http://www.ros.org/wiki/xacro" name="width" value="0.2"/>'
 REFUSED = {
     'loop': (plain(joint('back', 'link_4', 'link_2', 'fixed')), 'below two joints, .*: a loop'),
