@@ -522,6 +522,11 @@ def test_horns_as_hobbyists_enter_them_are_told_what_to_write():
     assert report_of(bent_the_other_way(naive)).problems == ()
 
 
+def test_parts_that_meet_the_same_thing_at_home_are_one_line():
+    floor = changed(STEWART, ('servos:\n', 'surroundings: {floor_mm: 150}\nservos:\n'))
+    assert problems_of(floor) == ['home: rods 1, 2, 3, 4, 5, 6 meet the floor by 145 mm']
+
+
 def test_some_horns_entered_the_other_way_are_named():
     naive = bent_the_other_way(parse_yaml(BY_COORDINATES), (1, 4))
     (problem,) = report_of(naive).problems
