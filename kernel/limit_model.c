@@ -41,10 +41,10 @@ void put_margins(const struct descent *d, const struct frame *place, real margin
 static real slope(real behind, real here, real ahead, real *steeper)
 {
     real up = ahead - here, down = here - behind;
-    up = is_finite(up) ? up : down;
-    down = is_finite(down) ? down : up;
+    up = isfinite(up) ? up : down;
+    down = isfinite(down) ? down : up;
     *steeper = fmax(real_fabs(up), real_fabs(down));
-    return is_finite(up) ? (up + down) / 2 : 0;
+    return isfinite(up) ? (up + down) / 2 : 0;
 }
 
 void put_model(const struct descent *d, const struct frame *place, struct model *model)
@@ -63,10 +63,10 @@ void put_model(const struct descent *d, const struct frame *place, struct model 
         real normal[6], steepness = 0, steeper;
         for (int k = 0; k < 6; k++) {
             normal[k] = slope(sides[k][0][i], here[i], sides[k][1][i], &steeper) / size;
-            steepness += is_finite(steeper) ? steeper * steeper / (size * size) : 0;
+            steepness += isfinite(steeper) ? steeper * steeper / (size * size) : 0;
         }
         steepness = real_sqrt(steepness);
-        if (!is_finite(here[i]) || !(steepness > 0))
+        if (!isfinite(here[i]) || !(steepness > 0))
             continue;
         for (int k = 0; k < 6; k++)
             model->normal[model->count][k] = normal[k] / steepness;

@@ -24,16 +24,3 @@ void put_margins(const struct descent *d, const struct frame *place, real margin
 
 /* By differences in all six directions, to one side where the other has no value. */
 void put_model(const struct descent *d, const struct frame *place, struct model *model);
-
-static inline int is_finite(real x)
-{
-    return real_fabs(x) < INFINITY;
-}
-
-static inline real length_of(const real v[6])
-{
-    real square = 0;
-    for (int k = 0; k < 6; k++)
-        square += v[k] * v[k];
-    return real_sqrt(square);
-}
