@@ -15,8 +15,8 @@ from hexapod_control.stacks.load import StackConfig
 from hexarm.link_meshes import link_meshes
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
 from hexarm.machine_spelling import corrected
-from hexarm.machine_warnings import warnings_of
-from hexarm.machines import frames_of, loader, with_sections
+from hexarm.machine_warnings import radians_for_degrees, warnings_of
+from hexarm.machines import check_is_machine, frames_of, loader, with_sections
 from hexarm.servo_check import contradictions
 from hexarm.simulation.dynamics_config import SCHEMAS
 from manipulator.config import build, forms_of, parse_yaml
@@ -77,7 +77,12 @@ def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
     as both are good: home, names, units, ranges, speeds and the park position.
     """
     found = Findings()
-    kind, content, whole = _as_meant(found, content, folder)
+    corrected_keys = corrected(MachineFile, content, '', found.problems)
+    try:
+        check_is_machine(corrected_keys)
+    except ConfigError as error:
+        return Report(error.problems)
+    kind, content, whole = _as_meant(found, dict(corrected_keys), folder)
     schemas = sections_of(kind) if kind else BRIDGE
     unfit = _unfit(kind, content)
     if unfit:
@@ -103,17 +108,20 @@ def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
         found.problems += home
         if calibration is not None:
             found.problems += contradictions(machine, calibration, is_home_good=not home)
-    doubts = [] if machine is None else warnings_of(machine, calibration, content['geometry'])
+    doubts = [*radians_for_degrees(content).values()]
+    doubts += [] if machine is None else warnings_of(machine, calibration, content['geometry'])
     if machine is not None and folder is not None:
         doubts += link_meshes(content['geometry'], folder)[1]
     return Report(_merged(found.problems), tuple(doubts), machine)
 
 
 def _as_meant(
-    found: Findings, content: Mapping[str, Any], folder: Path | None
+    found: Findings, content: dict[str, Any], folder: Path | None
 ) -> tuple[str, dict[str, Any], MachineFile | None]:
-    """The kind, the content without misspelt keys, and the sections where they are all right."""
-    content = dict(corrected(MachineFile, content, '', found.problems))
+    """The kind, the content without misspelt keys, and the sections where they are all right.
+
+    Of content whose own keys are right.
+    """
     kind = _kind(found, content)
     content = content | {
         name: corrected(schema, content[name], name, found.problems)

@@ -23,11 +23,7 @@ static void put_joints(const struct jogged *machine, const struct braking_path *
 {
     const struct jog_frame *frame = machine->frame;
     real of_pivot[3], arm[3];
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            rotation[3 * i + k] = frame->rotation[3 * i] * at->rotation[k] +
-                                  frame->rotation[3 * i + 1] * at->rotation[3 + k] +
-                                  frame->rotation[3 * i + 2] * at->rotation[6 + k];
+    product9(frame->rotation, at->rotation, rotation);
     rotate3(frame->rotation, at->position, of_pivot);
     rotate3(rotation, frame->pivot, arm);
     for (int i = 0; i < 3; i++)

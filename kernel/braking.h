@@ -1,7 +1,5 @@
-/* Whether a platform that is jogged can still brake: docs/teleop.md. */
-#ifndef KERNEL_BRAKING_H
-#define KERNEL_BRAKING_H
-
+/* Whether a platform that is jogged can still brake: docs/teleop.md, Limits, 3. */
+#pragma once
 #include "limits.h"
 
 /* The machine as it is jogged: poses are of its pivot in the work frame, SI units. */
@@ -35,5 +33,3 @@ struct braking_path {
 
 struct braking_path braking_path(const struct jogged *machine, const struct jog_state *from,
                                  const real twist[6]);
-
-#endif

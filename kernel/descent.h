@@ -1,7 +1,5 @@
 /* Down the distance to a target, within all limits: docs/workspace.md, 2. */
-#ifndef KERNEL_DESCENT_H
-#define KERNEL_DESCENT_H
-
+#pragma once
 #include "limits.h"
 
 /* Poses are those of the pivot, a point of the platform, with the platform's orientation, in the
@@ -17,5 +15,3 @@ struct descent {
 /* Sequential quadratic programming, with the Lagrangian's curvature learnt by BFGS: from a pose
    that keeps all limits to ones nearer the target, until no step brings it nearer. */
 void descend(const struct descent *descent, int most_steps, real position[3], real rotation[9]);
-
-#endif

@@ -1,6 +1,5 @@
 #include "line_keeping.h"
 
-#include "matrix6.h"
 #include "vector.h"
 
 /* Part of a twist that may be missing in a direction that is being lost. */

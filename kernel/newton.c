@@ -1,7 +1,5 @@
 #include "newton.h"
 
-#include <string.h>
-
 #include "matrix6.h"
 #include "rods.h"
 #include "se3.h"
@@ -16,9 +14,8 @@ enum { MOST_ITERATIONS = 30 };
 static void linearised(const struct newton_problem *problem, const real position[3],
                        const real rotation[9], real jacobian[6][6], real error[LEGS])
 {
-    real base[3][LEGS], columns[6][LEGS];
-    memcpy(base, problem->base, sizeof base);
-    struct rods rods = rods_of(base, problem->end, position, rotation);
+    real columns[6][LEGS];
+    struct rods rods = rods_of(problem->base, problem->end, position, rotation);
     real extra[LEGS] = {0};
     leg_columns(&rods, 1, columns);
     if (problem->screws) {

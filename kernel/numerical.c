@@ -1,6 +1,5 @@
 #include "numerical.h"
 
-#include "linear6.h"
 #include "matrix6.h"
 #include "se3.h"
 

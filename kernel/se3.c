@@ -7,6 +7,32 @@
 /* Below, in rad, sin(x) / x is 1 to the last digit. */
 #define SMALL_ANGLE REAL(1e-6)
 
+void moved_point(const struct frame *moved, const real point[3], real there[3])
+{
+    rotate3(moved->rotation, point, there);
+    for (int i = 0; i < 3; i++)
+        there[i] += moved->position[i];
+}
+
+struct frame composed(const struct frame *a, const struct frame *b)
+{
+    struct frame both = {{0}, {0}};
+    moved_point(a, b->position, both.position);
+    product9(a->rotation, b->rotation, both.rotation);
+    return both;
+}
+
+struct frame inverted(const struct frame *a)
+{
+    struct frame back;
+    for (int i = 0; i < 9; i++)
+        back.rotation[i] = a->rotation[3 * (i % 3) + i / 3];
+    rotate3(back.rotation, a->position, back.position);
+    for (int i = 0; i < 3; i++)
+        back.position[i] = -back.position[i];
+    return back;
+}
+
 /* I + s [v] + c [v] [v]. */
 static void rodrigues(const real v[3], real s, real c, real rotation[9])
 {

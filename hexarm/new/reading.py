@@ -4,9 +4,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from manipulator.config import nearest
 from manipulator.errors import InvalidInput
-from manipulator.formatting import shown
+from manipulator.formatting import not_one_of, shown
 
 Parse = Callable[[Any], Any]
 SIZE, PLACE, ANGLE = (0.001, 1e6), (-1e6, 1e6), (-360.0, 360.0)
@@ -53,9 +52,7 @@ def one_of(choices: Mapping[str, str]) -> Parse:
         for word in words:
             if word.lower() == typed.lower():
                 return word
-        near = nearest(typed, words)
-        hint = f', did you mean {near}?' if near else ''
-        raise InvalidInput(f'{shown(typed)} is not one of {", ".join(words)}{hint}')
+        raise InvalidInput(not_one_of(typed, words))
 
     return parse
 

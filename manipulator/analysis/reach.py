@@ -58,7 +58,7 @@ def reach(machine: Machine, pose: Pose, near: Array | None = None) -> Reach:
 
 
 def readings(machine: Machine, pose: Pose, near: Array | None = None) -> tuple[LimitReading, ...]:
-    """Every limit that has a value at one pose, the nearest first."""
+    """Every limit that has a value at one pose, the nearest first; endless joints have none."""
     found = slopes(machine, pose, near)
     names, values = found.readings.names, found.readings.values
     margins = found.readings.margins.reshape(2, -1)
@@ -67,7 +67,8 @@ def readings(machine: Machine, pose: Pose, near: Array | None = None) -> tuple[L
     with np.errstate(divide='ignore', invalid='ignore'):
         distance = np.where(slope > 0.0, margin / slope, np.copysign(np.inf, margin))
     low, high = found.readings.low, found.readings.high
-    order = [k for k in np.argsort(distance, kind='stable') if np.isfinite(values[k])]
+    exists = np.isfinite(values) & (np.isfinite(low) | np.isfinite(high))
+    order = [k for k in np.argsort(distance, kind='stable') if exists[k]]
     return tuple(
         LimitReading(
             quantity=names[k][0],

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from itertools import groupby
 
 import numpy as np
 
@@ -16,10 +15,15 @@ DECIMALS = 5
 
 def in_words(violations: Iterable[Violation]) -> list[str]:
     """One text for each limit, as 'crank angle -173.8° on all legs, outside [-90, 90]°'."""
-    found = list(violations)
-    alike = groupby((v for v in found if v.quantity), key=lambda v: (v.quantity, v.low, v.high))
-    limits = [_of_one_limit(list(some)) for _, some in alike]
-    return [*limits, *(str(v) for v in found if not v.quantity)]
+    alike: dict[tuple[str, float, float], list[Violation]] = {}
+    others = []
+    for violation in violations:
+        if violation.quantity:
+            key = violation.quantity, violation.low, violation.high
+            alike.setdefault(key, []).append(violation)
+        else:
+            others.append(str(violation))
+    return [*map(_of_one_limit, alike.values()), *others]
 
 
 def degrees_in_words(angles: Array) -> str:

@@ -49,7 +49,6 @@ def run_nodes(makers: Makers, describe: Callable[[str], str] | None = None) -> i
         return 1
     with leaving_within(GOODBYE):
         try_shutdown()
-    _leave()
     return 0
 
 
@@ -112,13 +111,6 @@ def on_executor(makers: Makers) -> Iterator[tuple[list[Node], EventsExecutor]]:
                 executor.shutdown()
             for node in reversed(nodes):
                 node.destroy_node()
-
-
-def _leave() -> None:
-    """Ends the process here: later the binding of ruckig would list leaks on the terminal."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(0)
 
 
 def _keep_for_good() -> None:

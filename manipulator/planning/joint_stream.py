@@ -6,7 +6,6 @@ limits allow.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from manipulator.motion_limits import MotionLimits
 from manipulator.planning.flowing import Attempt, Ends, Quintic, quintic_to
 from manipulator.planning.goal import Flow
 from manipulator.planning.joint_trajectory import JointCurvePlan
-from manipulator.planning.point_to_point import quickest, sampled
+from manipulator.planning.point_to_point import Cubics, quickest
 from manipulator.pose import Pose
 
 KNOTS = 16
@@ -29,10 +28,11 @@ TINY = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class JointsInMotion:
-    """Joints over time: `early`, if there is any, then a ruckig trajectory to rest."""
+    """Joints over time: `early`, if there is any, then `resting` seconds to rest."""
 
     early: Quintic | None
-    rest: Any
+    resting: float
+    rest: Cubics
 
     @property
     def _span(self) -> float:
@@ -41,12 +41,12 @@ class JointsInMotion:
     @property
     def duration(self) -> float:
         """Seconds until rest."""
-        return self._span + float(self.rest.duration)
+        return self._span + self.resting
 
     def at(self, times: Array | float) -> Ends:
         """Joints with two derivatives, (..., n), at each of the times (...)."""
         flat = np.ravel(times)
-        parts: Sequence[Array] = sampled(self.rest, flat - self._span)
+        parts: Sequence[Array] = self.rest.at(np.clip(flat - self._span, 0.0, self.resting))
         if self.early is not None:
             is_early = (flat < self._span)[:, None]
             both = zip(self.early.at(flat), parts, strict=True)
@@ -78,7 +78,7 @@ def plan_joint_move_in_motion(
     """To rest at joints `goal` (n,). Raises Refused where there is no such move."""
     bounds = _bounds(machine, start, limits)
     return _plan(
-        machine, start, JointsInMotion(None, _to_rest(start.joints, goal, bounds, slowdown))
+        machine, start, JointsInMotion(None, *_to_rest(start.joints, goal, bounds, slowdown))
     )
 
 
@@ -94,10 +94,10 @@ def plan_joint_stream(
     if early is None:
         return None
     rest = _to_rest(early.end, goal, bounds, how.slowdown)
-    return _plan(machine, start, JointsInMotion(early, rest))
+    return _plan(machine, start, JointsInMotion(early, *rest))
 
 
-def _to_rest(joints: Ends, goal: Array, bounds: Ends, slowdown: float) -> Any:
+def _to_rest(joints: Ends, goal: Array, bounds: Ends, slowdown: float) -> tuple[float, Cubics]:
     speed, acceleration, jerk = bounds
     slower = speed / slowdown, acceleration / slowdown**2, jerk / slowdown**3
     return quickest(joints, goal, slower)

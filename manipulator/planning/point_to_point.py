@@ -8,13 +8,12 @@ w = 0, far from the edge at |w| = π. docs/motion.md, section 2.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import ruckig
 
 from manipulator import rotation as so3
-from manipulator.arrays import Array
+from manipulator.arrays import Array, frozen
 from manipulator.errors import Refused
 from manipulator.motion_limits import MotionLimits
 from manipulator.planning.plan import MotionState, PosePlan
@@ -25,18 +24,50 @@ FASTEST = 1e9
 
 
 @dataclass(frozen=True, eq=False)
+class Cubics:
+    """A ruckig trajectory of d coordinates as its polynomials: plans keep no object of ruckig.
+
+    Each coordinate has its own times `begins` (d, k), and from each of them on a cubic: position,
+    velocity, acceleration and jerk there, `states` (4, d, k).
+    """
+
+    begins: Array
+    states: Array
+
+    @staticmethod
+    def of(trajectory: ruckig.Trajectory) -> 'Cubics':
+        """Its braking to within the bounds, its seven phases, and the rest at its end."""
+        (profiles,) = trajectory.profiles
+        lasting = np.array([[*one.brake.t, *one.t] for one in profiles])
+        begins = np.pad(np.cumsum(lasting, axis=1), ((0, 0), (1, 0)))
+        states = [
+            [[*getattr(one.brake, name), *getattr(one, name)] for one in profiles]
+            for name in ('p', 'v', 'a')
+        ]
+        jerks = [[*one.brake.j, *one.j, 0.0] for one in profiles]
+        return Cubics(frozen(begins), frozen([*states, jerks]))
+
+    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+        """Positions, velocities and accelerations (..., d) at the times (...) from 0 on."""
+        t = np.asarray(times)[..., None]
+        phase = (self.begins <= t[..., None]).sum(axis=-1) - 1
+        each = np.arange(len(self.begins))
+        t = t - self.begins[each, phase]
+        p, v, a, j = self.states[:, each, phase]
+        return p + t * (v + t * (a / 2 + t * (j / 6))), v + t * (a + t * (j / 2)), a + t * j
+
+
+@dataclass(frozen=True, eq=False)
 class Profile:
-    """A ruckig trajectory of one coordinate."""
+    """A trajectory of one coordinate, from 0 to 1."""
 
     duration: float
-    _trajectory: Any
+    cubics: Cubics
 
     def at(self, times: Array | float) -> tuple[Array, Array, Array]:
         """s, ṡ and s̈ at each of the times (...), those of the ends before and after."""
-        flat = np.clip(np.ravel(times), 0.0, self.duration)
-        samples = np.array([self._trajectory.at_time(t)[:3] for t in flat.tolist()])
-        s, rate, pull = np.moveaxis(samples.reshape(*np.shape(times), 3), -1, 0)
-        return np.clip(s, 0.0, 1.0), rate, pull
+        s, rate, pull = self.cubics.at(np.clip(times, 0.0, self.duration))
+        return np.clip(s[..., 0], 0.0, 1.0), rate[..., 0], pull[..., 0]
 
 
 def profile_within(bounds: Sequence[float], slowdown: float = 1.0) -> Profile:
@@ -47,10 +78,10 @@ def profile_within(bounds: Sequence[float], slowdown: float = 1.0) -> Profile:
     for power, (name, bound) in enumerate(zip(names, bounds, strict=True), start=1):
         setattr(request, f'max_{name}', [min(bound, FASTEST) / slowdown**power])
     trajectory = _calculated(request, 1)
-    return Profile(float(trajectory.duration), trajectory)
+    return Profile(float(trajectory.duration), Cubics.of(trajectory))
 
 
-def _calculated(request: Any, coordinates: int) -> Any:
+def _calculated(request: ruckig.InputParameter, coordinates: int) -> ruckig.Trajectory:
     """The trajectory of so many coordinates; Refused where ruckig finds none, or fails."""
     trajectory = ruckig.Trajectory(coordinates)
     try:
@@ -62,15 +93,13 @@ def _calculated(request: Any, coordinates: int) -> Any:
     return trajectory
 
 
-DIFFERENCE_STEP = 1e-4
-
-
 def coordinates(state: MotionState, reference: Array) -> tuple[Array, Array, Array]:
     """One state in local coordinates about `reference` (3, 3): (6,), with two derivatives."""
     w = so3.log(state.pose.rotation @ reference.T)
     inverse = np.linalg.inv(so3.left_jacobian(w))
     w_rate = inverse @ state.twist[3:]
-    w_acceleration = inverse @ (state.acceleration[3:] - _jacobian_change(w, w_rate))
+    _, change = so3.turning(w, w_rate, np.zeros(3))
+    w_acceleration = inverse @ (state.acceleration[3:] - change)
     return (
         np.concatenate([state.pose.position, w]),
         np.concatenate([state.twist[:3], w_rate]),
@@ -80,23 +109,13 @@ def coordinates(state: MotionState, reference: Array) -> tuple[Array, Array, Arr
 
 def state_of(x: Array, v: Array, a: Array, reference: Array) -> MotionState:
     """The inverse of `coordinates`, for arrays of any shape; reference (..., 3, 3)."""
-    w, w_rate = x[..., 3:], v[..., 3:]
-    jacobian = so3.left_jacobian(w)
-    omega = np.einsum('...ij,...j->...i', jacobian, w_rate)
-    alpha = np.einsum('...ij,...j->...i', jacobian, a[..., 3:]) + _jacobian_change(w, w_rate)
+    w = x[..., 3:]
+    omega, alpha = so3.turning(w, v[..., 3:], a[..., 3:])
     return MotionState(
         Pose(x[..., :3], so3.exp(w) @ reference),
         np.concatenate([v[..., :3], omega], axis=-1),
         np.concatenate([a[..., :3], alpha], axis=-1),
     )
-
-
-def _jacobian_change(w: Array, w_rate: Array) -> Array:
-    """J̇(w)·ẇ by a central difference along ẇ."""
-    h = DIFFERENCE_STEP
-    ahead, behind = so3.left_jacobian(w + h * w_rate), so3.left_jacobian(w - h * w_rate)
-    change: Array = np.einsum('...ij,...j->...i', (ahead - behind) / (2 * h), w_rate)
-    return change
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,11 +175,11 @@ def plan_line_move(
 
 @dataclass(frozen=True, eq=False)
 class MoveInMotion(PosePlan):
-    """A ruckig trajectory in the coordinates about the goal's orientation."""
+    """A trajectory in the coordinates about the goal's orientation."""
 
     goal: Pose
     duration: float
-    _trajectory: Any
+    cubics: Cubics
 
     @property
     def checked_duration(self) -> float:
@@ -169,8 +188,7 @@ class MoveInMotion(PosePlan):
 
     def at(self, times: Array | float) -> MotionState:
         """Position, velocity and acceleration of the coordinates, turned into a state."""
-        parts = sampled(self._trajectory, np.ravel(times))
-        x, v, a = (part.reshape(*np.shape(times), 6) for part in parts)
+        x, v, a = self.cubics.at(np.clip(times, 0.0, self.duration))
         return state_of(x, v, a, self.goal.rotation)
 
     def where(self, time: float) -> str:
@@ -194,12 +212,13 @@ def plan_move_in_motion(
     ]
     bounds[0] = np.minimum(bounds[0], limits.axis_speeds / slowdown)
     target = np.concatenate([goal.position, np.zeros(3)])
-    trajectory = quickest(coordinates(start, goal.rotation), target, bounds)
-    return MoveInMotion(goal, float(trajectory.duration), trajectory)
+    return MoveInMotion(goal, *quickest(coordinates(start, goal.rotation), target, bounds))
 
 
-def quickest(start: tuple[Array, Array, Array], target: Array, bounds: Sequence[Array]) -> Any:
-    """Ruckig's trajectory from coordinates with two derivatives, each (n,), to rest at a target.
+def quickest(
+    start: tuple[Array, Array, Array], target: Array, bounds: Sequence[Array]
+) -> tuple[float, Cubics]:
+    """From coordinates with two derivatives, each (n,), to rest at a target: seconds, and how.
 
     bounds: of speed, acceleration and jerk, (n,) each. Raises Refused where there is none.
     """
@@ -209,11 +228,5 @@ def quickest(start: tuple[Array, Array, Array], target: Array, bounds: Sequence[
     request.target_position = target.tolist()
     for name, most in zip(('velocity', 'acceleration', 'jerk'), bounds, strict=True):
         setattr(request, f'max_{name}', np.minimum(most, FASTEST).tolist())
-    return _calculated(request, len(target))
-
-
-def sampled(trajectory: Any, times: Array) -> tuple[Array, Array, Array]:
-    """Coordinates (k, n) with two derivatives, at times (k,), those of the ends outside."""
-    inside = np.clip(times, 0.0, trajectory.duration).tolist()
-    samples = np.array([trajectory.at_time(t)[:3] for t in inside])
-    return samples[:, 0], samples[:, 1], samples[:, 2]
+    trajectory = _calculated(request, len(target))
+    return float(trajectory.duration), Cubics.of(trajectory)

@@ -253,7 +253,7 @@ class Executor:
         if self._active.is_hold:
             self._scaling.jump()
         self._plan()
-        before = replace(self._active)
+        before = self._active
         self._advance()
         pose = self.state.pose
         try:
@@ -330,7 +330,7 @@ class Executor:
         since = 0.0 if self._active.is_hold else self._active.time - planned.begin
         self._next = planned.goal.then
         self._begin(planned.job.result(), planned.goal.stamp, planned.goal.note)
-        self._active.time = since
+        self._active = self._active.at_time(since)
 
     def _begin(self, plan: Plan, stamp: float, note: str = '') -> None:
         self._active, self._planning.ready = ActivePlan(plan, stamp, note), None
@@ -348,7 +348,7 @@ class Executor:
             ready = None
         if not self.is_waiting:
             self._scaling.advance()
-        self._active.time += self._scaling.factor * self._dt
+        self._active = self._active.at_time(self._active.time + self._scaling.factor * self._dt)
         if ready is not None and self._active.time >= ready.begin:
             self._join(ready)
         if self._scaling.is_stopping and self._scaling.factor <= 0.0:

@@ -45,7 +45,7 @@ class Planned:
 
     goal: Goal
     start: MotionState
-    source: ActivePlan
+    source: Plan
     begin: float
     job: Job[Plan]
 
@@ -64,7 +64,7 @@ class Planned:
         if active.is_hold:
             away = active.state.pose.twist_to(self.start.pose)
             return self.is_from_rest and float(np.abs(away).max()) < SAME_POSE
-        return active is self.source and active.time <= self.begin
+        return active.plan is self.source and active.time <= self.begin
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ class Planning:
         at = self._now + lead * self._dt
         ahead = _Ahead(active.plan, times, active.plan.at(begin), joints, at)
         job = worker.submit(partial(self._plan, goal, ahead))
-        return Planned(goal, ahead.state, active, begin, job)
+        return Planned(goal, ahead.state, active.plan, begin, job)
 
     def _plan(self, goal: Goal, ahead: '_Ahead', effort: Effort) -> Plan:
         """Runs in the worker, with the inverse kinematics up to the plan's start."""

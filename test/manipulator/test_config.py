@@ -41,7 +41,10 @@ def problems(text):
 
 
 def test_a_mistake_of_syntax_is_shown_in_its_line():
-    assert 'line 2, column 3: b: 2 ^' in problems('a: 1\n b: 2')[0]
+    assert problems('a: 1\n b: 2')[0] == "line 2: mapping values are not allowed here: 'b: 2'"
+    assert problems('a: 1\nc:\n\tb: 2')[0] == (
+        "line 3 begins with a tab, YAML needs spaces there: 'b: 2'"
+    )
 
 
 @pytest.mark.parametrize('path', sorted(CONFIG.glob('*.yaml')), ids=lambda path: path.stem)
@@ -104,7 +107,7 @@ class Shape:
     'geometry', [{'pionts_mm': [1.0], 'height_mm': 2.0}, {'radius_mm': 1.0, 'points_mm': [1.0]}]
 )
 def test_a_section_of_no_form_or_of_two_is_told_what_there_is(geometry):
-    with pytest.raises(ConfigError, match=r"needs one of \['radius_mm', 'points_mm'\]$"):
+    with pytest.raises(ConfigError, match=r'needs one of radius_mm, points_mm$'):
         build(Shape, {'geometry': geometry})
 
 

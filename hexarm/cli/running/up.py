@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -97,7 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(described(machine), flush=True)
         parts.start_nodes(arguments.separate)
         try:
-            enable(client, namespace, machine)
+            enable(client, namespace)
             print(_welcome(namespace, machine, arguments.port), flush=True)
             for page in pages:
                 print(f'The panel is on {panel_words(page)}', flush=True)
@@ -217,15 +218,13 @@ def check_alive(graph: Graph) -> None:
         raise NodeDied(f'{dead}; stopping the others')
 
 
-def enable(client: 'Client', namespace: str, machine: str) -> None:
+def enable(client: 'Client', namespace: str) -> None:
     """Energises the servos; a machine that is stopped waits until it is cleared."""
     space = namespace.strip('/')
-    is_ours = read(machine).driver == 'serial'
-    what = 'servos are energised one by one' if is_ours else 'nothing moves yet'
     while True:
-        print(f'enabling; {what}', flush=True)
+        print('enabling', flush=True)
         try:
-            client.enable()
+            client.enable(report=partial(print, flush=True))
             return
         except Refused:
             client.spin(SETTLES)

@@ -107,6 +107,48 @@ def test_reachys_head_comes_back_from_coordinates():
                                atol=1e-5)  # fmt: skip
 
 
+RAILS = {'kind': 'rail', 'stroke_mm': 100, 'cylinder_speed_mm_s': 100, 'joint_swing_deg': 40}
+
+
+def test_rails_come_back_from_coordinates():
+    expected, rails = shipped('linear_rails')
+    geometry = expected['geometry']
+    content, kinematics = made(
+        RAILS,
+        given_by='coordinates',
+        base_joints_mm=geometry['rail_points_mm'],
+        platform_joints_mm=geometry['platform_joints_mm'],
+        rod_length_mm=150.362,
+        rail_direction='up',
+    )
+    assert content['geometry']['home_height_mm'] == pytest.approx(297.847, abs=1e-3)
+    assert [j['centre_mm'] for j in content['servos']['joints']] == [50.0] * 6
+    assert content['limits']['rail_range_mm'] == [2.0, 98.0]
+    joints = kinematics.inverse(kinematics.home)
+    np.testing.assert_allclose(joints, rails.inverse(rails.home), atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ('directions', 'side'),
+    [
+        ({'rail_direction': 'up'}, 'behind'),
+        ({'rail_direction': 'down'}, 'ahead'),
+        ({'rail_direction': 'out'}, 'ahead'),
+        ({'rail_direction': 'in'}, 'behind'),
+        ({'rail_direction': 'own', 'rail_directions': [[0.3, 0, 1], [0, 0.3, 1]] * 3}, 'behind'),
+    ],
+)
+def test_carriages_are_in_the_middle_of_their_travel_at_home(directions, side):
+    circles = {f'base_{k}': STEWART[f'base_{k}'] for k in ('radius_mm', 'angles_deg')}
+    circles |= {f'platform_{k}': STEWART[f'platform_{k}'] for k in ('radius_mm', 'angles_deg')}
+    content, kinematics = made(
+        RAILS, given_by='circles', rod_length_mm=200, **circles, **directions
+    )
+    assert content['geometry']['carriages'] == side
+    joints = kinematics.inverse(kinematics.home)
+    assert joints.mean() == pytest.approx(0.05, abs=1e-5)
+
+
 def test_linear_platform_comes_back_from_radii_angles_and_cylinders():
     content, _ = made(STEWART)
     expected, _ = shipped('stewart_6_6')
@@ -156,7 +198,7 @@ def test_everything_that_is_wrong_is_named_at_once():
     assert str(refused.value).splitlines() == [
         'rod_length_mm: -3 is outside 0.001 … 1e+06',
         "servo: 'SG9' is not one of SG90, MG90S, MG996R, DS3218, DS3218-270, XL330, STS3215, "
-        'other, driver, did you mean SG90?',
+        "other, driver, did you mean 'SG90'?",
         "'rod_lenght_mm': unknown, did you mean 'rod_length_mm'?",
     ]
     with pytest.raises(InvalidInput, match='stroke_mm: not a measure of this kind of machine'):
@@ -202,7 +244,7 @@ def test_a_person_is_asked_again_until_all_is_understood():
     assert text == new.machine_text(checked({'description': 'mine', **LEVEL}))
     said = '\n'.join(told)
     for reason in (
-        "'cranck' is not one of crank, linear, arm, did you mean crank?",
+        "'cranck' is not one of crank, linear, rail, arm, did you mean 'crank'?",
         "'wide' is not a number",
         'an answer is needed',
         'These measures do not fit each other:\nrod_length_mm: 30 mm, but leg 1 has',

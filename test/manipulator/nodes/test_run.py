@@ -72,3 +72,26 @@ def test_nodes_in_a_thread_report_when_an_error_has_ended_them(monkeypatch):
     assert done.returncode == 0
     assert done.stdout == 'ended\nclosed\n'
     assert 'ValueError: a fault of ours' in done.stderr
+
+
+LEAK = textwrap.dedent(
+    """
+    import ctypes
+    import sys
+    import ruckig
+    from manipulator.nodes.run import context
+
+    with context([]):
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(ruckig.Trajectory(6)))
+    print('the reason', file=sys.stderr)
+    sys.exit(3)
+    """
+)
+
+
+def test_nothing_is_printed_about_plans_that_outlive_the_interpreter(monkeypatch):
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'OFF')
+    done = subprocess.run(
+        [sys.executable, '-c', LEAK], stderr=subprocess.PIPE, text=True, check=False
+    )
+    assert (done.stderr, done.returncode) == ('the reason\n', 3)

@@ -76,8 +76,7 @@ def test_the_distance_to_a_limit_is_where_it_is_met_to_first_order(platform):
 
 
 def test_samples_of_the_workspace_are_reachable(platform):
-    length = platform.kinematics.characteristic_length
-    poses = sample(platform, 60, np.random.default_rng(2), length)
+    poses = sample(platform, 60, np.random.default_rng(2))
     for k in range(60):
         assert reach(platform, poses[k]).is_reachable
 
