@@ -113,12 +113,12 @@ EACH(arm_miss, struct frame pose = pose_of(PART(1, 3), PART(2, 9));
      arm_miss(THE(struct arm, 0), &pose, PART(3, 6));)
 FUNCTION(arm_miss, {WHOLE, NUMBERS(struct arm)}, {ITEMS, 3}, {ITEMS, 9}, {WRITTEN, 6})
 
-/* Candidates, and NaN; a[1] is the length and the loop. */
+/* Candidates, and NaN; a[1] is the length and the loop. For how many poses they are certain. */
 EACH(general_candidates, struct frame pose = pose_of(PART(2, 3), PART(3, 9));
-     real(*rows)[JOINTS] = ROWS(4, MOST_CANDIDATES);
+     real(*rows)[JOINTS] = ROWS(4, MOST_CANDIDATES); int are_certain;
      int count = general_candidates(THE(struct chain, 0), a[1][0], (int)a[1][1], &pose, rows,
-                                    &(int){0});
-     fill_nan(rows + count, rows + MOST_CANDIDATES);)
+                                    &are_certain);
+     fill_nan(rows + count, rows + MOST_CANDIDATES); sum += are_certain;)
 FUNCTION(general_candidates, {WHOLE, NUMBERS(struct chain)}, {WHOLE, 2}, {ITEMS, 3}, {ITEMS, 9},
          {WRITTEN, MOST_CANDIDATES * JOINTS})
 
