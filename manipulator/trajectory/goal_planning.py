@@ -16,8 +16,9 @@ from manipulator.errors import ManipulatorError, Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.planning.goal import Goal, Motion, OnUnreachable
 from manipulator.planning.nearest_goal import NearestGoal
-from manipulator.planning.plan import MotionState, Plan
-from manipulator.planning.planner import Start, plan_goal
+from manipulator.planning.plan import Hold, MotionState, Plan
+from manipulator.planning.planner import plan_goal
+from manipulator.planning.start import Start
 from manipulator.planning.stream import Stream
 from manipulator.planning.worker import Effort, InPlace, Job, TooLong, Worker
 from manipulator.pose import Pose
@@ -187,7 +188,8 @@ class Planning:
         """Runs in the worker, with the inverse kinematics up to the plan's start."""
         effort.spend(len(ahead.times))
         joints = ahead.joints_at_end(self._machine)
-        start = Start(ahead.state, joints, self._dt, ahead.at, ahead.rates_at_end)
+        before = ahead.joints_before_end(self._machine, joints, self._dt)
+        start = Start(ahead.state, joints, self._dt, ahead.at, ahead.rates_at_end, before)
         return plan_goal(self._machine, start, goal, effort)
 
 
@@ -218,6 +220,18 @@ class _Ahead:
         pulls = (rows[2] - 2.0 * rows[1] + rows[0]) / STEP**2
         rates = (rows[2] - rows[0]) / (2.0 * STEP) + (self.times[-1] - middle) * pulls
         return rates, pulls
+
+    def joints_before_end(self, machine: Machine, joints: Array, dt: float) -> Array | None:
+        """The joints (n,) a tick before those at the end; None where another plan had them."""
+        if isinstance(self.plan, Hold):
+            return joints
+        time = float(self.times[-1]) - dt
+        if time < 0.0:
+            return None
+        rows = self.plan.joints_at(np.array([time]))
+        if rows is None:
+            rows = machine.kinematics.inverse_along(self.plan.at(np.array([time])).pose, joints)
+        return rows[0] if bool(np.isfinite(rows).all()) else None
 
     def joints_at_end(self, machine: Machine) -> Array:
         """The joints (n,) at the last of the times."""

@@ -25,7 +25,8 @@ from manipulator.machine import Machine
 from manipulator.planning.goal import Goal, Motion
 from manipulator.planning.nearest_goal import NearestGoal
 from manipulator.planning.plan import MotionState
-from manipulator.planning.planner import Start, plan_goal
+from manipulator.planning.planner import plan_goal
+from manipulator.planning.start import Start
 from manipulator.planning.worker import Effort
 from manipulator.pose import Pose
 from manipulator.teleop.jogger import JogMotion
