@@ -105,6 +105,7 @@ def _stack(config: StackConfig, limits: StackLimitsConfig, machine_file: Machine
         Stack(sections, transforms), limits.characteristic_length_mm * 1e-3
     )
     motion = MotionLimits.from_config(machine_file.motion)
+    _check_motion(motion, kinematics)
     return Machine(
         kinematics,
         constraints_of(kinematics),
@@ -137,6 +138,22 @@ def _check_units(sections: tuple[Machine, ...]) -> None:
                     f'{first}; all joints of a machine have one unit'
                 ]
             )
+
+
+def _check_motion(motion: MotionLimits, kinematics: StackKinematics) -> None:
+    """Raises ConfigError for limits of six joints alone."""
+    unit, count = 'mm' if kinematics.joint_unit == 'm' else 'deg', len(kinematics.joint_names)
+    limits = {
+        f'joint_speed_{unit}_s': motion.joint.speed,
+        f'joint_acceleration_{unit}_s2': motion.joint.acceleration,
+    }
+    problems = [
+        f'motion.{name}: has {limit.size} entries, a stack of {count} joints needs one number'
+        for name, limit in limits.items()
+        if limit.shape
+    ]
+    if problems:
+        raise ConfigError(problems)
 
 
 def _sections(config: StackConfig, machine_file: MachineFile) -> tuple[Machine, ...]:
