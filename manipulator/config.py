@@ -163,7 +163,8 @@ def _convert_form(
         name: names[0] for names in others for name in names if name in value and name not in own
     }
     problems += [
-        f'{_join(where, name)}: goes with {first}, not with {own[0]}'
+        f'{_join(where, name)}: does not go with {own[0]}'
+        + (f', but with {first}' if first != name else '')
         for name, first in foreign.items()
     ]
     rest = {name: entry for name, entry in value.items() if name not in foreign}

@@ -131,7 +131,7 @@ def test_a_key_of_another_form_is_told_what_it_goes_with():
     with pytest.raises(ConfigError) as caught:
         build(Shapes, {'geometry': mixed})
     assert caught.value.problems == (
-        'geometry.radius_mm: goes with radius_mm, not with points_mm',
+        'geometry.radius_mm: does not go with points_mm',
         'geometry.colour: unknown key',
     )
 
