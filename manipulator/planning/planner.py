@@ -11,12 +11,20 @@ from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
 from manipulator.planning.check import check_plan
 from manipulator.planning.cycle import Cycle
+from manipulator.planning.flowing import ATTEMPTS as STREAM_ATTEMPTS
+from manipulator.planning.flowing import STILL, Attempt
 from manipulator.planning.goal import Flow, Goal, Motion
 from manipulator.planning.joint_move import KNOTS, plan_joint_move
+from manipulator.planning.joint_stream import KNOTS as JOINT_KNOTS
+from manipulator.planning.joint_stream import (
+    JointState,
+    plan_joint_move_in_motion,
+    plan_joint_stream,
+)
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import MotionState, Plan
 from manipulator.planning.point_to_point import plan_line_move, plan_move_in_motion
-from manipulator.planning.stream import SHORTEST, STILL, plan_stream_move
+from manipulator.planning.stream_move import plan_stream_move
 from manipulator.planning.worker import Effort, TooLong
 from manipulator.pose import Pose
 from manipulator.unit_hints import hint_at_metres
@@ -45,13 +53,22 @@ SAME_JOINTS = 1e-3
 class Start:
     """Where a plan begins: a state of motion, the joints (n,) there; dt is a tick (s).
 
-    time is when, on the clock of `Flow.due`.
+    time is when, on the clock of `Flow.due`. rates: of the joints, with their derivatives (n,);
+    None in a motion of poses.
     """
 
     state: MotionState
     joints: Array
     dt: float
     time: float = 0.0
+    rates: tuple[Array, Array] | None = None
+
+    @property
+    def joint_motion(self) -> JointState | None:
+        """The joints in motion or at rest; None in a motion of poses."""
+        still = np.zeros_like(self.joints)
+        rates = (still, still) if self.state.is_at_rest else self.rates
+        return None if rates is None else JointState(self.state.pose, (self.joints, *rates))
 
 
 def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Plan:
@@ -62,12 +79,19 @@ def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pla
     """
     refuse_absurd(machine, goal.pose)
     if goal.motion in (Motion.JOINT, Motion.UNWIND):
+        begin, is_moving = start.joint_motion, not start.state.is_at_rest
+        if begin is not None and goal.joints is not None and (goal.flow or is_moving):
+            joints = _off_the_stops(machine, goal.joints)
+            return _plan_joints_in_motion(machine, start, begin, joints, goal.flow, effort)
         return _plan_joints(machine, start, goal, effort)
-    flowing = (
-        None if goal.flow is None else _plan_stream(machine, start, goal.pose, goal.flow, effort)
-    )
-    if flowing is not None:
-        return flowing
+    flow, limits = goal.flow, machine.motion.for_plans
+    if flow is not None:
+        flowing = _plan_stream(
+            machine, start, flow, effort,
+            lambda how: plan_stream_move(start.state, goal.pose, flow, start.time, limits, how),
+        )  # fmt: skip
+        if flowing is not None:
+            return flowing
     try:
         return _plan_line(machine, start, goal, effort)
     except Refused as refusal:
@@ -141,19 +165,49 @@ def plan_to(machine: Machine, start: Start, pose: Pose, effort: Effort | None = 
 
 
 def _plan_stream(
-    machine: Machine, start: Start, pose: Pose, flow: Flow, effort: Effort
+    machine: Machine,
+    start: Start,
+    flow: Flow,
+    effort: Effort,
+    plan: Callable[[Attempt], Plan | None],
 ) -> Plan | None:
     """The move that follows a stream, None where it would pass a limit, or nothing moves."""
     if start.state.is_at_rest and np.abs(flow.twist).max() < STILL:
         return None
-    seconds = max(flow.due - start.time, SHORTEST / 2.0)
-    try:
-        move = plan_stream_move(start.state, pose, flow, seconds, machine.motion.for_plans)
-        if move is not None and check_plan(move, machine, start.joints, start.dt, effort).fits:
-            return move
-    except Refused:
-        pass
+    for attempt in STREAM_ATTEMPTS:
+        try:
+            move = plan(attempt)
+            if move is not None and check_plan(move, machine, start.joints, start.dt, effort).fits:
+                return move
+        except Refused:
+            continue
     return None
+
+
+def _plan_joints_in_motion(
+    machine: Machine,
+    start: Start,
+    begin: JointState,
+    joints: Array,
+    flow: Flow | None,
+    effort: Effort,
+) -> Plan:
+    """A move to joints (n,) from the motion of others, along the stream that they continue."""
+    cost = FORWARD_COST * JOINT_KNOTS
+
+    def move(limits: MotionLimits, slowdown: float) -> Plan:
+        effort.spend(cost)
+        return plan_joint_move_in_motion(machine, begin, joints, limits, slowdown)
+
+    if flow is not None:
+        effort.spend(cost)
+        flowing = _plan_stream(
+            machine, start, flow, effort,
+            lambda how: plan_joint_stream(machine, begin, joints, flow, start.time, how),
+        )  # fmt: skip
+        if flowing is not None:
+            return flowing
+    return _slowed_down(machine, start, move, effort)
 
 
 def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Plan:
