@@ -310,7 +310,7 @@ def test_an_arm_is_in_view_beside_its_controls(device, browser, worker):
     assert (low > 5).all()
     assert high[0] < box['y'] + box['height'] - 5
     assert high[1] < box['x'] + box['width'] - 5
-    assert high[0] - low[0] > 0.4 * box['height']
+    assert high[0] - low[0] > 0.25 * box['height']
 
 
 def green_points(page, path):
