@@ -46,11 +46,23 @@ def profile_within(bounds: Sequence[float], slowdown: float = 1.0) -> Profile:
     names = ('velocity', 'acceleration', 'jerk')
     for power, (name, bound) in enumerate(zip(names, bounds, strict=True), start=1):
         setattr(request, f'max_{name}', [min(bound, FASTEST) / slowdown**power])
-    trajectory = ruckig.Trajectory(1)
-    result = ruckig.Ruckig(1).calculate(request, trajectory)
-    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise Refused(f'no jerk-limited profile was found ({result.name})')
+    trajectory = _calculated(request, 1)
     return Profile(float(trajectory.duration), trajectory)
+
+
+def _calculated(request: Any, axes: int) -> Any:
+    """Ruckig's trajectory; Refused where it finds none, by a result or by an exception."""
+    trajectory = ruckig.Trajectory(axes)
+    try:
+        result = ruckig.Ruckig(axes).calculate(request, trajectory)
+    except ValueError as error:  # of a result without a name in Python: -101, of the duration
+        raise Refused('no jerk-limited move was found: it would take too long') from error
+    except ruckig.RuckigError as error:
+        text = ' '.join(str(error).split()).removeprefix('[ruckig] ').partition(' input:')[0]
+        raise Refused(f'no jerk-limited move was found ({text})') from error
+    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
+        raise Refused(f'no jerk-limited move was found ({result.name})')
+    return trajectory
 
 
 DIFFERENCE_STEP = 1e-4
@@ -190,8 +202,5 @@ def plan_move_in_motion(
             bounds = np.minimum(bounds, limits.axis_speeds / slowdown).tolist()
         ruckig_name = 'velocity' if name == 'speed' else name
         setattr(request, f'max_{ruckig_name}', bounds)
-    trajectory = ruckig.Trajectory(6)
-    result = ruckig.Ruckig(6).calculate(request, trajectory)
-    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise Refused(f'no jerk-limited move was found ({result.name})')
+    trajectory = _calculated(request, 6)
     return MoveInMotion(goal, float(trajectory.duration), trajectory)
