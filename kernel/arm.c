@@ -232,7 +232,7 @@ void arm_along(const struct arm *arm, const real (*positions)[3], const real (*r
                long count, const real near[JOINTS], real (*joints)[JOINTS])
 {
     real last[JOINTS], ahead[JOINTS], branches[MOST_BRANCHES][JOINTS];
-    int searches = 0;
+    int searches = 0, moves = 0;
     for (int i = 0; i < JOINTS; i++)
         last[i] = ahead[i] = near[i];
     for (long n = 0; n < count; n++) {
@@ -248,12 +248,14 @@ void arm_along(const struct arm *arm, const real (*positions)[3], const real (*r
             closes = continued(branches, found, ahead, joints[n]);
         }
         /* Where joints go on to at their speed: beside postures where two branches meet only the
-           motion tells them apart. */
+           motion tells them apart. What precedes the row, or a gap in it, may be far: no speed. */
         for (int i = 0; i < JOINTS; i++) {
             if (!closes)
                 joints[n][i] = (real)NAN;
-            ahead[i] = closes ? 2 * joints[n][i] - last[i] : last[i];
+            real step = closes && moves ? joints[n][i] - last[i] : 0;
             last[i] = closes ? joints[n][i] : last[i];
+            ahead[i] = last[i] + step;
         }
+        moves = closes;
     }
 }

@@ -93,8 +93,11 @@ def _calculated(request: ruckig.InputParameter, coordinates: int) -> Cubics:
     trajectory = ruckig.Trajectory(coordinates)
     try:
         result = ruckig.Ruckig(coordinates).calculate(request, trajectory)
+    except ValueError as error:  # of a result without a name in Python: -101, of the duration
+        raise Refused('no jerk-limited move was found: it would take too long') from error
     except ruckig.RuckigError as error:
-        raise Refused('no jerk-limited move was found (ruckig failed)') from error
+        text = ' '.join(str(error).split()).removeprefix('[ruckig] ').partition(' input:')[0]
+        raise Refused(f'no jerk-limited move was found ({text})') from error
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
         raise Refused(f'no jerk-limited move was found ({result.name})')
     return Cubics.of(trajectory)
