@@ -29,7 +29,7 @@ class Chain:
     def __post_init__(self) -> None:
         """Freezes the arrays."""
         axes, points = frozen(self.axes), frozen(self.points)
-        tool = self.home.rotation, self.home.position
+        tool = self.home.position, self.home.rotation
         numbers = frozen(np.concatenate([part.ravel() for part in (axes, points, *tool)]))
         for name, value in (('axes', axes), ('points', points), ('numbers', numbers)):
             object.__setattr__(self, name, value)

@@ -21,11 +21,13 @@ def interleaved_medians(tasks: Sequence[Callable[[int], object]], rounds: int) -
     """Seconds of one call of each task, the medians over rounds in which all take their turn.
 
     Each task is told the round, so that it can take another input each time. Turns by turns,
-    what else the computer does falls on all tasks alike.
+    what else the computer does falls on all tasks alike; in another order each time, so does what
+    the task before has left in the caches.
     """
-    times = np.empty((rounds, len(tasks)))
+    times, generator = np.empty((rounds, len(tasks))), np.random.default_rng(1)
     for k in range(rounds):
-        for column, task in enumerate(tasks):
+        for column in generator.permutation(len(tasks)).tolist():
+            task = tasks[column]
             before = time.perf_counter()
             task(k)
             times[k, column] = time.perf_counter() - before

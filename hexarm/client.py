@@ -63,17 +63,18 @@ class Client(GraphClient):
         self._goals = self.node.create_publisher(PoseStamped, 'goal_pose', COMMAND)
         self._paths = self.node.create_publisher(Path, 'goal_path', COMMAND)
 
-    def enable(self) -> None:
+    def enable(self, report: Callable[[str], object] = lambda words: None) -> None:
         """Energises the servos and waits until the machine takes goals; Refused with the reason.
 
-        However long the servos take: the patience begins again with each *arming* of the bridge.
+        report is given the bridge's answer: what the servos do meanwhile. However long they
+        take: the patience begins again with each *arming* of the bridge.
         """
         self.wait(
             'the board or driver',
             lambda: self.machine_state.message not in WITHOUT_BOARD,
             seconds=15.0,
         )
-        self.switch('serial_bridge/enable', True)
+        report(self.switch('serial_bridge/enable', True))
         before = self._states_received
         self.wait(
             'enabling',

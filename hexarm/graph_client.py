@@ -1,8 +1,11 @@
 """A node that watches one machine's graph, waits for it and calls its services."""
 
 import contextlib
+import signal
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from types import FrameType
 from typing import Any, TypeVar
 
 import rclpy
@@ -78,7 +81,8 @@ class GraphClient:
             left = end - time.monotonic()
             if left <= 0:
                 return
-            self._executor.spin_once(timeout_sec=min(left, 0.05))
+            with _interrupt_after():
+                self._executor.spin_once(timeout_sec=min(left, 0.05))
 
     def wait(
         self,
@@ -193,3 +197,24 @@ class GraphClient:
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for entry in message.status:
             self.diagnostics[entry.name] = entry
+
+
+@contextlib.contextmanager
+def _interrupt_after() -> Iterator[None]:
+    """What Ctrl-C does (KeyboardInterrupt, or a handler of the program) happens after the block.
+
+    In the middle of rclpy a KeyboardInterrupt may be lost (Python drops what `Future.__del__`
+    raises), turn into a RuntimeError, or leave the node without any more callbacks.
+    """
+    handler = signal.getsignal(signal.SIGINT)
+    if not callable(handler) or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    received: list[tuple[int, FrameType | None]] = []
+    signal.signal(signal.SIGINT, lambda *signalled: received.append(signalled))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+        if received:
+            handler(*received[0])

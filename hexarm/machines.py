@@ -1,9 +1,8 @@
 """Finding and loading machine files: by path, then beside the source, then in share/."""
 
-import difflib
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,7 +15,14 @@ from bridge.servo_config import BoardConfig, ServosConfig
 from manipulator.arrays import frozen
 from manipulator.config import MAX_CHARACTERS, build, parse_yaml
 from manipulator.errors import ConfigError, InvalidInput
-from manipulator.formatting import reason, shortened, shown
+from manipulator.formatting import (
+    did_you_mean,
+    nearest,
+    not_one_of,
+    reason,
+    shortened,
+    shown,
+)
 from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
@@ -52,6 +58,15 @@ KINDS: dict[str, Callable[[MachineFile], Machine]] = {
 }
 
 
+NEEDED = ('kind', 'geometry', 'limits', 'motion')
+"""Keys of which every machine file has some."""
+OTHER_FILES = {
+    'deadman': 'a gamepad (docs/joystick.md)',
+    'sticks': 'a gamepad (docs/joystick.md)',
+    'poses': 'saved poses (docs/teach.md)',
+    'sequences': 'saved poses (docs/teach.md)',
+}
+"""By one of its keys, what another file of this project is for."""
 OF_A_SECTION = ('kind', 'geometry', 'limits', 'dynamics')
 """What a stack's section takes of the machine file that it names."""
 
@@ -83,8 +98,7 @@ def find(name_or_path: str) -> Path:
         return path
     if name_or_path in known:
         return known[name_or_path]
-    near = difflib.get_close_matches(name_or_path, list(known), n=1)
-    hint = f', did you mean {near[0]!r}?' if near else ''
+    hint = did_you_mean(nearest(name_or_path, known))
     raise ConfigError(
         [f'no machine is called {shown(name_or_path)}{hint} (shipped: {", ".join(sorted(known))})']
     )
@@ -109,9 +123,19 @@ def content_of(path: Path) -> dict[str, Any]:
     """What a machine file holds, see `with_sections`."""
     content = parse_yaml(text_of(path), str(path))
     try:
+        check_is_machine(content)
         return with_sections(content, path.parent)
     except ConfigError as error:
         raise ConfigError(error.problems, str(path)) from error
+
+
+def check_is_machine(content: Mapping[str, Any]) -> None:
+    """Raises ConfigError, with one problem, for a file that is for something else."""
+    if any(name in content for name in NEEDED):
+        return
+    other = next((words for key, words in OTHER_FILES.items() if key in content), '')
+    are = f'its keys are those of {other}' if other else f'{", ".join(NEEDED)} are missing'
+    raise ConfigError([f'this is no machine file: {are}'])
 
 
 def with_sections(content: dict[str, Any], folder: Path) -> dict[str, Any]:
@@ -193,9 +217,7 @@ def loader(kind: str) -> Callable[[MachineFile], Machine]:
     """What makes machines of this kind; ConfigError names the kinds that there are."""
     if kind in KINDS:
         return KINDS[kind]
-    near = difflib.get_close_matches(kind, list(KINDS), n=1)
-    hint = f', did you mean {near[0]!r}?' if near else ''
-    raise ConfigError([f'kind: {shown(kind)} is not one of {", ".join(KINDS)}{hint}'])
+    raise ConfigError([f'kind: {not_one_of(kind, KINDS)}'])
 
 
 def load(name_or_path: str) -> Machine:

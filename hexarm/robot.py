@@ -4,15 +4,21 @@ Metres, radians, seconds. Poses are those of the platform, or of the tool, in th
 """
 
 import asyncio
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
+import numpy as np
+
+from hexarm import saved_goals
 from hexarm.machines import load
 from hexarm.namespaces import NAMESPACE
 from hexarm.robot_client import PATIENCE, Progress, RobotClient
 from hexarm.robot_values import (
+    FileName,
     Limits,
     PoseLike,
+    check_progress,
     checked,
+    checked_file,
     moved_to,
     numbers_by_name,
     pose_from,
@@ -24,9 +30,10 @@ from manipulator.formatting import shown
 from manipulator.machine import Machine
 from manipulator.nodes.messages import BASE_FRAME, WORK_FRAME, pose_of
 from manipulator.pose import Pose
-from manipulator.saved_poses import SavedPoses, checked_name
+from manipulator.saved_poses import SavedPose, SavedPoses, checked_name
 from manipulator.states import MotionResult
 
+JOG_FRAMES = (BASE_FRAME, WORK_FRAME, 'pivot', 'tool')
 PLANNED_WITHIN = 60.0
 """Seconds that the planning of a path may take, by default."""
 
@@ -40,15 +47,15 @@ class Robot:
     brakes the machine, which then holds; so does leaving the block while it moves.
     """
 
-    def __init__(self, namespace: str = '/hexapod', *, machine: str | None = None) -> None:
+    def __init__(self, namespace: str = '/hexapod', *, machine: FileName | None = None) -> None:
         """`machine`: its file, where that has another name here than on its own computer.
 
         NoMachine names the machines that are there.
         """
-        if NAMESPACE.fullmatch(namespace) is None:
+        if not isinstance(namespace, str) or NAMESPACE.fullmatch(namespace) is None:
             raise InvalidInput(f'{shown(namespace)} is not a ROS name: letters, digits, _ and /')
         self.namespace = f'/{namespace.strip("/")}'
-        self._file = machine
+        self._file = None if machine is None else checked_file(machine)
         self._machine: Machine | None = None
         self._client = RobotClient(self.namespace, self._check)
         try:
@@ -59,7 +66,7 @@ class Robot:
             raise
 
     @staticmethod
-    def simulated(machine: str = 'robocake', namespace: str | None = None) -> 'Robot':
+    def simulated(machine: FileName = 'robocake', namespace: str | None = None) -> 'Robot':
         """A machine on the fake board, with a graph of its own, which ends with this Robot.
 
         Unless ROS_DOMAIN_ID is set, it has a ROS domain of its own, on this computer only.
@@ -119,8 +126,10 @@ class Robot:
         progress: Progress | None = None,
     ) -> None:
         """Moves to the named coordinates (m, rad); the others keep their commanded values."""
-        named = {'x': x, 'y': y, 'z': z, 'roll': roll, 'pitch': pitch, 'yaw': yaw}
-        goal = moved_to(self.target, named)
+        coordinates = {'x': x, 'y': y, 'z': z, 'roll': roll, 'pitch': pitch, 'yaw': yaw}
+        named = {name: value for name, value in coordinates.items() if value is not None}
+        numbers = numbers_by_name(named, {}, 'coordinate')
+        goal = moved_to(self.target, numbers)
         self.move_to(goal, speed=speed, wait=wait, timeout=timeout, progress=progress)
 
     def move_to(
@@ -132,25 +141,22 @@ class Robot:
         timeout: float = PATIENCE,
         progress: Progress | None = None,
     ) -> None:
-        """Moves to a pose, or to a saved one by name; with a `speed` (m/s) on a line from rest."""
-        goal = self.saved_poses.of(pose).pose if isinstance(pose, str) else pose_from(pose)
-        if speed is None:
-            self._client.begin(lambda: self._client.send_goal(goal), goal, progress)
-        else:
-            most = checked('speed', speed, above=0.0)
-            self._client.rest()
-            self._client.begin_path(poses_from([self._client.commanded(), goal]), most, progress)
-        if wait:
-            self.wait(timeout)
+        """Moves to a pose, or to a saved one by name; with a `speed` (m/s) on a line from rest.
+
+        An arm takes a saved pose with the joints that it had: by a joint move, or on the line; it
+        is Refused where the line leads to other ones.
+        """
+        check_progress(progress)
+        goal = self._goal(pose)
+        most = None if speed is None else checked('speed', speed, above=0.0)
+        self._move(lambda: self._begin_move(goal, most, progress), wait, timeout)
 
     def move_tool_to(
         self, pose: PoseLike, *, wait: bool = True, timeout: float = PATIENCE
     ) -> None:
         """Moves the tool in force, or the pivot, to a pose in the work frame."""
         goal = pose_from(pose)
-        self._client.begin(lambda: self._client.send_goal(goal, WORK_FRAME))
-        if wait:
-            self.wait(timeout)
+        self._begin(lambda: self._client.send_goal(goal, WORK_FRAME), wait, timeout)
 
     def move_joints(
         self,
@@ -163,9 +169,7 @@ class Robot:
     ) -> None:
         """Moves joints by name (rad, m), all in proportion; the others stay as commanded."""
         goal = numbers_by_name(joints, named, 'joint')
-        self._client.begin(lambda: self._client.send_joints(goal))
-        if wait:
-            self.wait(timeout)
+        self._begin(lambda: self._client.send_joints(goal), wait, timeout)
 
     def follow(
         self,
@@ -177,19 +181,18 @@ class Robot:
         progress: Progress | None = None,
     ) -> None:
         """Moves to the first pose, then exactly through the others, at `speed` (m/s) at most."""
+        check_progress(progress)
         path = poses_from(poses)
         most = None if speed is None else checked('speed', speed, above=0.0)
-        self._client.begin_path(path, most, progress)
-        if wait:
-            self.wait(timeout)
+        self._move(lambda: self._client.begin_path(path, most, progress), wait, timeout)
 
     def home(self, *, wait: bool = True, timeout: float = PATIENCE) -> None:
         """Moves to the home pose, along a line where one leads there, else by its joints."""
-        self._go('home', wait, timeout)
+        self._begin(lambda: self._client.send_to('home'), wait, timeout)
 
     def park(self, *, wait: bool = True, timeout: float = PATIENCE) -> None:
         """As `home`, to the joints at which the servos are switched on and off."""
-        self._go('park', wait, timeout)
+        self._begin(lambda: self._client.send_to('park'), wait, timeout)
 
     def jog(
         self,
@@ -209,6 +212,10 @@ class Robot:
         """
         named = {'vx': vx, 'vy': vy, 'vz': vz, 'wx': wx, 'wy': wy, 'wz': wz}
         twist = [checked(name, value) for name, value in named.items()]
+        if not any(twist):
+            raise InvalidInput('no velocity is given: vx, vy, vz (m/s), wx, wy, wz (rad/s)')
+        if frame not in JOG_FRAMES:
+            raise InvalidInput(f'frame {shown(frame)}: needs one of {", ".join(JOG_FRAMES)}')
         duration = checked('seconds', seconds, above=0.0)
         self.wait()
         self._client.jog(twist, frame, duration)
@@ -259,7 +266,9 @@ class Robot:
 
         A pose that has this name already is replaced; InvalidInput, Refused with the reason.
         """
-        return self._client.change_saved_pose('save_pose', name and checked_name(name))
+        return self._client.change_saved_pose(
+            'save_pose', '' if name == '' else checked_name(name)
+        )
 
     def delete_pose(self, name: str) -> None:
         """Deletes a saved pose; Refused where there is none, or a sequence needs it."""
@@ -283,6 +292,9 @@ class Robot:
         `speed` (m/s) and `pause` (s) replace those of the sequences; `repeat`: how many times.
         Raises as `move_to`; Ctrl-C brakes the machine.
         """
+        if not names:
+            raise InvalidInput('replay what? Names of saved poses and sequences')
+        check_progress(progress)
         saved = self.saved_poses
         steps = saved.steps(names)
         most = None if speed is None else checked('speed', speed, above=0.0)
@@ -290,7 +302,8 @@ class Robot:
         total = len(steps) * int(checked('repeat', repeat, least=1.0))
         for done in range(total):
             step = steps[done % len(steps)]
-            self.move_to(saved.of(step.pose).pose, speed=most or step.speed)
+            self._begin_move(saved.of(step.pose), most or step.speed)
+            self.wait()
             self._client.spin(step.pause_s if rest is None else rest)
             if progress is not None:
                 progress((done + 1) / total)
@@ -302,7 +315,7 @@ class Robot:
 
         However long it takes: TimedOut after `timeout` seconds in which nothing moves.
         """
-        self._client.finish(timeout)
+        self._client.finish(checked('timeout', timeout, above=0.0))
 
     def is_done(self) -> bool:
         """Whether the last motion has ended, for programs with a loop of their own.
@@ -357,14 +370,39 @@ class Robot:
         """Joint ranges and speeds, from the machine file."""
         return Limits.of(self._model())
 
-    def reach(self, pose: PoseLike) -> Reach:
+    def reach(self, pose: PoseLike | str) -> Reach:
         """Whether a pose can be reached, the reason if not, and how near each limit is."""
-        return reach(self._model(), pose_from(pose))
+        return reach(self._model(), self._goal(pose).pose)
 
-    def _go(self, place: str, wait: bool, timeout: float) -> None:
-        self._client.begin(lambda: self._client.send_to(place))
+    def _goal(self, pose: PoseLike | str) -> SavedPose:
+        return self.saved_poses.of(pose) if isinstance(pose, str) else SavedPose(pose_from(pose))
+
+    def _begin_move(
+        self, saved: SavedPose, speed: float | None, progress: Progress | None = None
+    ) -> None:
+        goal, client = saved.pose, self._client
+        joints = None if saved.joints is None else saved_goals.joints_of(self._model(), saved)
+        if speed is not None:
+            client.rest()
+            start = client.commanded()
+            if joints is not None:
+                near = np.array([self.joints[name] for name in joints])
+                saved_goals.check_line(self._model(), start, near, saved)
+            client.begin_path(poses_from([start, goal]), speed, progress)
+        elif joints is not None:
+            client.begin(lambda: client.send_joints(joints), goal, progress)
+        else:
+            client.begin(lambda: client.send_goal(goal), goal, progress)
+
+    def _begin(self, send: Callable[[], object], wait: bool, timeout: float) -> None:
+        self._move(lambda: self._client.begin(send), wait, timeout)
+
+    def _move(self, begin: Callable[[], object], wait: bool, timeout: float) -> None:
+        """Begins a motion, once all that was asked for is checked, and waits for its end."""
+        patience = checked('timeout', timeout, above=0.0)
+        begin()
         if wait:
-            self.wait(timeout)
+            self._client.finish(patience)
 
     def _model(self) -> Machine:
         if self._machine is None:

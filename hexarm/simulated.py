@@ -8,21 +8,21 @@ from pathlib import Path
 import rclpy
 
 from hexarm import use_own_domain
-from hexarm.cli.running.up import check_alive
-from hexarm.graph import Graph, link_folder, machine_graph
+from hexarm.graph import Graph, check_alive, link_folder, machine_graph
 from hexarm.machines import family
 from hexarm.robot import Robot
+from hexarm.robot_values import FileName, checked_file
 
 
 class SimulatedRobot(Robot):
     """See `Robot.simulated`."""
 
-    def __init__(self, machine: str, namespace: str | None) -> None:
+    def __init__(self, machine: FileName, namespace: str | None) -> None:
         self._stack = ExitStack()
         self._graph: Graph | None = None
-        self._file = machine
+        space = family(checked_file(machine)) if namespace is None else namespace
         with own_domain():
-            super().__init__(namespace or family(machine), machine=machine)
+            super().__init__(space, machine=machine)
 
     def _start(self) -> None:
         self._client.refuse_second()

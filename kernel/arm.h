@@ -1,7 +1,5 @@
 /* The inverse of any arm with six joints: docs/arm-kinematics.md, 4 to 6. */
-#ifndef KERNEL_ARM_H
-#define KERNEL_ARM_H
-
+#pragma once
 #include "branches.h"
 #include "closed_forms.h"
 
@@ -43,5 +41,3 @@ void arm_miss(const struct arm *arm, const struct frame *pose, real miss[6]);
 /* Joints on one branch along a row of poses, from `near` on: continuous, whatever the ranges. */
 void arm_along(const struct arm *arm, const real (*positions)[3], const real (*rotations)[9],
                long count, const real near[JOINTS], real (*joints)[JOINTS]);
-
-#endif

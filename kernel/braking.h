@@ -1,7 +1,5 @@
-/* Whether a platform that is jogged can still brake: docs/teleop.md. */
-#ifndef KERNEL_BRAKING_H
-#define KERNEL_BRAKING_H
-
+/* Whether a platform that is jogged can still brake: docs/teleop.md, Limits, 3. */
+#pragma once
 #include "limits.h"
 
 /* The machine as it is jogged: poses are of its pivot in the work frame, SI units. */
@@ -9,8 +7,8 @@ struct jogged {
     const struct platform *platform;
     const struct limit_ranges *ranges;
     const struct jog_frame {
-        real position[3], rotation[9]; /* of the work frame in the base frame */
-        real pivot[3];                 /* platform frame */
+        struct frame work; /* in the base frame */
+        real pivot[3];     /* platform frame */
     } *frame;
     const struct jog_bounds {
         real tick; /* s */
@@ -20,7 +18,8 @@ struct jogged {
 };
 
 struct jog_state {
-    const real *position, *rotation, *joints, *rates;
+    struct frame pose;
+    const real *joints, *rates;
 };
 
 /* What limits a braking path: the first of these. */
@@ -30,10 +29,9 @@ enum obstacle { NOTHING, A_LIMIT, A_SPEED, AN_ACCELERATION };
    that breaks a limit, are pose and joints; `joint` is the one that would be too fast. */
 struct braking_path {
     real obstacle, joint;
-    real position[3], rotation[9], joints[LEGS];
+    struct frame pose;
+    real joints[LEGS];
 };
 
 struct braking_path braking_path(const struct jogged *machine, const struct jog_state *from,
                                  const real twist[6]);
-
-#endif

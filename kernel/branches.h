@@ -1,8 +1,6 @@
 /* Choosing among the branches of an inverse, by whole turns, joint ranges and nearness:
    docs/arm-kinematics.md, 4 to 6. */
-#ifndef KERNEL_BRANCHES_H
-#define KERNEL_BRANCHES_H
-
+#pragma once
 #include "chain.h"
 
 struct ranges {
@@ -26,5 +24,3 @@ int nearest_branch(const struct ranges *ranges, const real near[JOINTS],
 
 /* The branch that goes on to `ahead`: by whole turns nearest to it, moved there. 0 without any. */
 int continued(real (*branches)[JOINTS], int count, const real ahead[JOINTS], real joints[JOINTS]);
-
-#endif

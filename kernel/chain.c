@@ -4,8 +4,6 @@
 
 #include <string.h>
 
-static const struct frame UNMOVED = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
-
 /* The rotation by an angle about a unit axis: the upper left of (1.1). */
 static void rotation_about(const real w[3], real angle, real rotation[9])
 {
@@ -26,16 +24,14 @@ static void rotation_about(const real w[3], real angle, real rotation[9])
 static void turn_links(const struct chain *chain, const real joints[JOINTS],
                        struct frame links[JOINTS + 1])
 {
-    links[0] = UNMOVED;
-    for (int k = 0; k < 3; k++)
-        links[0].position[k] = chain->point[0][k];
+    links[0] = (struct frame){.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    memcpy(links[0].position, chain->point[0], sizeof links[0].position);
     for (int i = 0; i < JOINTS; i++) {
         const real *next = i + 1 < JOINTS ? chain->point[i + 1] : chain->tool.position;
         real turn[9], length[3];
         rotation_about(chain->axis[i], joints[i], turn);
         product9(links[i].rotation, turn, links[i + 1].rotation);
-        for (int k = 0; k < 3; k++)
-            length[k] = next[k] - chain->point[i][k];
+        minus3(next, chain->point[i], length);
         rotate3(links[i + 1].rotation, length, links[i + 1].position);
         for (int k = 0; k < 3; k++)
             links[i + 1].position[k] += links[i].position[k];
@@ -56,18 +52,8 @@ void chain_displacements(const struct chain *chain, const real joints[JOINTS],
 
 void displacement(const struct chain *chain, const struct frame *pose, struct frame *moved)
 {
-    real home[3];
-    product9_back(pose->rotation, chain->tool.rotation, moved->rotation);
-    rotate3(moved->rotation, chain->tool.position, home);
-    for (int i = 0; i < 3; i++)
-        moved->position[i] = pose->position[i] - home[i];
-}
-
-void moved_point(const struct frame *moved, const real point[3], real there[3])
-{
-    rotate3(moved->rotation, point, there);
-    for (int i = 0; i < 3; i++)
-        there[i] += moved->position[i];
+    struct frame home = inverted(&chain->tool);
+    *moved = composed(pose, &home);
 }
 
 void chain_posture(const struct chain *chain, const real joints[JOINTS], posture *turned)
@@ -78,16 +64,15 @@ void chain_posture(const struct chain *chain, const real joints[JOINTS], posture
         rotate3(links[i].rotation, chain->axis[i], turned->axis[i]);
         memcpy(turned->point[i], links[i].position, sizeof links[i].position);
     }
+    turned->tool = links[JOINTS];
     product9(links[JOINTS].rotation, chain->tool.rotation, turned->tool.rotation);
-    memcpy(turned->tool.position, links[JOINTS].position, sizeof links[JOINTS].position);
 }
 
 void chain_jacobian(const posture *turned, real jacobian[6][JOINTS])
 {
     for (int i = 0; i < JOINTS; i++) {
         real arm[3], velocity[3];
-        for (int k = 0; k < 3; k++)
-            arm[k] = turned->tool.position[k] - turned->point[i][k];
+        minus3(turned->tool.position, turned->point[i], arm);
         cross3(turned->axis[i], arm, velocity);
         for (int k = 0; k < 3; k++) {
             jacobian[k][i] = velocity[k];

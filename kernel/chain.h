@@ -1,16 +1,8 @@
 /* Six revolute joints in a row: docs/arm-kinematics.md, 1. */
-#ifndef KERNEL_CHAIN_H
-#define KERNEL_CHAIN_H
-
-#include "real.h"
+#pragma once
+#include "se3.h"
 
 enum { JOINTS = 6 };
-
-/* What maps coordinates of one frame to another: rotation, row by row, and the frame's origin. */
-struct frame {
-    real rotation[9];
-    real position[3];
-};
 
 /* At zero angles, in base axes: unit axes, a point of each axis, the tool. Metres. */
 struct chain {
@@ -26,11 +18,10 @@ typedef struct chain posture;
 void chain_displacements(const struct chain *chain, const real joints[JOINTS],
                          struct frame moved[JOINTS + 1]);
 
-/* D = T M^-1: how far the pose displaces what the last joint carries; a point displaced so. */
+/* D = T M^-1 of (6.1): how far the pose displaces what the last joint carries. */
 void displacement(const struct chain *chain, const struct frame *pose, struct frame *moved);
-void moved_point(const struct frame *moved, const real point[3], real there[3]);
 
-/* Axes, points and tool where the joints take them. */
+/* Axes, points and tool where the joints take them: (1.2). */
 void chain_posture(const struct chain *chain, const real joints[JOINTS], posture *turned);
 
 /* The tool's twist (v, w) in base axes for unit joint rates, six rows of six: (1.3). */
@@ -38,5 +29,3 @@ void chain_jacobian(const posture *turned, real jacobian[6][JOINTS]);
 
 /* Divides the metres of a Jacobian by a length. */
 void scale_jacobian(real length, real jacobian[6][JOINTS]);
-
-#endif

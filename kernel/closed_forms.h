@@ -1,7 +1,5 @@
 /* Arms whose inverse is a closed form, with eight branches: docs/arm-kinematics.md, 4 and 5. */
-#ifndef KERNEL_CLOSED_FORMS_H
-#define KERNEL_CLOSED_FORMS_H
-
+#pragma once
 #include "chain.h"
 
 enum { CLOSED_BRANCHES = 8 };
@@ -17,8 +15,8 @@ struct closed_form {
 void closed_branches(const struct closed_form *form, const struct frame *pose,
                      const real near[JOINTS], real branches[CLOSED_BRANCHES][JOINTS]);
 
-/* Which triangle does not close: what has to be reached is `distance` from joint 1's axis or else
-   from the shoulder, may be `least` to `most`. */
+/* Which triangle of 4, step 1 or 2, does not close: what has to be reached is `distance` from joint
+   1's axis or else from the shoulder, may be `least` to `most`. */
 struct gap {
     real is_at_shoulder;
     real distance;
@@ -26,5 +24,3 @@ struct gap {
 };
 
 void closed_gap(const struct closed_form *form, const struct frame *pose, struct gap *gap);
-
-#endif

@@ -7,14 +7,7 @@ void leg_gaps(const struct crank_legs *legs, const real position[3], const real 
 {
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < LEGS; i++)
-            gap[k][i] = rotation[3 * k] * legs->end[0][i] + rotation[3 * k + 1] * legs->end[1][i] +
-                        rotation[3 * k + 2] * legs->end[2][i] +
-                        (position[k] - legs->centre[k][i]);
-}
-
-static inline real along(const real axis[3][LEGS], real gap[3][LEGS], int i)
-{
-    return axis[0][i] * gap[0][i] + axis[1][i] * gap[1][i] + axis[2][i] * gap[2][i];
+            gap[k][i] = leg_turned(rotation, legs->end, k, i) + (position[k] - legs->centre[k][i]);
 }
 
 int crank_elbows(const struct crank_legs *legs, const real position[3], const real rotation[9],
@@ -23,11 +16,11 @@ int crank_elbows(const struct crank_legs *legs, const real position[3], const re
     real gap[3][LEGS], y[LEGS], z[LEGS], side[LEGS], height[LEGS];
     leg_gaps(legs, position, rotation, gap);
     /* The triangle of crank, rod and gap, seen along the crank's axis: the crank's tip is `side`
-       along the gap and `height` across it, both by EC / r. So (2.2) needs no arc cosine. */
+       along the gap and `height` across it, both by EC / r. So (2.4). */
     for (int i = 0; i < LEGS; i++) {
-        real x = along(legs->normal, gap, i), r = legs->crank[i], d = legs->rod[i];
-        y[i] = along(legs->tangent, gap, i);
-        z[i] = along(legs->up, gap, i);
+        real x = leg_dot(legs->normal, gap, i), r = legs->crank[i], d = legs->rod[i];
+        y[i] = leg_dot(legs->tangent, gap, i);
+        z[i] = leg_dot(legs->up, gap, i);
         real in_plane = y[i] * y[i] + z[i] * z[i];
         /* (r - d)(r + d), not r^2 - d^2: the difference keeps its digits. */
         side[i] = (in_plane + x * x + (r - d) * (r + d)) / (2 * r);

@@ -1,7 +1,5 @@
 /* Where the twelve equations of docs/arm-kinematics.md, (6.3), have a solution. */
-#ifndef KERNEL_DETERMINANT_H
-#define KERNEL_DETERMINANT_H
-
+#pragma once
 #include "elimination.h"
 #include "polynomial.h"
 
@@ -19,5 +17,3 @@ void refine(six_equations six, real room, real *q3, real v[SIZE]);
 
 /* Where two branches have almost the same q3, the powers of each; 2, or 0 where there are none. */
 int separated(six_equations six, real q3, real powers[2][SIZE]);
-
-#endif

@@ -1,7 +1,5 @@
 /* All branches of any six joints, by elimination: docs/arm-kinematics.md, 6. */
-#ifndef KERNEL_GENERAL_H
-#define KERNEL_GENERAL_H
-
+#pragma once
 #include "chain.h"
 
 enum { MOST_CANDIDATES = 48 };
@@ -10,5 +8,3 @@ enum { MOST_CANDIDATES = 48 };
    loops, 0 to 11 (elimination.h), some have no use for an arm: a determinant that is always 0. */
 int general_candidates(const struct chain *chain, real length, int which, const struct frame *pose,
                        real candidates[MOST_CANDIDATES][JOINTS], int *are_certain);
-
-#endif

@@ -1,7 +1,5 @@
 /* The point of a polyhedron nearest to another: docs/workspace.md, (2.1). */
-#ifndef KERNEL_LEAST_DISTANCE_H
-#define KERNEL_LEAST_DISTANCE_H
-
+#pragma once
 #include <stddef.h>
 
 #include "real.h"
@@ -11,5 +9,3 @@
    Returns 0 where there is no such point, or none is found. */
 int least_distance(const real target[6], const real (*normals)[6], const real *slack,
                    ptrdiff_t count, real *multipliers);
-
-#endif

@@ -1,7 +1,5 @@
 #include "legs.h"
 
-#include <string.h>
-
 #include "trigonometry.h"
 
 /* So much nearer, in rad or by rod, the other way must be for a leg to be taken for bent that way:
@@ -14,10 +12,8 @@ static void put_along(const struct crank_legs *rails, real gap[3][LEGS], real al
                       real across[LEGS])
 {
     for (int i = 0; i < LEGS; i++) {
-        along[i] = 0;
+        along[i] = leg_dot(rails->tangent, gap, i);
         across[i] = 0;
-        for (int k = 0; k < 3; k++)
-            along[i] += rails->tangent[k][i] * gap[k][i];
         for (int k = 0; k < 3; k++) {
             real rest = gap[k][i] - along[i] * rails->tangent[k][i];
             across[i] += rest * rest;
@@ -44,10 +40,9 @@ static int rail_branches(const struct crank_legs *rails, real gap[3][LEGS], real
 static int linear_branches(const struct legs *legs, const real position[3],
                            const real rotation[9], real lengths[LEGS], real *same)
 {
-    real base[3][LEGS], extra[LEGS] = {0};
+    real extra[LEGS] = {0};
     int open = 0;
-    memcpy(base, legs->shape.centre, sizeof base);
-    struct rods rods = rods_of(base, legs->shape.end, position, rotation);
+    struct rods rods = rods_of(legs->shape.centre, legs->shape.end, position, rotation);
     if (legs->screws.lead != 0)
         screw_lengths(&legs->screws, &rods, rotation, extra);
     for (int i = 0; i < LEGS; i++) {
@@ -151,9 +146,7 @@ void leg_gains(const struct legs *legs, const real joints[LEGS], real unit[3][LE
     put_parts(legs, joints, along, upward);
     for (int i = 0; i < LEGS; i++) {
         real t = legs->kind == CRANK ? -upward[i] : 1, e = legs->kind == CRANK ? along[i] : 0;
-        real sum = 0;
-        for (int k = 0; k < 3; k++)
-            sum += unit[k][i] * (e * shape->up[k][i] + t * shape->tangent[k][i]);
+        real sum = e * leg_dot(unit, shape->up, i) + t * leg_dot(unit, shape->tangent, i);
         gains[i] = legs->kind == LINEAR ? 1 : shape->crank[i] * sum;
     }
 }
@@ -162,12 +155,8 @@ static void crank_misfits(const struct crank_legs *legs, real gap[3][LEGS], real
                           real surplus[LEGS])
 {
     for (int i = 0; i < LEGS; i++) {
-        real across = 0, along = 0, up = 0, r = legs->crank[i];
-        for (int k = 0; k < 3; k++) {
-            across += legs->normal[k][i] * gap[k][i];
-            along += legs->tangent[k][i] * gap[k][i];
-            up += legs->up[k][i] * gap[k][i];
-        }
+        real across = leg_dot(legs->normal, gap, i), r = legs->crank[i];
+        real along = leg_dot(legs->tangent, gap, i), up = leg_dot(legs->up, gap, i);
         real in_plane = real_sqrt(along * along + up * up);
         shortfall[i] =
             real_sqrt(across * across + (in_plane - r) * (in_plane - r)) - legs->rod[i];

@@ -2,36 +2,34 @@
 
 #include <stddef.h>
 
-#include "se3.h"
+#include "vector.h"
 
 #define DIFFERENCE REAL(1e-6) /* as part of the length */
 
-struct place displaced(const struct descent *d, struct place from, const real step[6])
+struct frame displaced(const struct descent *d, struct frame from, const real step[6])
 {
     real twist[6];
     for (int k = 0; k < 6; k++)
         twist[k] = k < 3 ? step[k] : step[k] / d->platform->length;
-    se3_move(twist, from.position, from.rotation);
+    se3_move(twist, &from);
     return from;
 }
 
-void put_offset(const struct descent *d, const struct place *from, const real position[3],
-                const real rotation[9], real offset[6])
+void put_offset(const struct descent *d, const struct frame *from, const struct frame *to,
+                real offset[6])
 {
-    se3_twist(from->position, from->rotation, position, rotation, offset);
+    se3_twist(from, to, offset);
     for (int k = 3; k < 6; k++)
         offset[k] *= d->platform->length;
 }
 
-void put_margins(const struct descent *d, const struct place *place, real margins[BOUNDS])
+void put_margins(const struct descent *d, const struct frame *place, real margins[BOUNDS])
 {
-    const real *r = place->rotation, *c = d->pivot;
-    real origin[3], joints[LEGS], values[VALUES];
-    for (int k = 0; k < 3; k++)
-        origin[k] = place->position[k] -
-                    (r[3 * k] * c[0] + r[3 * k + 1] * c[1] + r[3 * k + 2] * c[2]);
-    leg_inverse(&d->platform->legs, origin, r, NULL, joints);
-    limited_values(d->platform, origin, r, joints, values);
+    real arm[3], origin[3], joints[LEGS], values[VALUES];
+    rotate3(place->rotation, d->pivot, arm);
+    minus3(place->position, arm, origin);
+    leg_inverse(&d->platform->legs, origin, place->rotation, NULL, joints);
+    limited_values(d->platform, origin, place->rotation, joints, values);
     for (int i = 0; i < VALUES; i++) {
         margins[i] = values[i] - d->low[i];
         margins[VALUES + i] = d->high[i] - values[i];
@@ -43,13 +41,13 @@ void put_margins(const struct descent *d, const struct place *place, real margin
 static real slope(real behind, real here, real ahead, real *steeper)
 {
     real up = ahead - here, down = here - behind;
-    up = is_finite(up) ? up : down;
-    down = is_finite(down) ? down : up;
+    up = isfinite(up) ? up : down;
+    down = isfinite(down) ? down : up;
     *steeper = fmax(real_fabs(up), real_fabs(down));
-    return is_finite(up) ? (up + down) / 2 : 0;
+    return isfinite(up) ? (up + down) / 2 : 0;
 }
 
-void put_model(const struct descent *d, const struct place *place, struct model *model)
+void put_model(const struct descent *d, const struct frame *place, struct model *model)
 {
     real here[BOUNDS], sides[6][2][BOUNDS], size = DIFFERENCE * d->platform->length;
     put_margins(d, place, here);
@@ -57,7 +55,7 @@ void put_model(const struct descent *d, const struct place *place, struct model 
         for (int side = 0; side < 2; side++) {
             real step[6] = {0};
             step[k] = side ? size : -size;
-            struct place beside = displaced(d, *place, step);
+            struct frame beside = displaced(d, *place, step);
             put_margins(d, &beside, sides[k][side]);
         }
     model->count = 0;
@@ -65,10 +63,10 @@ void put_model(const struct descent *d, const struct place *place, struct model 
         real normal[6], steepness = 0, steeper;
         for (int k = 0; k < 6; k++) {
             normal[k] = slope(sides[k][0][i], here[i], sides[k][1][i], &steeper) / size;
-            steepness += is_finite(steeper) ? steeper * steeper / (size * size) : 0;
+            steepness += isfinite(steeper) ? steeper * steeper / (size * size) : 0;
         }
         steepness = real_sqrt(steepness);
-        if (!is_finite(here[i]) || !(steepness > 0))
+        if (!isfinite(here[i]) || !(steepness > 0))
             continue;
         for (int k = 0; k < 6; k++)
             model->normal[model->count][k] = normal[k] / steepness;
@@ -76,5 +74,5 @@ void put_model(const struct descent *d, const struct place *place, struct model 
         model->steepness[model->count] = steepness;
         model->row[model->count++] = i;
     }
-    put_offset(d, place, d->target_position, d->target_rotation, model->goal);
+    put_offset(d, place, &d->target, model->goal);
 }

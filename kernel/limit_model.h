@@ -1,14 +1,9 @@
 /* A platform's limits about one place, and distances from it: docs/workspace.md, 1 and 2. */
-#ifndef KERNEL_LIMIT_MODEL_H
-#define KERNEL_LIMIT_MODEL_H
-
+#pragma once
 #include "descent.h"
+#include "se3.h"
 
 enum { BOUNDS = 2 * VALUES };
-
-struct place {
-    real position[3], rotation[9];
-};
 
 /* The limits about a place, in metres: normal[i] step + slack[i] >= 0; row[i] says which margin it
    is. Those that stand still or have no value are left out. */
@@ -18,29 +13,14 @@ struct model {
     real steepness[BOUNDS], slack[BOUNDS], normal[BOUNDS][6];
 };
 
-struct place displaced(const struct descent *d, struct place from, const real step[6]);
+struct frame displaced(const struct descent *d, struct frame from, const real step[6]);
 
 /* The step (6) from a place to a pose, in metres. */
-void put_offset(const struct descent *d, const struct place *from, const real position[3],
-                const real rotation[9], real offset[6]);
+void put_offset(const struct descent *d, const struct frame *from, const struct frame *to,
+                real offset[6]);
 
 /* How far inside the ranges values are, from below, then from above; NaN where there is none. */
-void put_margins(const struct descent *d, const struct place *place, real margins[BOUNDS]);
+void put_margins(const struct descent *d, const struct frame *place, real margins[BOUNDS]);
 
 /* By differences in all six directions, to one side where the other has no value. */
-void put_model(const struct descent *d, const struct place *place, struct model *model);
-
-static inline int is_finite(real x)
-{
-    return real_fabs(x) < INFINITY;
-}
-
-static inline real length_of(const real v[6])
-{
-    real square = 0;
-    for (int k = 0; k < 6; k++)
-        square += v[k] * v[k];
-    return real_sqrt(square);
-}
-
-#endif
+void put_model(const struct descent *d, const struct frame *place, struct model *model);

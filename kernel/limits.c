@@ -3,6 +3,7 @@
 #include "matrix6.h"
 #include "rods.h"
 #include "trigonometry.h"
+#include "vector.h"
 
 #define BEYOND_ANY_SINE 2
 /* Below, pivots no longer tell singular values apart. */
@@ -26,37 +27,27 @@ static struct products products_of(const struct platform *platform, const struct
                                    const real rotation[9])
 {
     struct products p;
-    const real(*home)[LEGS] = platform->home_rod, (*normal)[LEGS] = platform->legs.shape.normal;
-    const real *h = platform->home_rotation;
     real r[9]; /* from home's orientation */
-    for (int i = 0; i < 9; i++) {
-        const real *row = rotation + i / 3 * 3, *of_home = h + i % 3 * 3;
-        r[i] = row[0] * of_home[0] + row[1] * of_home[1] + row[2] * of_home[2];
-    }
+    product9_back(rotation, platform->home_rotation, r);
     for (int i = 0; i < LEGS; i++) {
-        real x = rods->unit[0][i], y = rods->unit[1][i], z = rods->unit[2][i];
-        real a = home[0][i], b = home[1][i], c = home[2][i];
-        p.tilt_sine[i] = x * normal[0][i] + y * normal[1][i] + z * normal[2][i];
-        p.leaning_cosine[i] = x * a + y * b + z * c;
-        p.swing_cosine[i] = x * (r[0] * a + r[1] * b + r[2] * c) +
-                            y * (r[3] * a + r[4] * b + r[5] * c) +
-                            z * (r[6] * a + r[7] * b + r[8] * c);
+        p.tilt_sine[i] = leg_dot(rods->unit, platform->legs.shape.normal, i);
+        p.leaning_cosine[i] = leg_dot(rods->unit, platform->home_rod, i);
+        p.swing_cosine[i] = 0;
+        for (int k = 0; k < 3; k++)
+            p.swing_cosine[i] += rods->unit[k][i] * leg_turned(r, platform->home_rod, k, i);
     }
     return p;
-}
-
-/* The sine at home of a leg's angle to its crank's plane. */
-static real home_tilt(const struct platform *platform, int leg)
-{
-    real sine = 0;
-    for (int k = 0; k < 3; k++)
-        sine += platform->home_rod[k][leg] * platform->legs.shape.normal[k][leg];
-    return real_asin(fmax(-1, fmin(1, sine)));
 }
 
 static real clipped(real cosine)
 {
     return cosine > 1 ? 1 : cosine < -1 ? -1 : cosine;
+}
+
+/* At home, a leg's angle to its crank's plane. */
+static real home_tilt(const struct platform *platform, int leg)
+{
+    return real_asin(clipped(leg_dot(platform->home_rod, platform->legs.shape.normal, leg)));
 }
 
 /* The cosine of the platform's inclination: docs/motion.md, (1.3). */

@@ -1,6 +1,5 @@
 #include "numerical.h"
 
-#include "linear6.h"
 #include "matrix6.h"
 #include "se3.h"
 
@@ -16,7 +15,7 @@ enum { NEARBY_STEPS = 4, DAMPED_STEPS = 12, LOOK_BACK = 10 };
 
 void twist_to_pose(const struct frame *here, const struct frame *pose, real twist[6])
 {
-    se3_twist(here->position, here->rotation, pose->position, pose->rotation, twist);
+    se3_twist(here, pose, twist);
 }
 
 static real largest(const real a[JOINTS], const real b[JOINTS])

@@ -1,7 +1,5 @@
 /* Newton's method on the joints of any chain: docs/arm-kinematics.md, 6. */
-#ifndef KERNEL_NUMERICAL_H
-#define KERNEL_NUMERICAL_H
-
+#pragma once
 #include "chain.h"
 
 /* The twist, in base axes, that takes one pose to another in a unit of time. */
@@ -21,5 +19,3 @@ real descend_joints(const struct chain *chain, const struct frame *pose, real le
 /* Where the branch should be that meets the one at `joints` in a fold. */
 void beyond_fold(const struct chain *chain, real length, const real joints[JOINTS],
                  real beyond[JOINTS]);
-
-#endif

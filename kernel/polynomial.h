@@ -1,7 +1,5 @@
 /* The roots of a sum of sines and cosines: docs/arm-kinematics.md, 6. */
-#ifndef KERNEL_POLYNOMIAL_H
-#define KERNEL_POLYNOMIAL_H
-
+#pragma once
 #include "real.h"
 
 enum { DEGREE = 8, ROOTS = 2 * DEGREE };
@@ -15,5 +13,3 @@ struct series {
 /* The angles at which the series is zero, or nearly, and how far the next root is; how many. */
 int series_roots(const struct series *series, real angles[ROOTS], real rooms[ROOTS],
                  int *are_certain);
-
-#endif

@@ -1,13 +1,34 @@
-/* As much of Python's stable ABI as `python.c` uses, declared here so that building needs no
-   Python headers: https://docs.python.org/3/c-api/stable.html. The layouts are those of 64-bit
-   CPython 3.10 and later. */
-#ifndef KERNEL_PYTHON_ABI_H
-#define KERNEL_PYTHON_ABI_H
-
+/* As much of Python's stable ABI as `python.c` uses, and of a numpy array, declared here so that
+   building needs no headers of theirs: https://docs.python.org/3/c-api/stable.html and
+   numpy/ndarraytypes.h. The layouts are those of 64-bit CPython 3.10 and later, and of numpy since
+   1.7. */
+#pragma once
 #include <stddef.h>
 
 typedef ptrdiff_t Py_ssize_t;
 typedef struct PyObject PyObject;
+
+struct PyObject {
+    Py_ssize_t reference_count;
+    PyObject *type;
+};
+
+/* PyArrayObject_fields and the beginning of PyArray_Descr. */
+struct ndarray {
+    PyObject object;
+    void *data;
+    int dimensions;
+    Py_ssize_t *shape, *strides;
+    PyObject *base;
+    const struct array_type {
+        PyObject object;
+        PyObject *scalar;
+        char kind, letter, byte_order;
+    } *type;
+    int flags;
+};
+
+enum { ARRAY_IS_DENSE = 0x101 /* C-contiguous and aligned */, ARRAY_IS_WRITABLE = 0x400 };
 
 typedef struct {
     void *buf;
@@ -44,12 +65,15 @@ extern PyObject _Py_NoneStruct;
 extern PyObject *PyExc_TypeError, *PyExc_ValueError;
 
 PyObject *PyModule_Create2(PyModuleDef *definition, int version);
-int PyModule_AddFunctions(PyObject *module, PyMethodDef *functions);
+int PyModule_AddObjectRef(PyObject *module, const char *name, PyObject *value);
+PyObject *PyCFunction_NewEx(PyMethodDef *method, PyObject *self, PyObject *module);
+PyObject *PyCapsule_New(void *pointer, const char *name, void *destructor);
+void *PyCapsule_GetPointer(PyObject *capsule, const char *name);
+PyObject *PyImport_ImportModule(const char *name);
+PyObject *PyObject_GetAttrString(PyObject *object, const char *name);
 PyObject *PyLong_FromSsize_t(Py_ssize_t number);
 PyObject *PyErr_Format(PyObject *exception, const char *format, ...);
 int PyObject_GetBuffer(PyObject *exporter, Py_buffer *view, int flags);
 void PyBuffer_Release(Py_buffer *view);
 void *PyEval_SaveThread(void);
 void PyEval_RestoreThread(void *state);
-
-#endif

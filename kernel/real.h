@@ -1,7 +1,5 @@
 /* The number type of the mathematics: double on a computer, float where KERNEL_FLOAT is set. */
-#ifndef KERNEL_REAL_H
-#define KERNEL_REAL_H
-
+#pragma once
 #include <float.h>
 #include <math.h>
 
@@ -35,5 +33,3 @@ typedef double real;
 
 #define REAL_PI REAL(3.14159265358979323846)
 #define REAL_TURN REAL(6.28318530717958647693)
-
-#endif

@@ -1,13 +1,12 @@
 #include "rods.h"
 
-struct rods rods_of(real base[3][LEGS], const real end[3][LEGS], const real position[3],
+struct rods rods_of(const real base[3][LEGS], const real end[3][LEGS], const real position[3],
                     const real rotation[9])
 {
     struct rods rods;
     for (int i = 0; i < LEGS; i++)
         for (int k = 0; k < 3; k++)
-            rods.arm[k][i] = rotation[3 * k] * end[0][i] + rotation[3 * k + 1] * end[1][i] +
-                             rotation[3 * k + 2] * end[2][i];
+            rods.arm[k][i] = leg_turned(rotation, end, k, i);
     for (int i = 0; i < LEGS; i++) {
         real x = rods.arm[0][i] + (position[0] - base[0][i]);
         real y = rods.arm[1][i] + (position[1] - base[1][i]);

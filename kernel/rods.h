@@ -1,7 +1,5 @@
 /* Rods from base points to platform joints, and their Jacobian: docs/kinematics.md, 3 and 4. */
-#ifndef KERNEL_RODS_H
-#define KERNEL_RODS_H
-
+#pragma once
 #include "crank.h"
 
 /* Six rods in one pose, legs side by side, base axes. */
@@ -11,11 +9,9 @@ struct rods {
     real length[LEGS];
 };
 
-struct rods rods_of(real base[3][LEGS], const real end[3][LEGS], const real position[3],
+struct rods rods_of(const real base[3][LEGS], const real end[3][LEGS], const real position[3],
                     const real rotation[9]);
 
 /* The Jacobian's columns, row i of which says how fast rod i grows with a twist: (3.1). Rotations
    are divided by `length`. */
 void leg_columns(const struct rods *rods, real length, real columns[6][LEGS]);
-
-#endif

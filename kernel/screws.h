@@ -1,7 +1,5 @@
 /* Legs that change their length by screws, between cardan joints: docs/kinematics.md, 8.4. */
-#ifndef KERNEL_SCREWS_H
-#define KERNEL_SCREWS_H
-
+#pragma once
 #include "rods.h"
 
 /* The fixed axes of the cardan joints, unit vectors; legs side by side. */
@@ -18,5 +16,3 @@ void screw_lengths(const struct screws *screws, const struct rods *rods, const r
 /* Adds how fast that grows with a twist, rotations divided by `length`: to leg_columns. */
 void add_screw_columns(const struct screws *screws, const struct rods *rods,
                        const real rotation[9], real length, real columns[6][LEGS]);
-
-#endif

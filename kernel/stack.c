@@ -1,5 +1,6 @@
 #include <string.h>
 
+#include "cholesky.h"
 #include "stack_sum.h"
 
 enum { MOST_STEPS = 30, MOST_CUTS = 6 };
@@ -14,7 +15,7 @@ enum { MOST_STEPS = 30, MOST_CUTS = 6 };
 
 /* The Hessian of half the sum by differences of its gradient, into the lower triangle of `matrix`.
    J'J is no substitute for it: where sections are far from home, steps by it alternate for ever. */
-static void put_hessian(const struct stack *stack, const struct placement *end, const real *free,
+static void put_hessian(const struct stack *stack, const struct frame *end, const real *free,
                         const struct normal *here, real matrix[FREE][FREE])
 {
     real moved[FREE];
@@ -29,42 +30,21 @@ static void put_hessian(const struct stack *stack, const struct placement *end, 
     }
 }
 
-/* By Cholesky, the lower triangle in place; 0 for a matrix that is not positive definite. */
-static int factored(int size, real matrix[FREE][FREE])
-{
-    for (int i = 0; i < size; i++)
-        for (int k = 0; k <= i; k++) {
-            real sum = matrix[i][k];
-            for (int j = 0; j < k; j++)
-                sum -= matrix[i][j] * matrix[k][j];
-            if (i == k && !(sum > 0))
-                return 0;
-            matrix[i][k] = i == k ? real_sqrt(sum) : sum / matrix[k][k];
-        }
-    return 1;
-}
-
 /* step = -(L L')^-1 gradient. Returns its longest component. */
 static real solve(int size, real L[FREE][FREE], const real gradient[FREE], real step[FREE])
 {
     real longest = 0;
-    for (int i = 0; i < size; i++) {
+    for (int i = 0; i < size; i++)
         step[i] = -gradient[i];
-        for (int j = 0; j < i; j++)
-            step[i] -= L[i][j] * step[j];
-        step[i] /= L[i][i];
-    }
-    for (int i = size - 1; i >= 0; i--) {
-        for (int j = i + 1; j < size; j++)
-            step[i] -= L[j][i] * step[j];
-        step[i] /= L[i][i];
+    divide_by_factor(size, FREE, L[0], step);
+    divide_by_transposed(size, FREE, L[0], step);
+    for (int i = 0; i < size; i++)
         longest = fmax(longest, real_fabs(step[i]));
-    }
     return longest;
 }
 
 /* Goes along the step as far as the sum does not grow; 0 where it grows at once. */
-static int advance(const struct stack *stack, const struct placement *end,
+static int advance(const struct stack *stack, const struct frame *end,
                    const struct normal *normal, const real step[FREE], real *free)
 {
     real share = 1, trial[FREE];
@@ -80,18 +60,18 @@ static int advance(const struct stack *stack, const struct placement *end,
 }
 
 /* A Hessian serves as long as steps shrink well with it. Returns whether the descent settled. */
-static int descended(const struct stack *stack, const struct placement *end, real *free)
+static int descended(const struct stack *stack, const struct frame *end, real *free)
 {
     struct normal normal;
-    real L[FREE][FREE], step[FREE], before = 0;
+    real L[FREE][FREE] = {{0}}, step[FREE], before = 0;
     for (int tries = 0; tries < MOST_STEPS; tries++) {
         put_stack_normal(stack, end, free, &normal);
         real longest = before > 0 ? solve(normal.size, L, normal.gradient, step) : INFINITY;
         if (!(longest <= SHRINKING * before)) {
             put_hessian(stack, end, free, &normal, L);
-            if (!factored(normal.size, L)) {
+            if (!factorise(normal.size, FREE, L[0], 0)) {
                 memcpy(L, normal.matrix, sizeof L);
-                factored(normal.size, L); /* J'J is at least the unit matrix */
+                factorise(normal.size, FREE, L[0], 0); /* J'J is at least the unit matrix */
             }
             longest = solve(normal.size, L, normal.gradient, step);
         }
@@ -104,8 +84,8 @@ static int descended(const struct stack *stack, const struct placement *end, rea
     return 0;
 }
 
-int stack_sections(const struct stack *stack, const struct placement *end, real *free,
-                   struct placement sections[MOST_SECTIONS])
+int stack_sections(const struct stack *stack, const struct frame *end, real *free,
+                   struct frame sections[MOST_SECTIONS])
 {
     int is_settled = stack->count == 1 || descended(stack, end, free);
     struct stack_placed p = stack_placed(stack, end, free);

@@ -1,18 +1,12 @@
-/* Platforms on platforms, their redundancy resolved: docs/kinematics.md, 9. */
-#ifndef KERNEL_STACK_H
-#define KERNEL_STACK_H
-
-#include "real.h"
+/* Platforms on platforms, their redundancy resolved: docs/kinematics.md, 9.1 and 9.2. */
+#pragma once
+#include "se3.h"
 
 enum { MOST_SECTIONS = 6 };
 
-struct placement {
-    real position[3], rotation[9];
-};
-
 struct stack_section {
-    struct placement home;  /* of the platform on the section's own base */
-    struct placement after; /* from the platform to the next base, or to the end */
+    struct frame home;  /* of the platform on the section's own base */
+    struct frame after; /* from the platform to the next base, or to the end */
     real range[6];          /* w of (9.2), m and rad */
 };
 
@@ -24,7 +18,5 @@ struct stack {
 /* All sections' poses at a minimum of (9.2) for one pose of the end; 0 where the descent does not
    settle. free: the twists from home by range, six for each section but the last, from which it
    begins; written. */
-int stack_sections(const struct stack *stack, const struct placement *end, real *free,
-                   struct placement sections[MOST_SECTIONS]);
-
-#endif
+int stack_sections(const struct stack *stack, const struct frame *end, real *free,
+                   struct frame sections[MOST_SECTIONS]);

@@ -2,40 +2,9 @@
 
 #include <string.h>
 
-#include "se3.h"
 #include "vector.h"
 
 #define SMALL_ANGLE REAL(1e-4)
-
-static void multiply(const real a[9], const real b[9], real product[9])
-{
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            product[3 * i + k] =
-                a[3 * i] * b[k] + a[3 * i + 1] * b[3 + k] + a[3 * i + 2] * b[6 + k];
-}
-
-static struct placement composed(const struct placement *a, const struct placement *b)
-{
-    struct placement c;
-    rotate3(a->rotation, b->position, c.position);
-    for (int k = 0; k < 3; k++)
-        c.position[k] += a->position[k];
-    multiply(a->rotation, b->rotation, c.rotation);
-    return c;
-}
-
-static struct placement inverted(const struct placement *a)
-{
-    struct placement b;
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            b.rotation[3 * i + k] = a->rotation[3 * k + i];
-    rotate3(b.rotation, a->position, b.position);
-    for (int k = 0; k < 3; k++)
-        b.position[k] = -b.position[k];
-    return b;
-}
 
 /* J with the angular velocity J w' in the fixed frame of exp(w). */
 static void left_jacobian(const real w[3], real J[9])
@@ -50,7 +19,7 @@ static void left_jacobian(const real w[3], real J[9])
     }
     const real k[9] = {0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0};
     real kk[9];
-    multiply(k, k, kk);
+    product9(k, k, kk);
     for (int i = 0; i < 9; i++)
         J[i] = first * k[i] + second * kk[i] + (i % 4 == 0);
 }
@@ -68,25 +37,25 @@ static void inverse3(const real m[9], real inverse[9])
             inverse[3 * i + k] = rows[k][i] / determinant;
 }
 
-struct stack_placed stack_placed(const struct stack *stack, const struct placement *end,
+struct stack_placed stack_placed(const struct stack *stack, const struct frame *end,
                                  const real *free)
 {
     struct stack_placed p;
     int last = (int)stack->count - 1;
-    p.bases[0] = (struct placement){{0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    p.bases[0] = (struct frame){{0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     for (int i = 0; i < last; i++) {
         const struct stack_section *section = &stack->sections[i];
         real twist[6];
         for (int k = 0; k < 6; k++)
             twist[k] = free[6 * i + k] * section->range[k];
         p.sections[i] = section->home;
-        se3_move(twist, p.sections[i].position, p.sections[i].rotation);
-        struct placement top = composed(&p.sections[i], &section->after);
+        se3_move(twist, &p.sections[i]);
+        struct frame top = composed(&p.sections[i], &section->after);
         p.bases[i + 1] = composed(&p.bases[i], &top);
     }
-    struct placement below = inverted(&p.bases[last]);
-    struct placement after = inverted(&stack->sections[last].after);
-    struct placement top = composed(end, &after);
+    struct frame below = inverted(&p.bases[last]);
+    struct frame after = inverted(&stack->sections[last].after);
+    struct frame top = composed(end, &after);
     p.sections[last] = composed(&below, &top);
     return p;
 }
@@ -96,13 +65,12 @@ static void put_last(const struct stack *stack, const struct stack_placed *p, re
 {
     int last = (int)stack->count - 1;
     const struct stack_section *section = &stack->sections[last];
-    const struct placement *home = &section->home, *at = &p->sections[last];
-    se3_twist(home->position, home->rotation, at->position, at->rotation, away);
+    se3_twist(&section->home, &p->sections[last], away);
     for (int k = 0; k < 6; k++)
         away[k] /= section->range[k];
 }
 
-real stack_sum(const struct stack *stack, const struct placement *end, const real *free)
+real stack_sum(const struct stack *stack, const struct frame *end, const real *free)
 {
     struct stack_placed p = stack_placed(stack, end, free);
     real away[6], sum = 0;
@@ -116,21 +84,21 @@ real stack_sum(const struct stack *stack, const struct placement *end, const rea
 
 /* How the last section's platform moves on its base, in the base's axes, as a free twist of section
    i carries that base; the platform stands still with the end. */
-static void put_carried(const struct stack *stack, const struct stack_placed *p, int i, const real *free,
-                        real carried[6][FREE])
+static void put_carried(const struct stack *stack, const struct stack_placed *p, int i,
+                        const real *free, real carried[6][FREE])
 {
     int last = (int)stack->count - 1;
     const real *range = stack->sections[i].range;
-    struct placement below = inverted(&p->bases[last]);
-    struct placement tip = composed(&p->bases[last], &p->sections[last]);
-    struct placement top = composed(&p->bases[i], &p->sections[i]);
+    struct frame below = inverted(&p->bases[last]);
+    struct frame tip = composed(&p->bases[last], &p->sections[last]);
+    struct frame top = composed(&p->bases[i], &p->sections[i]);
     real w[3], J[9], arm[3], turned[9];
     for (int k = 0; k < 3; k++) {
         w[k] = free[6 * i + 3 + k] * range[3 + k];
         arm[k] = tip.position[k] - top.position[k];
     }
     left_jacobian(w, J);
-    multiply(below.rotation, p->bases[i].rotation, turned);
+    product9(below.rotation, p->bases[i].rotation, turned);
     rotate3(below.rotation, arm, w);
     for (int c = 0; c < 3; c++) {
         real axis[3] = {J[c] * range[3 + c], J[3 + c] * range[3 + c], J[6 + c] * range[3 + c]};
@@ -156,7 +124,7 @@ static void add_row(struct normal *normal, const real *row, real residual)
     normal->sum += residual * residual;
 }
 
-void put_stack_normal(const struct stack *stack, const struct placement *end, const real *free,
+void put_stack_normal(const struct stack *stack, const struct frame *end, const real *free,
                       struct normal *normal)
 {
     struct stack_placed p = stack_placed(stack, end, free);

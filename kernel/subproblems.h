@@ -1,9 +1,7 @@
 /* The trigonometric problems that closed-form inverses are made of: docs/arm-kinematics.md, 3.
 
    Axes k are unit vectors. `free` is the angle taken where every angle solves the equation. */
-#ifndef KERNEL_SUBPROBLEMS_H
-#define KERNEL_SUBPROBLEMS_H
-
+#pragma once
 #include "vector.h"
 
 /* An angle by its cosine and sine: whole turns do not matter until it is a joint's. */
@@ -56,5 +54,3 @@ int distances(const real k[3], const real vector[3], const real point[3], real s
 
 /* Some unit vector at a right angle to k. */
 void perpendicular(const real k[3], real across[3]);
-
-#endif

@@ -1,8 +1,7 @@
-/* Angles of many legs at once: no branch, no call, so that the compiler works on several legs at a
-   time. On the board, whose floats it does one by one, they are the library's. */
-#ifndef KERNEL_TRIGONOMETRY_H
-#define KERNEL_TRIGONOMETRY_H
-
+/* For (1.1) and (2.4) of docs/kinematics.md, angles of many legs at once: no branch, no call, so
+   that the compiler works on several legs at a time. On the board, whose floats it does one by one,
+   they are the library's. */
+#pragma once
 #include "real.h"
 
 /* Added to a large number, x loses all digits below one. For |x| < 0.25 / REAL_EPSILON. */
@@ -77,5 +76,4 @@ static inline void sine_and_cosine(real angle, real *sine, real *cosine)
     *cosine = quarter == -1 || quarter == 0 ? along : -along;
 }
 
-#endif
 #endif

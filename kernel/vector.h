@@ -1,8 +1,13 @@
 /* Vectors of three numbers and rotation matrices of nine, row by row. */
-#ifndef KERNEL_VECTOR_H
-#define KERNEL_VECTOR_H
-
+#pragma once
 #include "real.h"
+
+/* What maps coordinates of one frame to another: the frame's origin, and the rotation, row by row.
+   */
+struct frame {
+    real position[3];
+    real rotation[9];
+};
 
 static inline real dot3(const real a[3], const real b[3])
 {
@@ -14,6 +19,12 @@ static inline void cross3(const real a[3], const real b[3], real product[3])
     product[0] = a[1] * b[2] - a[2] * b[1];
     product[1] = a[2] * b[0] - a[0] * b[2];
     product[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline void minus3(const real a[3], const real b[3], real difference[3])
+{
+    for (int i = 0; i < 3; i++)
+        difference[i] = a[i] - b[i];
 }
 
 /* R v. */
@@ -39,5 +50,3 @@ static inline void product9_back(const real a[9], const real b[9], real product[
         for (int column = 0; column < 3; column++)
             product[row + column] = dot3(a + row, b + 3 * column);
 }
-
-#endif

@@ -17,7 +17,7 @@ from manipulator.arrays import Array, frozen, stretched
 from manipulator.errors import InvalidInput
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Pose:
     """One rigid displacement, or an array of them: position (..., 3), rotation (..., 3, 3)."""
 
@@ -50,7 +50,8 @@ class Pose:
         pose = object.__new__(cls)
         position.setflags(write=False)
         rotation.setflags(write=False)
-        pose.__dict__.update(position=position, rotation=rotation)
+        object.__setattr__(pose, 'position', position)
+        object.__setattr__(pose, 'rotation', rotation)
         return pose
 
     @classmethod
@@ -118,6 +119,8 @@ class Pose:
         return twist
 
     def _stretched(self, leading: tuple[int, ...]) -> tuple[Array, Array]:
+        if self.position.shape[:-1] == leading:
+            return self.position, self.rotation
         return stretched(self.position, (*leading, 3)), stretched(self.rotation, (*leading, 3, 3))
 
 

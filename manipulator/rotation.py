@@ -53,14 +53,54 @@ def _shaped(values: ArrayLike, shape: tuple[int, ...]) -> Array:
 def left_jacobian(rotation_vector: ArrayLike) -> Array:
     """J with ω = J(w) ẇ, where ω is the angular velocity in the fixed frame of exp(w)."""
     w = np.asarray(rotation_vector, dtype=np.float64)
-    angle = np.sqrt(np.einsum('...i,...i->...', w, w))[..., None, None]
-    safe = np.maximum(angle, 1e-4)
-    small = angle < 1e-4
-    first = np.where(small, 0.5 - angle**2 / 24, (1.0 - np.cos(safe)) / safe**2)
-    second = np.where(small, 1 / 6 - angle**2 / 120, (safe - np.sin(safe)) / safe**3)
+    a, b = (factor[..., None, None] for factor in _factors(_norm(w)))
     k = skew(w)
-    matrix: Array = np.eye(3) + first * k + second * (k @ k)
+    matrix: Array = np.eye(3) + a * k + b * (k @ k)
     return matrix
+
+
+def turning(w: Array, w_rate: Array, w_acceleration: Array) -> tuple[Array, Array]:
+    """The angular velocity and acceleration of exp(w), fixed axes, for ẇ and ẅ; (..., 3) each.
+
+    ω = J(w) ẇ and α = J(w) ẅ + J̇(w) ẇ, where J = 1 + a W + b W² with W x = w × x, so that
+    J̇ ẇ = (w·ẇ)(a'/θ W + b'/θ W²) ẇ + b ẇ × (w × ẇ), θ = |w|.
+    """
+    angle = _norm(w)[..., None]
+    a, b = _factors(angle)
+    small, safe = angle < SMALL, np.maximum(angle, SMALL)
+    a_slope = np.where(small, angle**2 / 180 - 1 / 12, (_sine(angle) - 2 * a) / safe**2)
+    b_slope = np.where(small, angle**2 / 1260 - 1 / 60, (a - 3 * b) / safe**2)
+    cross, both = skew(w), np.stack([w_rate, w_acceleration], axis=-1)
+    once = cross @ both
+    twice = cross @ once
+    turned = both + a[..., None] * once + b[..., None] * twice
+    along = (w * w_rate).sum(axis=-1, keepdims=True)
+    change = along * (a_slope * once[..., 0] + b_slope * twice[..., 0] - b * w_rate)
+    change += (w_rate * w_rate).sum(axis=-1, keepdims=True) * b * w
+    return turned[..., 0], turned[..., 1] + change
+
+
+SMALL = 0.01
+"""Radians below which differences of almost equal numbers are summed as series."""
+
+
+def _norm(w: Array) -> Array:
+    norm: Array = np.sqrt(np.einsum('...i,...i->...', w, w))
+    return norm
+
+
+def _sine(angle: Array) -> Array:
+    """sin(θ)/θ, also at 0."""
+    away = np.maximum(angle, 1e-12)
+    sine: Array = np.sin(away) / away
+    return sine
+
+
+def _factors(angle: Array) -> tuple[Array, Array]:
+    """(1 − cos θ)/θ² and (θ − sin θ)/θ³, (...) each."""
+    safe = np.maximum(angle, SMALL)
+    second = np.where(angle < SMALL, 1 / 6 - angle**2 / 120, (1 - _sine(angle)) / safe**2)
+    return _sine(angle / 2) ** 2 / 2, second
 
 
 def from_quaternion(quaternion: ArrayLike) -> Array:

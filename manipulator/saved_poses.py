@@ -33,10 +33,10 @@ DIGITS = 6
 
 @dataclass(frozen=True, eq=False)
 class SavedPose:
-    """A pose in the base frame, and the joints (n,) that took it, in rad or m."""
+    """A pose in the base frame, and the joints (n,) that took it, rad or m; None: not known."""
 
     pose: Pose
-    joints: Array
+    joints: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ class SavedPoses:
 
     def of(self, name: str) -> SavedPose:
         """The pose of a name; InvalidInput names those that there are."""
-        if name not in self.poses:
+        if checked_name(name) not in self.poses:
             known = ', '.join(self.poses) or 'none'
             raise InvalidInput(f'no saved pose is called {shown(name)} (there are: {known})')
         return self.poses[name]
@@ -128,7 +128,7 @@ class SavedPoses:
     def steps(self, names: Sequence[str]) -> tuple[Step, ...]:
         """What names of sequences and poses mean, one after the other; InvalidInput as `of`."""
         found: list[Step] = []
-        for name in names:
+        for name in map(checked_name, names):
             if name in self.sequences:
                 found += self.sequences[name]
             else:
@@ -152,17 +152,21 @@ class SavedPoses:
         unit, scale = PER_UNIT[self.joint_unit]
         xyz = flow_list(1e3 * saved.pose.position, DIGITS)
         rpy = flow_list(np.degrees(saved.pose.rpy), DIGITS)
-        joints = flow_list(scale * saved.joints, DIGITS)
-        return f'{{xyz_mm: {xyz}, rpy_deg: {rpy}, joints_{unit}: {joints}}}'
+        entry = f'xyz_mm: {xyz}, rpy_deg: {rpy}'
+        if saved.joints is not None:
+            entry += f', joints_{unit}: {flow_list(scale * saved.joints, DIGITS)}'
+        return f'{{{entry}}}'
 
     def _saved(self, entry: _Entry) -> SavedPose:
         unit, scale = PER_UNIT[self.joint_unit]
         joints = getattr(entry, f'joints_{unit}')
-        if joints is None or len(joints) != len(self.joint_names):
+        if joints is None and (entry.joints_deg or entry.joints_mm):
+            raise ConfigError([f'the joints need the key joints_{unit}'])
+        if joints is not None and len(joints) != len(self.joint_names):
             raise ConfigError([f'joints_{unit}: needs {len(self.joint_names)} numbers'])
         position = np.asarray(entry.xyz_mm) / 1e3
         pose = Pose.from_xyz_rpy(position, np.radians(entry.rpy_deg))
-        return SavedPose(pose, frozen(np.asarray(joints) / scale))
+        return SavedPose(pose, None if joints is None else frozen(np.asarray(joints) / scale))
 
 
 def checked_name(name: object) -> str:

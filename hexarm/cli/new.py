@@ -20,6 +20,7 @@ from hexarm.new.arms import arm_text
 from hexarm.new.cranks import crank_text
 from hexarm.new.cylinders import cylinder_text
 from hexarm.new.questions import QUESTIONS, Question, checked
+from hexarm.new.rails import rail_text
 from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError, InvalidInput, ManipulatorError
 from manipulator.formatting import reason, shown
@@ -28,7 +29,7 @@ from manipulator.requirements import missing
 Ask = Callable[[str], str]
 WORKSPACE_POINTS = {True: 20_000, False: 1000}
 """By whether the inverse is explicit: a picture within some seconds."""
-TEXTS = {'crank': crank_text, 'linear': cylinder_text, 'arm': arm_text}
+TEXTS = {'crank': crank_text, 'linear': cylinder_text, 'rail': rail_text, 'arm': arm_text}
 WELCOME = """\
 hexarm new makes a machine file of your measures: millimetres, degrees, grams.
 Enter takes what is in [brackets]; an answer that is not understood is asked for again.

@@ -106,6 +106,7 @@ def machine_text(machine: Machine, label: str, has_gripper: bool) -> str:
             for name, a, b in zip(names, low, high, strict=True)
         ],
         'modes': list(MODES),
+        'tools': [tool.name for tool in machine.frames.tools],
         'has_gripper': has_gripper,
     }
     return json.dumps({'machine': words})
@@ -128,6 +129,7 @@ def state_text(view: View, controls: Controls, notice: str) -> str:
         'speed': controls.speed,
         'opening': controls.opening,
         'saved': list(view.saved),
+        'tool': tool_of(view),
         'pose': None if measured is None else coordinates(measured.pose).tolist(),
         'joints': None if measured is None else measured.joints.tolist(),
         'joint_goal': None if commanded is None else commanded.joints.tolist(),
@@ -160,6 +162,12 @@ def can(view: View) -> list[str]:
     if view.measured is not None:
         found.append('save')
     return found
+
+
+def tool_of(view: View) -> str:
+    """The tool in force, as trajectory reports it; before its first report the machine file's."""
+    found = (node.values['tool'] for node in view.nodes if 'tool' in node.values)
+    return next(found, view.frames.tool)
 
 
 def step_of(view: View) -> tuple[str, str | None]:

@@ -67,16 +67,21 @@ def servo_speeds(servos: dict[str, Any], count: int) -> Array:
     return np.full(count, math.radians(_speed(servos, 'speed_deg_s')))
 
 
-def pushing(config: PushingDriveConfig, count: int, servos: dict[str, Any]) -> Drives:
-    """`count` equal servos that push."""
+def pusher_speeds(servos: dict[str, Any], count: int) -> Array:
+    """Of `count` equal servos that push, likewise: (n,) in m/s."""
+    return np.full(count, 1e-3 * _speed(servos, 'speed_mm_s'))
+
+
+def pushing(config: PushingDriveConfig, speeds: Array) -> Drives:
+    """Equal drives that push, and their free speeds (n,), m/s."""
     values = (
         config.force_n,
-        1e-3 * _speed(servos, 'speed_mm_s'),
+        speeds,
         1e-3 * config.proportional_band_mm,
         config.backdrive_n,
         1e-3 * config.rotor_mass_g,
     )
-    return Drives(*(np.full(count, value) for value in values))
+    return Drives(*(np.broadcast_to(value, speeds.shape) for value in values))
 
 
 def _speed(servos: dict[str, Any], key: str) -> float:

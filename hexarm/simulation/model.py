@@ -5,12 +5,14 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from arm_control.joint_limits import ArmLimits
 from hexapod_control.geometry import LEGS
 from hexapod_control.stacks.kinematics import StackKinematics
 from hexapod_control.stacks.load import section_files
 from hexarm.simulation.arm_model import arm_model
-from hexarm.simulation.drives import Drives, pushing, servo_speeds, turning
+from hexarm.simulation.drives import Drives, pusher_speeds, pushing, servo_speeds, turning
 from hexarm.simulation.dynamics_config import (
     SCHEMAS,
     ArmDynamicsConfig,
@@ -30,6 +32,7 @@ from manipulator.config import build
 from manipulator.errors import ConfigError
 from manipulator.kinematics import Kinematics
 from manipulator.machine import MachineFile
+from manipulator.motion_limits import MotionLimits
 
 
 def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dynamics:
@@ -60,19 +63,22 @@ def dynamics_of(machine_file: MachineFile, payload_g: float | None = None) -> Dy
 def drives_of(dynamics: Dynamics, machine_file: MachineFile) -> Drives:
     """The drives of a machine, in the order of its joints.
 
-    An arm without servos of ours has drives as fast as its joints may turn.
+    A machine without servos of ours has drives as fast as its joints may be.
     """
-    servos = machine_file.servos
-    if isinstance(dynamics, LinearDynamicsConfig | RailDynamicsConfig):
-        return pushing(dynamics.drive, LEGS, servos)
+    servos, has_servos = machine_file.servos, machine_file.driver != 'topic'
+    if isinstance(dynamics, ArmDynamicsConfig):
+        drives = tuple(link.drive for link in dynamics.links)
+        if has_servos:
+            return turning(drives, servo_speeds(servos, len(drives)))
+        limits = build(ArmLimits, machine_file.limits, 'limits').joint_limits()
+        return turning(drives, limits.speed)
+    unit = 'rad' if isinstance(dynamics, RotaryDynamicsConfig) else 'm'
+    motion = MotionLimits.from_config(machine_file.motion, unit)
+    fastest = np.broadcast_to(motion.joint.speed, LEGS)
     if isinstance(dynamics, RotaryDynamicsConfig):
-        return turning((dynamics.drive,) * LEGS, servo_speeds(servos, LEGS))
-    drives = tuple(link.drive for link in dynamics.links)
-    if machine_file.driver == 'topic':
-        return turning(
-            drives, build(ArmLimits, machine_file.limits, 'limits').joint_limits().speed
-        )
-    return turning(drives, servo_speeds(servos, len(drives)))
+        speeds = servo_speeds(servos, LEGS) if has_servos else fastest
+        return turning((dynamics.drive,) * LEGS, speeds)
+    return pushing(dynamics.drive, pusher_speeds(servos, LEGS) if has_servos else fastest)
 
 
 def mechanism(

@@ -125,10 +125,10 @@ def add_hexagon(
     add(body, 'geom', type='mesh', mesh=name, mass='0', rgba=rgba)
 
 
-def add_closure(root: ET.Element, leg: int) -> tuple[str, str]:
-    """The ball joint between a leg's end and the platform; returns the sites that meet."""
+def add_closure(root: ET.Element, leg: int, how: str = 'connect') -> tuple[str, str]:
+    """A ball joint, or a weld, of a leg's end to the platform; returns the sites that meet."""
     pair = (f'end_{leg}', f'joint_{leg}')
-    add(child(root, 'equality'), 'connect', name=f'ball_{leg}', site1=pair[0], site2=pair[1])
+    add(child(root, 'equality'), how, name=f'ball_{leg}', site1=pair[0], site2=pair[1])
     return pair
 
 
@@ -149,11 +149,16 @@ def add_rod(
     add(held, 'site', name=f'end_{leg}', pos=along)
 
 
-def add_drives(root: ET.Element, joints: tuple[str, ...], drives: Drives) -> None:
-    """One actuator a joint: a spring towards its target that saturates at the drive's effort."""
+def add_drives(
+    root: ET.Element, joints: tuple[str, ...], drives: Drives, moved: str = 'joint'
+) -> None:
+    """One actuator a joint: a spring towards its target that saturates at the drive's effort.
+
+    moved is what it acts on, of the same name: the joint, or a tendon.
+    """
     for name, stiffness, effort in zip(joints, drives.stiffness, drives.effort, strict=True):
         add(
-            child(root, 'actuator'), 'general', name=name, joint=name, gainprm=stiffness,
+            child(root, 'actuator'), 'general', name=name, **{moved: name}, gainprm=stiffness,
             biastype='affine', biasprm=(0.0, -stiffness, 0.0), forcerange=(-effort, effort),
         )  # fmt: skip
 

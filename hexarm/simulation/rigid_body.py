@@ -31,7 +31,7 @@ Seat = Callable[[Pose, Array], Array]
 class Mechanism:
     """A model of one machine, before MuJoCo has read it.
 
-    joints and their actuators share names, in the kinematics' order; the body `moving` is the
+    joints' actuators have their names, in the kinematics' order; the body `moving` is the
     platform or tool, with its frame; closures are pairs of sites that the closed loops join, by
     whose they are.
     """
@@ -168,7 +168,7 @@ def document(name: str, gravity: Array) -> ET.Element:
         default, 'equality', solref=(2 * TIME_STEP, 1.0), solimp=(0.99, 0.9999, 0.0001)
     )  # fmt: skip
     add(default, 'site', size='0.002', rgba=METAL)
-    for part in ('asset', 'worldbody', 'equality', 'actuator'):
+    for part in ('asset', 'worldbody', 'tendon', 'equality', 'actuator'):
         add(root, part)
     add(child(root, 'worldbody'), 'light', pos='0.2 -0.3 1', dir='-0.2 0.3 -1')
     return root

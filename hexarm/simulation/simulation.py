@@ -47,9 +47,7 @@ class Simulation:
         self.mechanism = mechanism
         self.model = mujoco.MjModel.from_xml_string(mechanism.xml)
         self.state = mujoco.MjData(self.model)
-        ids = [self.model.joint(name).id for name in mechanism.joints]
-        self._coordinates = self.model.jnt_qposadr[ids]
-        self._freedoms = self.model.jnt_dofadr[ids]
+        self._positions, self._rates = _shares(self.model, mechanism.joints)
         self._moving = self.model.body(mechanism.moving).id
         pairs = mechanism.closures.values()
         self._ends = np.array([[self.model.site(s).id for s in p] for p in pairs], dtype=int)
@@ -105,7 +103,7 @@ class Simulation:
     @property
     def joints(self) -> Array:
         """Where the joints are (n,)."""
-        return frozen(self.state.qpos[self._coordinates])
+        return frozen(self._positions @ self.state.qpos)
 
     @property
     def pose(self) -> Pose:
@@ -118,7 +116,7 @@ class Simulation:
         before = self._twist()
         self.step()
         twist = self._twist()
-        rates = self.state.qvel[self._freedoms]
+        rates = self._rates @ self.state.qvel
         return Reading(
             float(self.state.time),
             self.joints,
@@ -136,3 +134,19 @@ class Simulation:
         kind, turning_first = mujoco.mjtObj.mjOBJ_XBODY, np.zeros(6)
         mujoco.mj_objectVelocity(self.model, self.state, kind, self._moving, turning_first, 0)
         return np.concatenate([turning_first[3:], turning_first[:3]])
+
+
+def _shares(model: mujoco.MjModel, names: tuple[str, ...]) -> tuple[Array, Array]:
+    """What actuators move, as shares of qpos (n, nq) and of qvel (n, nv): joints, or tendons."""
+    positions, rates = np.zeros((len(names), model.nq)), np.zeros((len(names), model.nv))
+    for i, name in enumerate(names):
+        actuator = model.actuator(name).id
+        parts = [(int(model.actuator_trnid[actuator, 0]), 1.0)]
+        if model.actuator_trntype[actuator] == mujoco.mjtTrn.mjTRN_TENDON:
+            first, count = (a[parts[0][0]] for a in (model.tendon_adr, model.tendon_num))
+            wraps = range(first, first + count)
+            parts = [(int(model.wrap_objid[k]), float(model.wrap_prm[k])) for k in wraps]
+        for joint, share in parts:
+            positions[i, model.jnt_qposadr[joint]] = share
+            rates[i, model.jnt_dofadr[joint]] = share
+    return positions, rates

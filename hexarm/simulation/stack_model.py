@@ -17,7 +17,7 @@ from hexarm.simulation.rigid_body import Mechanism, Seat, add, child, document, 
 from manipulator.arrays import Array
 from manipulator.pose import Pose
 
-NAMES = ('name', 'joint', 'site1', 'site2', 'mesh')
+NAMES = ('name', 'joint', 'tendon', 'site1', 'site2', 'mesh')
 """Attributes that name something, or refer to it."""
 FREE = 7
 """Coordinates of a free body, the first of a section's own model."""
@@ -71,7 +71,7 @@ def _put_section(
     below.extend(bodies.values())
     _place(platform, top)
     child(root, 'worldbody').append(platform)
-    for section in ('asset', 'equality', 'actuator'):
+    for section in ('asset', 'tendon', 'equality', 'actuator'):
         child(root, section).extend(child(own, section))
     return platform
 

@@ -132,15 +132,16 @@ def most_telling(slopes: Array, scale: Array, count: int) -> list[int]:
     """
     rows = slopes * scale
     covariance = np.eye(rows.shape[2])
+    spread = np.eye(6) + rows @ np.swapaxes(rows, 1, 2)  # 1 + H covariance Hᵀ of each pose
     left = np.ones(len(rows), dtype=np.bool_)
     chosen: list[int] = []
     for _ in range(min(count, len(rows))):
-        spread = rows @ covariance @ np.swapaxes(rows, 1, 2)
-        gains = np.linalg.slogdet(np.eye(6) + spread)[1]
+        gains = np.linalg.slogdet(spread)[1]
         best = int(np.argmax(np.where(left, gains, -np.inf)))
-        H = rows[best]
-        gain = covariance @ H.T @ np.linalg.inv(np.eye(6) + H @ covariance @ H.T)
-        covariance = covariance - gain @ H @ covariance
+        common, inverse = covariance @ rows[best].T, np.linalg.inv(spread[best])
+        shared = rows @ common
+        spread = spread - shared @ inverse @ np.swapaxes(shared, 1, 2)
+        covariance = covariance - common @ inverse @ common.T
         left[best] = False
         chosen.append(best)
     return chosen

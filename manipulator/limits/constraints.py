@@ -25,6 +25,9 @@ ROUNDING = 1e-9
 """rad, m or a ratio by which values may differ when the same pose is computed again: the joints of
 a pose that was found from joints at the end of their range may be beyond it by as much."""
 
+FEW = 3
+"""As many limits a message names: a stack has more than a hundred."""
+
 
 @dataclass(frozen=True)
 class Constraints:
@@ -127,16 +130,23 @@ class Constraints:
         return found
 
     def check(self, pose: Pose, joints: Array) -> None:
-        """Raises LimitViolated, naming all that one configuration violates."""
+        """Raises LimitViolated, naming the FEW limits that one configuration violates most.
+
+        Those of one quantity by how far it is beyond, quantities in the order of the limits.
+        """
         if bool(self.admits(pose, joints)):
             return
         found = self.violations(pose, joints)
         if not found:  # by the last digit of an angle, which `admits` compares by its cosine
             return
-        worst = found[0]
+        if len(found) > FEW:
+            quantities = [violation.quantity for violation in found]
+            found.sort(key=lambda v: (quantities.index(v.quantity), -v.excess))
+        worst, more = found[0], found[FEW:]
+        texts = [*(str(v) for v in found[:FEW]), *([f'and {len(more)} more'] if more else [])]
         alike = [owner for quantity, owner, _ in self.names if quantity == worst.quantity]
         raise LimitViolated(
-            '; '.join(str(v) for v in found),
+            '; '.join(texts),
             worst.quantity,
             worst.value,
             (worst.low, worst.high),

@@ -36,12 +36,16 @@ class OnUnreachable(Enum):
 class Flow:
     """How a stream of goals moves at one of them: twist (6,) and its time derivative (6,).
 
-    due: when to be there, on the clock of who plans, in seconds.
+    Of joints, the rates (n,) and their derivatives.
+
+    due: when to be there; until: when the next goal but one must have come. Both in seconds, on
+    the clock of who plans.
     """
 
     twist: Array
     acceleration: Array
     due: float
+    until: float
 
 
 @dataclass(frozen=True, eq=False)

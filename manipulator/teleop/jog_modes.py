@@ -140,22 +140,23 @@ class HoldOrientation:
 
     def latched(self, pose: Pose) -> 'OrientationHeld':
         """Holds the pose's orientation."""
-        return OrientationHeld(self.feedback, pose.rotation)
+        return OrientationHeld(self.feedback, pose)
 
 
 @dataclass(frozen=True, eq=False)
 class OrientationHeld:
-    """`rotation` is T_base_tool's when motion began."""
+    """`start` is the pose when motion began."""
 
     feedback: Feedback
-    rotation: Array
+    start: Pose
 
     def step(
         self, command: Array, measured: Pose, commanded: Array
     ) -> 'tuple[Array, OrientationHeld]':
         """The command's velocity and the turn back to the orientation; its own turn is lost."""
-        error = so3.log(self.rotation @ measured.rotation.T)
-        return np.concatenate([command[:3], self.feedback.angular(error)]), self
+        twist = command.copy()
+        twist[3:] = self.feedback.angular(measured.twist_to(self.start)[3:])
+        return twist, self
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput, Refused
+from manipulator.formatting import not_one_of
 from manipulator.frames import Frames
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
@@ -30,7 +31,7 @@ AXES: dict[str, Callable[[Frames, Pose], Array | None]] = {
 def check_axes(frame: str) -> None:
     """Raises Refused, naming the frames that there are, for any other."""
     if frame not in AXES:
-        raise Refused(f'frame {frame[:80]!r} is not one of {list(AXES)[1:]}')
+        raise Refused(f'frame {not_one_of(frame, list(AXES)[1:])}')
 
 
 def in_work_axes(command: Array, frame: str, pose: Pose, frames: Frames) -> Array:
@@ -58,7 +59,7 @@ def within_speed(twist: Array, motion: MotionLimits) -> tuple[Array, float]:
         raise InvalidInput(f'twist {target.ravel().tolist()} is not six finite numbers')
     axes = map(truediv, map(abs, target.tolist()), motion.axis_speeds.tolist())
     part = max(linear / motion.linear.speed, angular / motion.angular.speed, *axes, 1.0)
-    return target / part, 1.0 / part
+    return (target, 1.0) if part == 1.0 else (target / part, 1.0 / part)
 
 
 def towards(twist: Array, target: Array, motion: MotionLimits, dt: float) -> Array:
@@ -120,7 +121,7 @@ class JogMotion:
     @property
     def is_at_rest(self) -> bool:
         """Whether nothing moves."""
-        return not (self.twist.any() or self.rates.any())
+        return not (any(self.twist.tolist()) or any(self.rates.tolist()))
 
 
 class Jogger(Protocol):

@@ -3,16 +3,18 @@
 At a scaling factor of 1 the plan's own time runs as planned, at 0 it is halted.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 from manipulator.errors import Refused
 from manipulator.planning.cycle import Cycle
 from manipulator.planning.joint_move import JointMove
+from manipulator.planning.joint_stream import JointMoveInMotion
 from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
 from manipulator.planning.point_to_point import LineMove, MoveInMotion
-from manipulator.planning.stream import StreamMove
+from manipulator.planning.stream_move import StreamMove
 from manipulator.states import MotionMode
 
 MODES: dict[type, MotionMode] = {
@@ -21,6 +23,7 @@ MODES: dict[type, MotionMode] = {
     MoveInMotion: MotionMode.MOVE,
     StreamMove: MotionMode.MOVE,
     JointMove: MotionMode.MOVE,
+    JointMoveInMotion: MotionMode.MOVE,
     Cycle: MotionMode.CYCLE,
     TimedPath: MotionMode.PATH,
     JointTrajectory: MotionMode.PATH,
@@ -30,7 +33,7 @@ MODES: dict[type, MotionMode] = {
 TIMED = TimedPath, JointTrajectory
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class ActivePlan:
     """A plan, stamp and note of the goal that it came from, and how far its own time has come."""
 
@@ -39,7 +42,11 @@ class ActivePlan:
     note: str = ''
     time: float = 0.0
 
-    @property
+    def at_time(self, time: float) -> 'ActivePlan':
+        """The same plan at another of its times."""
+        return replace(self, time=time)
+
+    @cached_property
     def state(self) -> MotionState:
         """The state at the present time."""
         return self.plan.at(self.time)

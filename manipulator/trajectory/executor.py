@@ -15,9 +15,11 @@ from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.planning.cycle import Cycle
 from manipulator.planning.goal import Goal
+from manipulator.planning.joint_stream import JointMoveInMotion
 from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
+from manipulator.planning.stream_move import StreamMove
 from manipulator.planning.worker import InPlace, Worker
 from manipulator.pose import Pose
 from manipulator.states import MotionMode, MotionResult
@@ -121,6 +123,11 @@ class Executor:
         """Whether a path is executed that has no times of its own."""
         plan = self._active.plan
         return isinstance(plan, TimedPath) and not plan.is_stamped
+
+    @property
+    def is_streaming(self) -> bool:
+        """Whether a stream of goals is followed."""
+        return isinstance(self._active.plan, StreamMove | JointMoveInMotion)
 
     def slow_down(self, most: float) -> None:
         """Scales the active plan to `most` of its speed, from (0, 1], as fast as it may brake."""
@@ -246,7 +253,7 @@ class Executor:
         if self._active.is_hold:
             self._scaling.jump()
         self._plan()
-        before = replace(self._active)
+        before = self._active
         self._advance()
         pose = self.state.pose
         try:
@@ -323,7 +330,7 @@ class Executor:
         since = 0.0 if self._active.is_hold else self._active.time - planned.begin
         self._next = planned.goal.then
         self._begin(planned.job.result(), planned.goal.stamp, planned.goal.note)
-        self._active.time = since
+        self._active = self._active.at_time(since)
 
     def _begin(self, plan: Plan, stamp: float, note: str = '') -> None:
         self._active, self._planning.ready = ActivePlan(plan, stamp, note), None
@@ -341,7 +348,7 @@ class Executor:
             ready = None
         if not self.is_waiting:
             self._scaling.advance()
-        self._active.time += self._scaling.factor * self._dt
+        self._active = self._active.at_time(self._active.time + self._scaling.factor * self._dt)
         if ready is not None and self._active.time >= ready.begin:
             self._join(ready)
         if self._scaling.is_stopping and self._scaling.factor <= 0.0:

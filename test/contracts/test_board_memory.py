@@ -1,5 +1,7 @@
 """What outlives a reset: the cycle, whatever was being written when the power went."""
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -52,6 +54,11 @@ def test_a_reset_while_a_cycle_is_written_leaves_the_old_one(make_driver, second
     assert lift(driver) == pytest.approx(old, abs=2)
 
 
+@functools.cache
+def robocake():
+    return settings_of('robocake')
+
+
 def result_of(board, message, sequence):
     """The result of a command."""
     board.take_output()
@@ -62,7 +69,7 @@ def result_of(board, message, sequence):
 
 def first_pulse_of_cycle(memory):
     """Where the first servo stands a quarter of the period into the cycle in a memory."""
-    board = Board(settings_of('robocake'), memory=memory)
+    board = Board(robocake(), memory=memory)
     board.step(0.01)
     result_of(board, Arm(HOME), 1)
     board.step(1.5)
@@ -75,7 +82,7 @@ def first_pulse_of_cycle(memory):
 
 def test_at_every_byte_that_is_written_there_is_the_old_cycle_or_the_new_one():
     """Six axes, as a host sets them; twice, so that either copy in the memory is the older one."""
-    board = Board(settings_of('robocake'))
+    board = Board(robocake())
     board.step(0.01)
     memories, sequence = [], 0
     for amplitude in (0.001, 0.002, 0.003):

@@ -10,6 +10,8 @@ import pytest
 
 import hexarm
 
+pytestmark = pytest.mark.processes
+
 JOIN = 'import rclpy; rclpy.init(); rclpy.create_node("x").destroy_node(); rclpy.shutdown()'
 PROFILE, RANGE = 'FASTRTPS_DEFAULT_PROFILES_FILE', 'ROS_AUTOMATIC_DISCOVERY_RANGE'
 OTHERS = ('RMW_IMPLEMENTATION', 'ROS_STATIC_PEERS', 'SKIP_DEFAULT_XML_FILE')

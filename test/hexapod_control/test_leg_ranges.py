@@ -4,51 +4,13 @@ import numpy as np
 import pytest
 
 from hexapod_control.load import hexapod
+from hexarm.machines import content_of, find
 from manipulator.config import build
 from manipulator.errors import ConfigError, LimitViolated
 from manipulator.machine import MachineFile
 
 WIDE, NARROW = [100.0, 250.0], [100.0, 228.0]
-REACHY_MINI = {
-    'geometry': {
-        'crank_centres_mm': [
-            [26.332, 25.109, 70.95],
-            [8.579, 35.359, 70.95],
-            [-34.912, 10.25, 70.95],
-            [-34.912, -10.25, 70.95],
-            [8.579, -35.359, 70.95],
-            [26.332, -25.109, 70.95],
-        ],
-        'crank_tangents': [
-            [-0.866025, 0.5, 0.0],
-            [0.866025, -0.5, 0.0],
-            [0.0, -1.0, 0.0],
-            [0.0, 1.0, 0.0],
-            [0.866025, 0.5, 0.0],
-            [-0.866025, -0.5, 0.0],
-        ],
-        'platform_joints_mm': [
-            [29.9233, 24.9723, -1.2],
-            [18.6649, 31.4724, -1.2],
-            [-24.5883, 6.5, -1.2],
-            [-24.5883, -6.5, -1.2],
-            [18.6649, -31.4724, -1.2],
-            [29.9233, -24.9723, -1.2],
-        ],
-        'crank_length_mm': 38.0,
-        'rod_length_mm': 90.0,
-        'home_height_mm': 177.0,
-    },
-    'limits': {
-        'crank_range_deg': [NARROW, WIDE, NARROW, NARROW, WIDE, NARROW],
-        'minimum_height_mm': 80.0,
-        'platform_joint_swing_deg': 90.0,
-        'crank_joint_tilt_deg': 60.0,
-        'singularity_margin': 0.1,
-        'characteristic_length_mm': 30.0,
-    },
-}
-"""Its motors turn from -80 to 48 degrees, two of them from -80 to 70, from 180 degrees."""
+"""Of Reachy Mini's motors: 80 degrees one way, 70 or 48 the other, from 180 degrees."""
 
 
 def load(content):
@@ -56,8 +18,8 @@ def load(content):
 
 
 @pytest.fixture
-def reachy_mini(robocake_content):
-    return robocake_content | REACHY_MINI
+def reachy_mini():
+    return content_of(find('reachy_mini'))
 
 
 def test_each_crank_keeps_its_own_range(reachy_mini):

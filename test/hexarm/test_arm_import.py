@@ -44,7 +44,7 @@ def robot(links, joints, name='arm'):
 
 
 def plain(*changes, links=(), kind='revolute', count=6):
-    """link_0 to link_6, each joint's axis across the one before; changes: further joints."""
+    """link_0 to link_6, the last three axes through one point; changes: further joints."""
     names = [f'link_{i}' for i in range(count + 1)]
     axes = [(0, 0, 1), (0, 1, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0)]
     joints = [
@@ -53,7 +53,7 @@ def plain(*changes, links=(), kind='revolute', count=6):
             names[i],
             names[i + 1],
             kind,
-            (0.05, 0, 0.1),
+            (0.05, 0, 0.1 if i < 4 else 0),
             axis=axes[i],
         )
         for i in range(count)
@@ -260,6 +260,8 @@ def test_of_several_tips_tool0_is_taken_and_without_one_all_are_named():
     ]
 
 
+AHEAD = ['--xyz', '0.15', '0', '0.4']
+PROPERTY = '<xacro:property xmlns:xacro="http://www.ros.org/wiki/xacro" name="width" value="0.2"/>'
 REFUSED = {
     'loop': (plain(joint('back', 'link_4', 'link_2', 'fixed')), 'below two joints, .*: a loop'),
     'circle': (
@@ -282,7 +284,7 @@ REFUSED = {
     ),
     'seven': (
         plain(joint('jaw', 'link_7', 'left', 'prismatic'), links=['left'], count=7),
-        "to tip 'left'|joint 'jaw' is prismatic",
+        "to tip 'link_7': 7 axes",
     ),
     'seven axes': (
         plain(count=7),
@@ -331,6 +333,16 @@ REFUSED = {
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="x"/></robot>',
         'is xacro, needs plain URDF: run  xacro FILE',
     ),
+    'xacro property': (plain(links=[PROPERTY]).replace('"2.5"', '"${width}"'), 'is xacro, needs'),
+    'sliding wrist': (
+        plain(
+            joint('slide', 'link_4', 'end', 'prismatic'),
+            joint('last', 'end', 'hand'),
+            links=['end', 'hand'],
+            count=4,
+        ),
+        "joint 'slide' is prismatic, an arm has joints that turn",
+    ),
     'entities': ('<!DOCTYPE r [<!ENTITY a "aaaa">]><robot name="&a;"/>', 'has a document type'),
     'other': ('<sdf/>', "its root is 'sdf', needs <robot>"),
     'broken': ('<robot>', 'is not XML'),
@@ -346,6 +358,32 @@ def test_what_is_no_arm_is_refused_by_name(fault):
     with pytest.raises(ConfigError, match=said) as caught:
         arm_of(read_urdf(text))
     assert len(str(caught.value)) < 1000
+
+
+def test_an_arm_of_endless_joints_has_no_margins_and_its_answers_are_json(tmp_path, capsys):
+    def strict(constant):
+        raise AssertionError(constant)
+
+    file = saved(tmp_path, imported(plain(kind='continuous')))
+    for words, limits in (
+        (['check', file], 'smallest_margins'),
+        (['reach', file, *AHEAD], 'limits'),
+    ):
+        assert main([*words, '--json']) == 0
+        assert json.loads(capsys.readouterr().out, parse_constant=strict)[limits] == []
+        assert main(words) == 0
+        assert 'inf' not in capsys.readouterr().out
+
+
+def test_a_xacro_property_that_nothing_uses_does_not_matter():
+    assert arm_of(read_urdf(plain(links=[PROPERTY]))).tip == 'link_6'
+
+
+def test_an_arm_ends_before_the_joint_of_a_gripper_that_its_other_fingers_mimic():
+    knuckle = joint('knuckle', 'link_6', 'left')
+    mimic = joint('f', 'link_6', 'right', rest='<mimic joint="knuckle"/>')
+    text = plain(knuckle, mimic, links=['left', 'right'])
+    assert arm_of(read_urdf(text)).tip == 'link_6'
 
 
 def test_an_arm_ends_at_what_carries_its_fingers():

@@ -1,5 +1,6 @@
 """A client in simulated time: no graph, but what its bridge and its trajectory would publish."""
 
+import signal
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -40,7 +41,7 @@ class Enabling(Client):
             self._next += SAID_EVERY
 
     def answer_of(self, *_):
-        return SimpleNamespace(success=True, message='')
+        return SimpleNamespace(success=True, message='arming')
 
 
 @pytest.fixture
@@ -65,9 +66,10 @@ def test_enabling_goes_on_for_as_long_as_the_bridge_reports_that_it_arms(enablin
     def bridge(seconds):
         return ('arming', '', 'disabled') if seconds < long else ('enabled', '', 'hold')
 
-    user = enabling(bridge)
-    user.enable()
+    user, answers = enabling(bridge), []
+    user.enable(report=answers.append)
     assert user.motion('mode') == 'hold'
+    assert answers == ['arming']
 
 
 def test_enabling_ends_with_the_reason_where_the_machine_is_stopped_meanwhile(enabling):
@@ -147,6 +149,7 @@ def test_the_text_of_a_refusal_is_its_reason():
     assert pursued.text == 'leg 5: rod too short'
 
 
+@pytest.mark.processes
 def test_a_client_that_cannot_leave_the_graph_does_not_keep_its_process():
     """Fast DDS now and then waits for itself, with the interpreter's lock."""
     program = (
@@ -158,3 +161,33 @@ def test_a_client_that_cannot_leave_the_graph_does_not_keep_its_process():
     )
     done = subprocess.run([sys.executable, '-c', program], check=False, timeout=120)
     assert done.returncode == 1
+
+
+class InterruptedAsItGoes:
+    """Ctrl-C comes while Python deletes it, where a KeyboardInterrupt would be dropped."""
+
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)
+
+
+@pytest.fixture
+def ctrl_c_raises():
+    """Also where the tests run in the background, in which a shell has SIGINT ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_ctrl_c_in_any_place_of_a_callback_ends_a_wait_and_the_client_goes_on(ctrl_c_raises):
+    ticks = []
+
+    def tick():
+        ticks.append(None)
+        if len(ticks) == 1:
+            InterruptedAsItGoes()
+
+    with Client('interrupted') as client:
+        client.node.create_timer(0.01, tick)
+        with pytest.raises(KeyboardInterrupt):
+            client.wait('Ctrl-C', lambda: len(ticks) > 1, 10.0)
+        client.wait('another callback', lambda: len(ticks) > 1, 10.0)

@@ -18,6 +18,8 @@ from manipulator.rotation import from_rpy
 TETRAHEDRON = np.array([[0, 0, 0], [30, 0, 0], [0, 20, 0], [0, 0, 10.0]])
 FACES = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
 AXES = [(0, 0, 1), (0, 1, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0), (1, 0, 0)]
+PLACES = [(0.05, 0, 0.1)] * 4 + [(0.05, 0, 0)] * 2
+"""Of each joint on the link before; the last three axes meet, so the arm has a closed form."""
 XYZ, RPY, SCALE = (0.01, -0.02, 0.03), (0.3, -0.2, 0.5), (0.001, 0.002, -0.003)
 
 
@@ -66,16 +68,17 @@ def visual(file, scale=SCALE):
 
 
 def urdf(visuals):
-    """Six joints 0.1 m above each other, a hand on link 6, an arm beside; visuals by link."""
+    """Six joints, a hand on link 6, an arm beside; visuals by link."""
     links = [f'link_{i}' for i in range(7)] + ['hand', 'other']
     joints = [(f'joint_{i}', 'revolute', links[i - 1], links[i]) for i in range(1, 7)]
     joints += [('mount', 'fixed', 'link_6', 'hand'), ('beside', 'prismatic', 'link_0', 'other')]
     made = ''.join(
         f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
-        f'<origin xyz="0.05 0 0.1" rpy="0 0 0"/><axis xyz="{" ".join(map(str, axis))}"/>'
+        f'<origin xyz="{" ".join(map(str, place))}" rpy="0 0 0"/>'
+        f'<axis xyz="{" ".join(map(str, axis))}"/>'
         '<limit lower="-2" upper="2" velocity="3" effort="7"/></joint>'
-        for (name, kind, parent, child), axis in zip(
-            joints, [*AXES, AXES[0], AXES[0]], strict=True
+        for (name, kind, parent, child), axis, place in zip(
+            joints, [*AXES, AXES[0], AXES[0]], [*PLACES, PLACES[0], PLACES[0]], strict=True
         )
     )
     bodies = ''.join(f'<link name="{link}">{visuals.get(link, "")}</link>' for link in links)
@@ -85,11 +88,11 @@ def urdf(visuals):
 def frame(i, angles):
     """T_base_link_i by the definition of URDF."""
     T = np.eye(4)
-    for axis, q in list(zip(AXES, angles, strict=True))[:i]:
+    for axis, place, q in list(zip(AXES, PLACES, angles, strict=True))[:i]:
         cross = np.cross(np.eye(3), axis)
         step = np.eye(4)
         step[:3, :3] += np.sin(q) * cross + (1 - np.cos(q)) * cross @ cross
-        step[:3, 3] = 0.05, 0, 0.1
+        step[:3, 3] = place
         T = T @ step
     return T
 

@@ -1,6 +1,7 @@
 """Nothing that does not fit reaches the mathematics in C."""
 
 import ast
+from array import array as packed
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +59,17 @@ def test_what_is_not_nine_adjacent_doubles_is_rejected(array):
     with pytest.raises((TypeError, ValueError)):
         _kernel.rotation_log(array, vector)
     assert (vector == 7.0).all()
+
+
+@pytest.mark.parametrize(
+    'matrix', [packed('d', np.eye(3).ravel()), np.eye(3).view(np.recarray), memoryview(np.eye(3))]
+)
+def test_other_buffers_of_doubles_are_read_as_arrays_are(matrix):
+    vector = np.full(3, 7.0)
+    _kernel.rotation_log(matrix, vector)
+    assert (vector == 0.0).all()
+    with pytest.raises(ValueError, match='array 2 has 9 numbers, needs 27'):
+        _kernel.rotation_exp(matrix, np.zeros(9))
 
 
 def test_nothing_is_written_where_nothing_may_be():

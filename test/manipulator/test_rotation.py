@@ -56,6 +56,25 @@ def test_left_jacobian_is_the_angular_velocity_of_exp(w, rate):
     np.testing.assert_allclose(so3.log(change) / (2 * h), so3.left_jacobian(w) @ rate, atol=1e-5)
 
 
+@pytest.mark.parametrize('size', [0.0, 1e-6, 0.0099, 0.0101, 1.0, 3.1])
+def test_turning_is_the_change_of_exp_and_its_change(size):
+    """By differences of matrices: of Ṙ Rᵀ, whose antisymmetric part is ω ×."""
+    rng, h = np.random.default_rng(2), 1e-4
+    for start, rate, bend in rng.normal(size=(20, 3, 3)):
+        start = size * start / np.linalg.norm(start)  # noqa: PLW2901
+
+        def at(t, start=start, rate=rate, bend=bend):
+            return so3.exp(start + rate * t + bend * t**2 / 2)
+
+        def omega(t, at=at):
+            return so3.log(at(t + h) @ at(t - h).T) / (2 * h)
+
+        found = so3.turning(start, rate, bend)
+        np.testing.assert_allclose(found[0], omega(0.0), atol=1e-6)
+        np.testing.assert_allclose(found[1], (omega(h) - omega(-h)) / (2 * h), atol=1e-5)
+        np.testing.assert_allclose(found[0], so3.left_jacobian(start) @ rate, atol=1e-14)
+
+
 @given(vectors)
 def test_quaternions_come_back(w):
     matrix = so3.exp(w)

@@ -33,6 +33,14 @@ def test_what_is_saved_is_read_again_to_a_millionth_of_a_millimetre_and_degree(e
     assert again.joints == pytest.approx(JOINTS, abs=2e-8)
 
 
+def test_a_pose_may_be_without_joints(empty):
+    saved = empty.read('poses:\n  up: {xyz_mm: [0, 0, 300], rpy_deg: [0, 0, 90]}\n')
+    assert saved.of('up').joints is None
+    again = empty.read(saved.with_pose('down', saved.of('up')).text)
+    assert again.of('down').joints is None
+    assert again.of('down').pose.rpy == pytest.approx([0.0, 0.0, np.pi / 2])
+
+
 def test_names_that_yaml_takes_for_something_else_stay_names(empty):
     saved = empty
     for name in ('yes', 'null', 'on', 'e1'):
@@ -109,7 +117,7 @@ sequences:
     for words in (
         'poses.1: 1 is not a name',
         'poses.short: xyz_mm: has 2 entries, needs 3',
-        'poses.metres: joints_deg: needs 6 numbers',
+        'poses.metres: the joints need the key joints_deg',
         "sequences.wave: [0].pose: no saved pose is called 'nowhere'",
         'sequences.none: needs a list of 1 to 1000 steps',
         'sequences.fast: [0].speed_mm_s: -1 outside',

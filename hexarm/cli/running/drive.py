@@ -57,12 +57,19 @@ def add_driving(
     name: str,
     act: Act,
     epilog: str | None = None,
+    names_follow: bool = False,
 ) -> argparse.ArgumentParser:
-    """Declares a subcommand of one running machine, whose answer is that of `act`."""
+    """Declares a subcommand of one running machine, whose answer is that of `act`.
+
+    names_follow: of poses, among which a namespace that is left out could not be recognized.
+    """
     parser = commands.add_parser(name, epilog=epilog)
-    parser.add_argument(
-        'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
-    )
+    if names_follow:
+        parser.add_argument('namespace', type=namespace_of, metavar='NAMESPACE')
+    else:
+        parser.add_argument(
+            'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
+        )
     parser.add_argument('--json', action='store_true', help='answer for programs')
     add_units(parser)
     parser.set_defaults(run=running(act))
@@ -94,13 +101,13 @@ def go(robot: 'Robot', arguments: argparse.Namespace) -> Answer:
     return pose(robot, arguments)
 
 
-def goal_asked(robot: 'Robot', arguments: argparse.Namespace) -> Pose:
-    """A saved pose by its name, or the target with another position, orientation or both."""
+def goal_asked(robot: 'Robot', arguments: argparse.Namespace) -> Pose | str:
+    """The name of a saved pose, or the target with another position, orientation or both."""
     has_numbers = arguments.xyz is not None or arguments.rpy is not None
     if has_numbers == (arguments.name is not None):
         raise InvalidInput('go where? NAME of a saved pose; or --xyz X Y Z, --rpy R P Y, or both')
     if arguments.name is not None:
-        return robot.saved_poses.of(arguments.name).pose
+        return str(arguments.name)
     units = units_of(arguments)
     named: dict[str, float] = {}
     if arguments.xyz is not None:
@@ -111,7 +118,7 @@ def goal_asked(robot: 'Robot', arguments: argparse.Namespace) -> Pose:
     return moved_to(robot.target, named)
 
 
-def is_out_of_reach(robot: 'Robot', goal: Pose) -> bool:
+def is_out_of_reach(robot: 'Robot', goal: Pose | str) -> bool:
     """Whether the machine file says so; False where it is not on this computer."""
     with suppress(ConfigError, TimedOut):
         return not robot.reach(goal).is_reachable

@@ -17,9 +17,9 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
     parser = add_driving(commands, 'save', save)
     parser.add_argument('name', nargs='?', default='', help='default: pose_1, pose_2, …')
     add_driving(commands, 'poses', poses)
-    parser = add_driving(commands, 'delete', delete)
-    parser.add_argument('name', help='of a saved pose')
-    parser = add_driving(commands, 'replay', replay)
+    parser = add_driving(commands, 'delete', delete, names_follow=True)
+    parser.add_argument('name', metavar='NAME', help='of a saved pose')
+    parser = add_driving(commands, 'replay', replay, names_follow=True)
     parser.add_argument('names', nargs='+', metavar='NAME', help='of saved poses and sequences')
     parser.add_argument(
         '--speed', type=float, metavar='V', help="m/s (or mm/s), at most; replaces the sequence's"

@@ -11,6 +11,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from std_msgs.msg import Float64
 
+from hexarm import saved_goals
 from hexarm.link_meshes import meshes_of
 from hexarm.panel import page_state
 from hexarm.panel.gripper import gripper_of
@@ -34,6 +35,7 @@ from hexarm.panel.view import View
 from manipulator.analysis.inside import surface
 from manipulator.analysis.reach import explained
 from manipulator.arrays import Array
+from manipulator.errors import ManipulatorError
 from manipulator.formatting import counted
 from manipulator.machine import Machine
 from manipulator.nodes.devices.jog_topics import NO_TWIST, JogTopics
@@ -42,6 +44,7 @@ from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import COMMAND
 from manipulator.nodes.steady_timer import SteadyTimer
 from manipulator.pose import Pose
+from manipulator.saved_poses import SavedPose
 from manipulator.states import MachineState, MotionMode
 from manipulator.teleop.modes import MODES
 
@@ -138,7 +141,10 @@ class PanelNode(Node):
 
     def _tick(self) -> None:
         for request in self._requests.new():
-            self._take(request)
+            try:
+                self._take(request)
+            except ManipulatorError as error:
+                self._requests.notice = str(error)
         stick = self._joystick.stick()
         twist = NO_TWIST if stick is None else stick * self._full * self._share
         self._topics.drive(twist, '', stick is not None)
@@ -155,9 +161,7 @@ class PanelNode(Node):
         if request.do == 'goal':
             self._request_goal(self._controls.move(request.axis, request.value))
         elif request.do == 'go_to' and request.name in self._view.saved:
-            pose = self._view.saved[request.name].pose
-            self._controls.follow(pose)
-            self._request_goal(pose)
+            self._go_to(self._view.saved[request.name])
         elif request.do == 'grip':
             self._gripped_at = time.monotonic()
             self._topics.open_to(min(max(request.value, 0.0), 1.0))
@@ -165,6 +169,8 @@ class PanelNode(Node):
             self._topics.choose(request.name)
         elif request.do == 'share':
             self._share = min(max(request.value, 0.01), 1.0)
+        elif request.do == 'tool':
+            self._machine.frames.with_tool(request.name)  # raises what trajectory logs
         elif request.do == 'show_reach':
             self._scene.set_reach_visible(request.value > 0)
         elif request.do == 'clear_trail':
@@ -210,6 +216,16 @@ class PanelNode(Node):
         self._moved_at = time.monotonic()
         self._requests.request_goal(pose)
         self._ask_reach(pose)
+
+    def _go_to(self, saved: SavedPose) -> None:
+        joints = saved_goals.joints_of(self._machine, saved)
+        self._controls.follow(saved.pose)
+        if joints is None:
+            self._request_goal(saved.pose)
+            return
+        self._moved_at = time.monotonic()
+        self._requests.send_joints(joints)
+        self._ask_reach(saved.pose)
 
     def _ask_reach(self, pose: Pose) -> None:
         self._scene.show_goal(pose)

@@ -2,7 +2,7 @@
 
 import queue
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from geometry_msgs.msg import PoseStamped
@@ -17,22 +17,22 @@ from manipulator.nodes.messages import pose_message
 from manipulator.nodes.qos import COMMAND, EVERY_WORD, LATCHED
 from manipulator.pose import Pose
 
-STOP = 'serial_bridge/stop'
-TRIGGERS = {
-    'clear': 'serial_bridge/clear_fault',
-    'home': 'trajectory/home',
-    'park': 'trajectory/park',
-    'brake': 'trajectory/stop',
-    'cycle': 'trajectory/start_cycle',
+STOP = 'stop'
+SERVICES: dict[str, tuple[str, str, bool | None]] = {
+    STOP: ('STOP', 'serial_bridge/stop', None),
+    'enable': ('Enable', 'serial_bridge/enable', True),
+    'disable': ('Disable', 'serial_bridge/enable', False),
+    'clear': ('Clear fault', 'serial_bridge/clear_fault', None),
+    'home': ('Home', 'trajectory/home', None),
+    'park': ('Park', 'trajectory/park', None),
+    'cycle': ('Cycle', 'trajectory/start_cycle', None),
+    'brake': ('Brake', 'trajectory/stop', None),
+    'pause': ('Pause', 'trajectory/pause', True),
+    'resume': ('Go on', 'trajectory/pause', False),
 }
-SWITCHES = {
-    'enable': ('serial_bridge/enable', True),
-    'disable': ('serial_bridge/enable', False),
-    'pause': ('trajectory/pause', True),
-    'resume': ('trajectory/pause', False),
-}
-"""Services by request."""
+"""By request: its button, the service, and the value of one that switches."""
 ANSWERED_WITHIN = 4.0
+NOBODY = 'nothing answers, does hexarm up run?'
 
 
 class RequestClient:
@@ -45,7 +45,7 @@ class RequestClient:
         self._node, self._on_stop = node, on_stop
         self._pending: queue.SimpleQueue[Request] = queue.SimpleQueue()
         self._goal: Pose | None = None
-        self._waiting: dict[Future, tuple[str, float]] = {}
+        self._waiting: dict[Future, tuple[str, Any, float]] = {}
         self.notice = ''
         publish = node.create_publisher
         self._goals = publish(PoseStamped, 'goal_pose', COMMAND)
@@ -55,16 +55,17 @@ class RequestClient:
         self._names = {
             'save': publish(String, 'save_pose', EVERY_WORD),
             'delete': publish(String, 'delete_pose', EVERY_WORD),
+            'tool': publish(String, 'tool', COMMAND),
         }
         node.create_subscription(String, 'saved_pose_status', self._on_saved, LATCHED)
-        self._clients = {
-            name: node.create_client(Trigger, name) for name in (STOP, *TRIGGERS.values())
+        kinds = {
+            name: Trigger if is_on is None else SetBool for _, name, is_on in SERVICES.values()
         }
-        self._clients |= {name: node.create_client(SetBool, name) for name, _ in SWITCHES.values()}
+        self._clients = {name: node.create_client(kind, name) for name, kind in kinds.items()}
 
     def take(self, request: Request) -> None:
         """Takes a request, from any thread; returns at once."""
-        if request.do == 'stop':
+        if request.do == STOP:
             self._stops.publish(Bool(data=True))
             self._goal = None
             self._on_stop()
@@ -84,21 +85,21 @@ class RequestClient:
         return found
 
     def _put(self, request: Request) -> None:
-        if request.do == 'stop':
-            self._call(STOP, Trigger.Request())
-        elif request.do in TRIGGERS:
-            self._call(TRIGGERS[request.do], Trigger.Request())
-        elif request.do in SWITCHES:
-            name, is_on = SWITCHES[request.do]
-            self._call(name, SetBool.Request(data=is_on))
+        if request.do in SERVICES:
+            self._call(*SERVICES[request.do])
         elif request.do in self._names:
             self._names[request.do].publish(String(data=request.name))
         elif request.do == 'speed':
             self._speeds.publish(Float64(data=min(max(request.value, 0.0), 1.0)))
         elif request.do == 'joint':
-            message = JointState(name=[request.name], position=[request.value])
-            message.header.stamp = self._node.get_clock().now().to_msg()
-            self._joints.publish(message)
+            self.send_joints({request.name: request.value})
+
+    def send_joints(self, named: Mapping[str, float]) -> None:
+        """A goal of joints (rad, m) by name; it replaces a goal that is not yet sent."""
+        self._goal = None
+        message = JointState(name=list(named), position=list(named.values()))
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._joints.publish(message)
 
     def request_goal(self, pose: Pose) -> None:
         """The newest goal replaces one that is not yet sent."""
@@ -110,19 +111,21 @@ class RequestClient:
         if goal is not None:
             self._goals.publish(pose_message(goal, self._node.get_clock().now().to_msg()))
 
-    def _call(self, name: str, request: Any) -> None:
-        client = self._clients[name]
+    def _call(self, button: str, service: str, is_on: bool | None) -> None:
+        client = self._clients[service]
         if not client.service_is_ready():
-            self.notice = f'{name}: the service is not available'
+            self.notice = f'{button}: {NOBODY}'
             return
+        request = Trigger.Request() if is_on is None else SetBool.Request(data=is_on)
         future = client.call_async(request)
-        self._waiting[future] = name, time.monotonic() + ANSWERED_WITHIN
+        self._waiting[future] = button, client, time.monotonic() + ANSWERED_WITHIN
         future.add_done_callback(self._on_answer)
 
     def _on_answer(self, future: Future) -> None:
-        name, _ = self._waiting.pop(future)
+        button, *_ = self._waiting.pop(future)
         answer = future.result()
-        self.notice = '' if answer.success else f'{name}: {answer.message}'
+        is_news = not answer.success or button == 'Pause'
+        self.notice = f'{button}: {answer.message}' if is_news else ''
 
     def _on_saved(self, message: String) -> None:
         self.notice = f'saved poses: {message.data}'
@@ -130,8 +133,10 @@ class RequestClient:
     def _give_up(self) -> None:
         """Notes services that do not answer: a node that was killed seems ready for 20 s."""
         now = time.monotonic()
-        for future, (name, until) in list(self._waiting.items()):
+        for future, (button, client, until) in list(self._waiting.items()):
             if now > until:
                 del self._waiting[future]
-                self._clients[name].remove_pending_request(future)
-                self.notice = f'{name}: no answer within {ANSWERED_WITHIN:g} s, does its node run?'
+                client.remove_pending_request(future)
+                self.notice = (
+                    f'{button}: no answer within {ANSWERED_WITHIN:g} s, does hexarm up run?'
+                )

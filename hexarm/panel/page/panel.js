@@ -1,7 +1,7 @@
 'use strict';
 // The controls. The server answers each question with the newest state, so that a slow page is not flooded; what the
 // page shows is what the server says, also on two pages at once. Metres and radians on the line, mm and ° on the page.
-const POLL_MS = 100, SILENT_MS = 2500, OLD_MS = 8000, HAND_MS = 1500, AGAIN_MS = 1000, REPEAT_MS = 250;
+const POLL_MS = 100, SILENT_MS = 2500, REPORTED_MS = 2500, OLD_MS = 8000, HAND_MS = 1500, AGAIN_MS = 1000, REPEAT_MS = 250;
 const MM = 1e3, DEG = 180 / Math.PI;
 const $ = (id) => document.getElementById(id);
 const make = (tag, attributes = {}, ...children) => {
@@ -11,7 +11,7 @@ const make = (tag, attributes = {}, ...children) => {
 };
 
 let socket = null, machine = null, state = null, askedAt = 0, answeredAt = 0, nodesAt = 0, tab = 'drive';
-let reason = '', reasonAt = 0;
+let reason = '', reasonAt = 0, toolAt = 0;
 
 // Line
 
@@ -38,7 +38,7 @@ const LOST = { state: 'none', reason: '', notice: '', motion: '', can: [],
 
 setInterval(() => {
   const now = Date.now();
-  if (askedAt && now - askedAt > SILENT_MS) { show(LOST); return; }
+  if (askedAt && now - askedAt > SILENT_MS) { show(LOST); askedAt = 0; }   // asks again: a question may be lost
   if (!askedAt && machine && send({ want: 'state' })) askedAt = now;
   if (tab === 'nodes' && now - nodesAt > 1000 && send({ want: 'nodes' })) nodesAt = now;
 }, POLL_MS);
@@ -146,6 +146,8 @@ function begin(words) {
   $('joint-sliders').replaceChildren(...joints.map((row) => row.element));
   $('stepsize').replaceChildren(...[0.1, 1, 5, 10].map((v) => make('option', { value: v, textContent: `${v} ${unit}`, selected: v === 1 })));
   $('mode').replaceChildren(...words.modes.map((mode) => make('option', { textContent: mode })));
+  $('tools').hidden = !words.tools.length;
+  $('tool').replaceChildren(...['', ...words.tools].map((tool) => make('option', { value: tool, textContent: tool || 'none' })));
   $('joints-title').textContent = `Joints [${unit}]`;
   $('legend').replaceChildren(...words.joints.map((joint, k) => {
     const name = make('span', { textContent: joint.name });
@@ -187,6 +189,7 @@ function show(words) {
   joints.forEach((row, k) => row.follow(words.joint_goal ? words.joint_goal[k] : null));
   speed.follow(words.speed);
   if (gripper) gripper.follow(words.opening);
+  if (Date.now() - toolAt > REPORTED_MS && $('tool').value !== words.tool) $('tool').value = words.tool;
   if ($('reach').textContent !== words.reach) $('reach').textContent = words.reach;
   showMeasured(words);
   showSaved(words.saved, can);
@@ -250,6 +253,10 @@ $('save').addEventListener('submit', (event) => {
   if (send({ do: 'save', name: $('name').value.trim() })) $('name').value = '';
 });
 $('mode').addEventListener('change', () => send({ do: 'mode', name: $('mode').value }));
+$('tool').addEventListener('change', () => {
+  toolAt = Date.now();   // it is reported once a second, and changed once the machine is at rest
+  send({ do: 'tool', name: $('tool').value });
+});
 $('share').addEventListener('input', () => {
   $('share').nextElementSibling.textContent = `${$('share').value} %`;
   send({ do: 'share', value: $('share').value / 100 });

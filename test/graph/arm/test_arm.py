@@ -27,14 +27,18 @@ HOME = load('arm_6r_stepper').kinematics.home
 
 def test_goal_is_reached_and_the_encoders_report_so(arm, listen):
     goal = HOME.moved([0.1, -0.05, 0.05, 0.0, 0.2, 0.1])
-    arm.reach(goal)
     received = listen()
 
     def is_there():
         error = received.poses[-1].twist_to(goal) if received.messages else np.ones(6)
         return np.abs(error[:3]).max() < 5e-4 and np.abs(error[3:]).max() < np.radians(0.05)
 
-    arm.wait('the joints', is_there)
+    def go():
+        arm.go_to(goal)
+        arm.wait_while_driven('the joints', is_there)
+        assert arm.motion('result') == 'reached'
+
+    arm.persist(go)
 
 
 def test_a_goal_that_is_a_point_holds_the_orientation_where_the_parameter_says_so(arm, listen):
@@ -101,7 +105,8 @@ def test_jog_is_smooth_and_ends_in_a_hold_when_the_stick_is_released(arm, joysti
     commands.check_smooth()
 
 
-def test_killed_source_stops_the_arm(arm):
+def test_killed_source_stops_the_arm(arm, listen):
+    commands = listen('joint_command')
     script = textwrap.dedent(
         """
         import time, rclpy
@@ -126,6 +131,9 @@ def test_killed_source_stops_the_arm(arm):
             source.kill()
             source.wait()
         arm.wait_while_driven('standing still', lambda: arm.motion('mode') == 'hold')
+        commands.messages.clear()
+        arm.wait_while_driven('ten commands', lambda: len(commands.messages) >= 10)
+        assert commands.is_at_rest()
 
     arm.persist(jog_and_kill)
 

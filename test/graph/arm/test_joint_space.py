@@ -101,6 +101,8 @@ def test_goal_joints_moves_the_named_joints_and_a_bad_one_is_refused(arm, publis
         named = JointState(name=['joint_6', 'joint_1'], position=[0.3, -0.1])
         publish(JointState, 'goal_joints', named)
         arm.wait_while_driven('the joints', lambda: are_at(arm, joint_1=-0.1, joint_6=0.3))
+        arm.wait_while_driven('the end', lambda: arm.motion('result') == 'reached')
+        assert are_at(arm, joint_1=-0.1, joint_6=0.3)
 
     arm.persist(go)
 
@@ -119,6 +121,8 @@ def test_cmd_joints_turns_a_joint_while_it_is_published(arm):
     def jog():
         arm.wait_while_driven('the joint', has_turned)
         arm.wait_while_driven('rest', lambda: arm.motion('mode') == 'hold')
+        assert joints(arm)[5] > 0.05
+        assert are_at(arm, joint_1=HOME[0])
 
     arm.persist(jog)
 
@@ -131,6 +135,8 @@ def test_joint_trajectory_is_executed_and_a_bad_one_is_refused(arm, publish):
         good = trajectory((1.5, [0.1, -0.2]))
         publish(JointTrajectory, 'joint_trajectory', good, is_stamped=False)
         arm.wait_while_driven('the joints', lambda: are_at(arm, joint_1=0.1, joint_6=-0.2))
+        arm.wait_while_driven('the end', lambda: arm.motion('result') == 'reached')
+        assert are_at(arm, joint_1=0.1, joint_6=-0.2)
 
     arm.persist(go)
 

@@ -1,5 +1,6 @@
 """Every script in examples/ beside the running graph."""
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -36,7 +37,10 @@ def start():
     def start(name, *words):
         command = [sys.executable, '-u', str(ROOT / 'examples' / f'{name}.py'), *map(str, words)]
         pipes = {'stdout': subprocess.PIPE, 'stderr': subprocess.STDOUT, 'text': True}
+        # Tests that run in the background of a shell have SIGINT ignored, and so would it.
+        before = signal.signal(signal.SIGINT, signal.SIG_DFL)
         started.append(subprocess.Popen(command, cwd=ROOT, **pipes))
+        signal.signal(signal.SIGINT, before)
         return started[-1]
 
     yield start
@@ -104,7 +108,7 @@ def test_watch_joints_prints_names_and_radians_until_ctrl_c(start, enabled):
     enabled.reach_home()
     process = start('watch_joints')
     lines = [process.stdout.readline() for _ in range(4)]
-    process.send_signal(2)
+    process.send_signal(signal.SIGINT)
     status, said = enabled.end_of(process)
     assert (status, 'Traceback' in said) == (0, False)
     assert lines[0].split()[:6] == [f'crank_{leg}' for leg in range(1, 7)]

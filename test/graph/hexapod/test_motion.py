@@ -74,14 +74,18 @@ def circle(count):
 
 def test_goal_is_reached_and_the_measured_pose_reports_that(enabled, heard):
     goal = Pose.from_xyz_rpy((0.004, -0.003, 0.045), (0.02, 0.03, 0.05))
-    enabled.reach(goal)
     poses = heard(PoseStamped, 'pose')
 
     def is_there():
         error = pose_of(poses[-1]).twist_to(goal)
         return np.abs(error[:3]).max() < NEAR and np.abs(error[3:]).max() < 0.01
 
-    enabled.wait('the pose', is_there)
+    def go():
+        enabled.go_to(goal)
+        enabled.wait_while_driven('the pose', is_there)
+        assert enabled.motion('result') == 'reached'
+
+    enabled.persist(go)
 
 
 def test_foreign_process_moves_the_platform(enabled, heard):
@@ -147,6 +151,7 @@ def test_path_that_is_too_long_is_refused_by_its_length_and_the_next_goal_works(
     publisher(Path, 'goal_path').publish(path)
     enabled.wait('refusal', lambda: words in last_refusal())
     enabled.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.044)))
+    assert words in last_refusal()
 
 
 def change_quaternion(message):

@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from hexarm.cli.running.up import check_alive
-from hexarm.graph import Graph, machine_graph
+from hexarm.graph import Graph, check_alive, machine_graph
 from hexarm.panel_process import panel_address, panel_process
 from manipulator.pose import Pose
 from patient_user import PatientUser
@@ -113,7 +112,7 @@ def test_a_node_that_does_not_answer_is_named(page, machine, hexapod_graph):
     os.kill(machine_process, signal.SIGSTOP)
     try:
         page.page.get_by_role('button', name='Home').click()
-        page.page.get_by_text('trajectory/home: no answer within').wait_for()
+        page.page.get_by_text('Home: no answer within').wait_for()
     finally:
         os.kill(machine_process, signal.SIGCONT)
         machine.client.spin(1.0)  # it takes the machine over anew

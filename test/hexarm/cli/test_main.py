@@ -147,3 +147,11 @@ def test_wrong_arguments_are_not_repeated_whole(capsys):
         main(['fk', 'robocake', 'x' * 5000])
     assert ended.value.code == 2
     assert len(capsys.readouterr().err) < 800
+
+
+@pytest.mark.parametrize('command', ['replay', 'delete'])
+def test_a_namespace_alone_is_not_taken_for_a_pose(command, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([command, 'hexapod'])
+    assert ended.value.code == 2
+    assert 'required: NAME' in capsys.readouterr().err

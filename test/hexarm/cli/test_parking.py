@@ -1,14 +1,15 @@
 """How `hexarm up` ends: it parks, or says why not and asks before it lets go."""
 
 from types import SimpleNamespace
-from unittest.mock import Mock
 
 import pytest
 
 pytest.importorskip('rclpy')
 
-from hexarm.cli.running.up import Interrupted, enable, park
+from hexarm.cli.running.leaving import park
+from hexarm.cli.running.up import enable
 from manipulator.errors import Refused, Stopped
+from manipulator.nodes.stop_signal import Interrupted
 
 
 class User:
@@ -104,6 +105,7 @@ def test_servos_that_are_off_need_no_parking(stop, state):
     assert user.asked == []
 
 
-def test_a_machine_without_a_board_is_not_said_to_energise_servos(capsys):
-    enable(Mock(), 'arm', 'ur3e')
-    assert capsys.readouterr().out == 'enabling; nothing moves yet\n'
+def test_what_the_servos_do_is_printed_as_the_bridge_answers(capsys):
+    answer = 'enabled: the servos are on already, nothing moves'
+    enable(SimpleNamespace(enable=lambda report: report(answer)), 'hexapod')
+    assert capsys.readouterr().out == f'enabling\n{answer}\n'

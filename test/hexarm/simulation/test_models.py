@@ -12,11 +12,13 @@ from hexarm.simulation.model import dynamics_of, mechanism
 from hexarm.simulation.rigid_body import plate, rod
 from hexarm.simulation.simulation import DoesNotAssemble, Simulation
 from hexarm.simulation.static_load import static_load
-from leg_kinds import FLAT_CRANKS, RAILS, TILTED_CRANKS
+from leg_kinds import FLAT_CRANKS, RAILS, SCREW_LEGS, TILTED_CRANKS
 from manipulator.errors import ConfigError
 from sampling import enough
 
-PLATFORMS = ('robocake', 'stewart_6_3', 'stewart_6_6', TILTED_CRANKS, FLAT_CRANKS, RAILS)
+PLATFORMS = (
+    'robocake', 'stewart_6_3', 'stewart_6_6', TILTED_CRANKS, FLAT_CRANKS, RAILS, SCREW_LEGS,
+)  # fmt: skip
 ARMS = ('arm_6r', 'ur5')
 
 
@@ -26,7 +28,7 @@ def poses_of(machine, count):
         limits = machine.kinematics.limits
         joints = generator.uniform(limits.low, limits.high, (count, 6))
         return machine.kinematics.chain.forward(joints), joints
-    poses = sample(machine, count, generator, machine.kinematics.characteristic_length)
+    poses = sample(machine, count, generator)
     return poses, machine.kinematics.inverse(poses)
 
 
@@ -173,3 +175,11 @@ def test_the_lid_of_a_crank_platform_is_where_its_limit_is(example, minimum, bot
     corners = np.concatenate(shapes(simulation).outlines[:2])
     assert 1e3 * corners[:, 2].max() == pytest.approx(minimum - 2.0, abs=1e-3)
     assert 1e3 * corners[:, 2].min() == pytest.approx(bottom, abs=1e-3)
+
+
+@pytest.mark.parametrize('name', ['robocake', 'stewart_6_6', 'linear_rails', 'stack_6_6'])
+def test_drives_of_other_software_are_as_fast_as_joints_may_be(example, name):
+    this = example(name)
+    file = replace(this.file, driver='topic', servos={}, link={}, simulation=None)
+    drives = mechanism('m', file, this.kinematics).drives
+    np.testing.assert_allclose(drives.speed, this.machine.motion.joint.speed)

@@ -2,7 +2,10 @@
 
 import pytest
 
+from hexarm.machines import load
+from manipulator.errors import LimitViolated
 from manipulator.limits.limit import Violation
+from manipulator.pose import Pose
 
 
 @pytest.mark.parametrize(
@@ -19,3 +22,16 @@ from manipulator.limits.limit import Violation
 def test_the_value_reads_differently_from_the_bound_that_it_is_beyond(value, low, high, words):
     violation = Violation('joint angle', 'rad', 'joint 4', value, low, high)
     assert str(violation) == f'joint 4: joint angle {words}'
+
+
+def test_of_many_violations_the_farthest_are_named_and_the_others_counted():
+    machine = load('stack_6_6')
+    pose = Pose.from_xyz_rpy((0.2, 0.0, 1.0), (0.0, 0.0, 0.0))
+    joints = machine.kinematics.inverse(pose)
+    found = machine.constraints.violations(pose, joints)
+    worst = max((v for v in found if v.quantity == 'leg length'), key=lambda v: v.excess)
+    with pytest.raises(LimitViolated) as caught:
+        machine.constraints.check(pose, joints)
+    texts = str(caught.value).split('; ')
+    assert texts[0] == str(worst)
+    assert (len(texts), texts[-1]) == (4, f'and {len(found) - 3} more')
