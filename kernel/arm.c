@@ -119,36 +119,11 @@ static int from_spread_starts(const struct arm *arm, const struct frame *pose,
     return count;
 }
 
-/* Of the ideal arm, each branch of the pose, or of one a little aside where the pose lacks it: at
-   the edge of the reach the arm as built may have a branch which the ideal one has not. */
-static void ideal_branches(const struct arm *arm, const struct frame *pose,
-                           const real near[JOINTS], real branches[CLOSED_BRANCHES][JOINTS])
-{
-    static const real ASIDE[] = {REAL(0.96), REAL(1.04), REAL(0.9)};
-    const real *shoulder = arm->form.chain.point[1];
-    closed_branches(&arm->form, pose, near, branches);
-    for (int n = 0; n < 3; n++) {
-        struct frame aside = *pose;
-        real others[CLOSED_BRANCHES][JOINTS];
-        int lost = 0;
-        for (int k = 0; k < CLOSED_BRANCHES; k++)
-            lost += isnan(branches[k][0]) != 0;
-        if (lost == 0)
-            return;
-        for (int i = 0; i < 3; i++)
-            aside.position[i] = shoulder[i] + ASIDE[n] * (pose->position[i] - shoulder[i]);
-        closed_branches(&arm->form, &aside, near, others);
-        for (int k = 0; k < CLOSED_BRANCHES; k++)
-            for (int i = 0; isnan(branches[k][JOINTS - 1]) && i < JOINTS; i++)
-                branches[k][i] = others[k][i];
-    }
-}
-
 static int from_ideal(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
                       real branches[MOST_BRANCHES][JOINTS], int count)
 {
     real starts[CLOSED_BRANCHES][JOINTS];
-    ideal_branches(arm, pose, near, starts);
+    closed_branches(&arm->form, pose, near, starts);
     for (int k = 0; k < CLOSED_BRANCHES; k++)
         if (!isnan(starts[k][0]))
             count = found_from(arm, pose, starts[k], FEW_STEPS, branches, count);
@@ -184,8 +159,8 @@ static int from_anywhere(const struct arm *arm, const struct frame *pose, const 
     int count = found_from(arm, pose, near, STEPS, branches, 0);
     if ((int)arm->closes == ALMOST_CLOSED)
         count = from_ideal(arm, pose, near, branches, count);
-    count = from_elimination(arm, pose, branches, count);
-    return count > 0 && !has_odd(arm, count) ? count : from_spread_starts(arm, pose, branches, count);
+    return arm->loops[0] < 0 ? from_spread_starts(arm, pose, branches, count)
+                             : from_elimination(arm, pose, branches, count);
 }
 
 int arm_branches(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
