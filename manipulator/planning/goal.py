@@ -36,6 +36,8 @@ class OnUnreachable(Enum):
 class Flow:
     """How a stream of goals moves at one of them: twist (6,) and its time derivative (6,).
 
+    Of joints, the rates (n,) and their derivatives.
+
     due: when to be there; until: when the next goal but one must have come. Both in seconds, on
     the clock of who plans.
     """

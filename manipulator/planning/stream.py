@@ -6,14 +6,21 @@ that, a little later than it came: docs/motion.md, section 6.
 """
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.planning.goal import Flow, Goal, Motion
-from manipulator.planning.stream_move import SHORTEST
-from manipulator.pose import Pose
+from manipulator.planning.flowing import SHORTEST
+from manipulator.planning.goal import Flow, Goal
+
+Place = TypeVar('Place')
+"""Of a goal: its pose, or its joints (n,)."""
+
+Way = Callable[[Place, Place], Array]
+"""From one to another: a twist (6,), or the difference of joints (n,)."""
 
 LONGEST_GAP = 0.12
 """Seconds between two goals of a stream, by their stamps, or as they come where they have none."""
@@ -66,27 +73,28 @@ class Clock:
         return max(round((noted - self._time) / self._period), 1) if is_known else 1
 
 
-class Track:
+class Track(Generic[Place]):
     """The newest goals of a stream at times by one clock, and how rough it is by that clock."""
 
-    def __init__(self) -> None:
-        self.points = deque[tuple[float, Pose]](maxlen=3)
+    def __init__(self, way: Way[Place]) -> None:
+        self._way = way
+        self.points = deque[tuple[float, Place]](maxlen=3)
         self.roughness = 0.0
 
-    def add(self, time: float, pose: Pose) -> None:
+    def add(self, time: float, place: Place) -> None:
         """The newest: its distance from the parabola through the last three is the roughness."""
         if len(self.points) == 3 and time > self.points[-1][0]:
             times = np.array([t for t, _ in self.points])
-            away = np.array([pose.twist_to(at) for _, at in self.points])
+            away = np.array([self._way(place, at) for _, at in self.points])
             missed = _extrapolation(times, time) @ away
             self.roughness = FORGET * self.roughness + float(missed @ missed)
-        self.points.append((time, pose))
+        self.points.append((time, place))
 
     def flow(self) -> tuple[Array, Array, float, float]:
-        """Twist (6,) and its derivative (6,) at the newest; the last two gaps, in seconds."""
-        (first, from_pose), (middle, by_pose), (last, pose) = self.points
+        """Twist (n,) and its derivative (n,) at the newest; the last two gaps, in seconds."""
+        (first, begin), (middle, between), (last, newest) = self.points
         before, gap = middle - first, last - middle
-        start, end = from_pose.twist_to(by_pose) / before, by_pose.twist_to(pose) / gap
+        start, end = self._way(begin, between) / before, self._way(between, newest) / gap
         change = 2.0 * (end - start) / (before + gap)
         return end + change * gap / 2.0, change, before, gap
 
@@ -98,36 +106,36 @@ def _extrapolation(times: Array, time: float) -> Array:
     return weights
 
 
-class Stream:
-    """The newest goals of a sender; changes with each.
+class Stream(Generic[Place]):
+    """The newest goals of a sender, poses or joints; changes with each.
 
     Stamps say when each goal was meant, or only when it was sent, of goals that are even. Of both
     times those count by which the stream is smoother.
     """
 
-    def __init__(self, delay: float) -> None:
-        """delay: seconds from the request of a plan to its beginning."""
-        self._delay = delay
+    def __init__(self, delay: float, way: Way[Place]) -> None:
+        """delay: seconds from the request of a plan to its beginning; way: from place to place."""
+        self._delay, self._way = delay, way
         self._clock = Clock()
-        self._even, self._stamped = Track(), Track()
+        self._even, self._stamped = Track(way), Track(way)
         self._last = -np.inf
         self._due = 0.0
 
-    def continued(self, goal: Goal, now: float) -> Goal:
-        """The goal, with its flow where it continues a stream; now in seconds."""
-        is_simple = (
-            goal.joints is None
-            and goal.motion is not Motion.JOINT
-            and (goal.then is None or isinstance(goal.then, Goal))
-        )
+    def continued(self, goal: Goal, place: Place | None, now: float) -> Goal:
+        """The goal, with its flow where it continues a stream; now in seconds.
+
+        place: of the goal; None for one that continues none, and ends the stream.
+        """
         noted = goal.stamp or goal.received or now
+        if noted == self._last:  # the same one, once the machine has braked
+            return goal
         even = self._clock.sent(noted)
-        if not is_simple or not 0.0 < noted - self._last <= LONGEST_GAP:
-            self._even, self._stamped = Track(), Track()
-        if is_simple:
+        if place is None or not 0.0 < noted - self._last <= LONGEST_GAP:
+            self._even, self._stamped = Track(self._way), Track(self._way)
+        if place is not None:
             self._last = noted
-            self._even.add(even, goal.pose)
-            self._stamped.add(goal.stamp or even, goal.pose)
+            self._even.add(even, place)
+            self._stamped.add(goal.stamp or even, place)
         if len(self._even.points) < 3:
             self._due = -np.inf
             return replace(goal, flow=None)

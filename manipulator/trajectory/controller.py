@@ -161,7 +161,7 @@ class MotionController:
         def act() -> None:
             supervisor = self.supervisor
             goal = joint_goal(supervisor.machine, supervisor.executor, named)
-            supervisor.executor.pursue(replace(goal, stamp=stamp))
+            supervisor.executor.pursue(replace(goal, stamp=stamp, received=now))
 
         self._early.take(act, refuse, now)
 

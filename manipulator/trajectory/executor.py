@@ -15,6 +15,7 @@ from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.planning.cycle import Cycle
 from manipulator.planning.goal import Goal
+from manipulator.planning.joint_stream import JointMoveInMotion
 from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
@@ -126,7 +127,7 @@ class Executor:
     @property
     def is_streaming(self) -> bool:
         """Whether a stream of goals is followed."""
-        return isinstance(self._active.plan, StreamMove)
+        return isinstance(self._active.plan, StreamMove | JointMoveInMotion)
 
     def slow_down(self, most: float) -> None:
         """Scales the active plan to `most` of its speed, from (0, 1], as fast as it may brake."""

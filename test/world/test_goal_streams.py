@@ -164,3 +164,32 @@ def test_a_stream_that_is_too_fast_is_pursued_within_the_limits(world):
     assert np.linalg.norm(commanded.twists[:, :3], axis=1).max() <= 1.01 * motion.linear.speed
     assert np.linalg.norm(changes[:, :3], axis=1).max() <= 1.01 * motion.linear.acceleration
     assert np.abs(commanded.accelerations).max() > 0.5 * motion.linear.acceleration
+
+
+@pytest.mark.parametrize('name', ['robocake', 'ur5'])
+def test_a_stream_of_joint_goals_is_followed_as_smoothly(make_world, name):
+    world = make_world(name)
+    begin, rows, times = world.now, [], []
+    names, home = world.machine.kinematics.joint_names, world.joints
+    send = world.controller._setpoints.send
+
+    def keep(stamp, pose):
+        rows.append(world.controller.supervisor.executor.joints)
+        times.append(world.now - begin)
+        send(stamp, pose)
+
+    def offset(time):
+        share = np.clip(time, 0.0, 1.0)
+        return 0.05 * share**3 * (10.0 - 15.0 * share + 6.0 * share**2) * np.sin(np.pi * time)
+
+    world.controller._setpoints.send = keep
+    ways = np.array([1.0, 0.5, -0.5, 0.3, 0.6, -0.4])
+    while world.now < begin + 2.5:
+        joints = home + offset(world.now - begin) * ways
+        world.send_goal_joints(**dict(zip(names, joints, strict=True)))
+        world.run(1 / 60)
+    ideal = np.abs(np.diff(offset(np.arange(0.0, 2.5, DT)), 2)).max() / DT**2
+    changes = np.diff(np.array(rows), 2, axis=0) / DT**2
+    assert (np.abs(changes).max(axis=0) < SMOOTH * ideal * np.abs(ways)).all()
+    late = np.array(rows) - home - offset(np.array(times) - 0.1)[:, None] * ways
+    assert np.abs(late[60:]).max() < 0.1 * 0.05

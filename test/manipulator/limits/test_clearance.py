@@ -25,7 +25,8 @@ from manipulator.machine import Machine
 from manipulator.planning.goal import Goal, Motion
 from manipulator.planning.nearest_goal import NearestGoal
 from manipulator.planning.plan import MotionState
-from manipulator.planning.planner import Start, plan_goal
+from manipulator.planning.planner import plan_goal
+from manipulator.planning.start import Start
 from manipulator.planning.worker import Effort
 from manipulator.pose import Pose
 from manipulator.teleop.jogger import JogMotion
@@ -174,7 +175,7 @@ def test_jogs_brake_before_the_wall_and_lead_back(name, frames):
     jogger, home = driven.make_jogger(driven), driven.kinematics.home
     motion = JogMotion.at_rest(home, driven.kinematics.inverse(home))
     most = driven.motion.linear.acceleration * DT * 1.1
-    for _ in range(200):
+    for _ in range(120):
         before, motion = motion, jogger.step(motion, to_wall, DT)
         room = walled_in.room(frames.platform(motion.pose), motion.joints)
         assert room >= -1e-9

@@ -4,6 +4,8 @@ import subprocess
 import sys
 import textwrap
 
+import pytest
+
 NODE = textwrap.dedent(
     """
     import ctypes
@@ -27,6 +29,7 @@ NODE = textwrap.dedent(
 )
 
 
+@pytest.mark.processes
 def test_a_node_is_not_collected_and_ends_though_it_cannot_leave_the_graph(monkeypatch):
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'OFF')
     process = subprocess.Popen([sys.executable, '-c', NODE], stdout=subprocess.PIPE, text=True)

@@ -5,6 +5,7 @@ from hexarm.machines import load
 from manipulator import rotation as so3
 from manipulator.errors import Refused
 from manipulator.motion_limits import Derivatives, JointDerivatives, MotionLimits
+from manipulator.planning.check import check_plan
 from manipulator.planning.plan import MotionState
 from manipulator.planning.point_to_point import plan_line_move, plan_move_in_motion
 from manipulator.pose import Pose
@@ -79,3 +80,16 @@ def test_a_move_that_ruckig_fails_at_is_refused():
     )
     with pytest.raises(Refused, match='ruckig failed'):
         plan_move_in_motion(MotionState(goal, np.array(twist), np.array(pull)), goal, limits)
+
+
+def test_the_acceleration_of_the_joints_where_a_plan_is_joined_counts():
+    machine, dt = load('robocake'), 0.01
+    home = machine.kinematics.home
+    joints = machine.kinematics.inverse(home)
+    plan = plan_line_move(home, home.moved([0.001, 0, 0, 0, 0, 0]), machine.motion.for_plans)
+    most = machine.motion.for_plans.joint.acceleration * dt**2
+    for share in (0.5, 2.0):
+        before = joints - share * most * np.eye(6)[2]
+        found = check_plan(plan, machine, joints, dt, before=before)
+        assert found.fits == (share < 1.0)
+    assert found.quantity == 'acceleration of crank_3'
