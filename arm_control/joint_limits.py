@@ -78,7 +78,7 @@ class ArmLimits:
     def __post_init__(self) -> None:
         """Raises ConfigError for two joints of one name."""
         if len(set(self.names)) < JOINTS:
-            raise ConfigError([f'joints: duplicate names in {list(self.names)}'])
+            raise ConfigError([f'joints: duplicate names in {", ".join(self.names)}'])
 
     @property
     def names(self) -> tuple[str, ...]:

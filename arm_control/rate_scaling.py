@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from arm_control.chain import JOINTS
 from arm_control.line_keeping import LOST, Posture
 from manipulator import _kernel
 from manipulator.arrays import Array, Mask, frozen
@@ -20,25 +19,11 @@ AT_STOP = 1e-4
 """Radians from its stop at which a joint stands there: 0.006°, finer than any of our drives."""
 AT_ONCE = 1e12
 """1/s, for a twist that may fall as fast as the joints can brake."""
+ROUNDING = 1e-6
+"""Radians by which a jog stays off the end of each range: who solves its pose again for the joints
+must not find one beyond."""
 LIMITS = ('', 'speed', 'acceleration', 'stop')
 """What sets a scale, in the order of kernel/rate_scaling.h."""
-
-
-@dataclass(frozen=True, eq=False)
-class Room:
-    """Radians (12,) from each joint to the low and the high end of its range; negative beyond."""
-
-    numbers: Array
-
-    @property
-    def to_low(self) -> Array:
-        """(6,)."""
-        return self.numbers[:JOINTS]
-
-    @property
-    def to_high(self) -> Array:
-        """(6,)."""
-        return self.numbers[JOINTS:]
 
 
 @dataclass(frozen=True)
@@ -61,6 +46,7 @@ class Scale:
 class RateScaling:
     """The joints' limits, each (6,), in rad, rad/s and rad/s².
 
+    low and high are given as the joints' ranges, and kept ROUNDING inside them, where a jog ends.
     numbers are these in the order of `struct joint_limits`.
     """
 
@@ -72,30 +58,31 @@ class RateScaling:
 
     def __post_init__(self) -> None:
         """Prepares what the kernel is given."""
+        object.__setattr__(self, 'low', frozen(self.low + ROUNDING))
+        object.__setattr__(self, 'high', frozen(self.high - ROUNDING))
         limits = self.low, self.high, self.speed, self.acceleration
         object.__setattr__(self, 'numbers', frozen(np.concatenate(limits)))
 
-    def room(self, joints: Array) -> Room:
-        """What is left of the ranges for joints (6,), but for rounding."""
-        room = np.empty(2 * JOINTS)
-        _kernel.room_of(self.numbers, joints, room)
-        return Room(room)
+    def stops(self, joints: Array, within: float) -> tuple[Mask, Mask]:
+        """Which of joints (6,) stand at the low ends of their ranges, and at the high ones."""
+        return joints - self.low <= within, self.high - joints <= within
 
     def scale(
-        self, rates: Array, bend: Array, room: Room, dt: float, slowing: float = AT_ONCE
+        self, rates: Array, bend: Array, joints: Array, dt: float, slowing: float = AT_ONCE
     ) -> Scale:
         """The part of `rates` that every joint can drive, and brake from before its stop.
 
-        bend (6,) in rad/s² is how `rates` change while the tool goes straight on with all of them.
+        joints (6,) are where they are; bend (6,) in rad/s² is how `rates` change while the tool
+        goes straight on with all of them.
         slowing: the part of itself (1/s) by which the rates may fall before a stop.
         """
         scale, time = np.empty(3), np.array((dt, slowing))
-        _kernel.scale_rates(self.numbers, room.numbers, rates, bend, time, scale)
+        _kernel.scale_rates(self.numbers, joints, rates, bend, time, scale)
         part, limit, joint = scale.tolist()
         return Scale(part, LIMITS[int(limit)], int(joint))
 
     def followed(
-        self, before: Array, joints: Array, rates: Array, part: float, room: Room, dt: float
+        self, before: Array, joints: Array, rates: Array, part: float, dt: float
     ) -> tuple[Array, Array]:
         """Rates (6,) that the accelerations allow after `before`, and joints (6,) dt later.
 
@@ -104,7 +91,7 @@ class RateScaling:
         accelerations: a step that would pass one is shortened as a whole.
         """
         after, there, going = before.copy(), joints.copy(), np.array((part, dt))
-        _kernel.follow_rates(self.numbers, room.numbers, rates, going, after, there)
+        _kernel.follow_rates(self.numbers, rates, going, after, there)
         return after, there
 
 

@@ -18,7 +18,6 @@ from arm_control.rate_scaling import (
     AT_ONCE,
     AT_STOP,
     RateScaling,
-    Room,
     Scale,
     blocked,
     folding_rates,
@@ -146,7 +145,7 @@ class ResolvedRate:
         if drive.scale == 0.0 and wanted.any():
             drive = tick.way_out() or drive
         before = state.rates, state.joints
-        rates, joints = self.scaling.followed(*before, drive.rates, drive.scale, tick.room, dt)
+        rates, joints = self.scaling.followed(*before, drive.rates, drive.scale, dt)
         off_line, driven, moving = tick.missed(rates)
         if drive.is_sliding:
             off_line, moving = STRAIGHT, driven * wanted
@@ -176,7 +175,6 @@ class _Tick:
     def __init__(
         self, jog: ResolvedRate, state: JogState, twist: Array, dt: float, slowing: float
     ) -> None:
-        self.room: Room = jog.scaling.room(state.joints)
         self.posture = jog.posture(state.joints + 0.5 * dt * state.rates)
         self.sigma_min = self.posture.sigma_min
         self._jog, self._state, self._twist = jog, state, twist
@@ -229,7 +227,8 @@ class _Tick:
         return line_rates(self.posture, twist, self._jog._onset)
 
     def _scale(self, rates: Array, bend: Array) -> Scale:
-        return self._jog.scaling.scale(rates, bend, self.room, self._dt, self._slowing)
+        joints = self._state.joints
+        return self._jog.scaling.scale(rates, bend, joints, self._dt, self._slowing)
 
     def _scaled(self, line: LineRates) -> _Drive:
         scale = self._scale(line.rates, line.bend)
@@ -253,12 +252,13 @@ class _Tick:
 
     def _folding(self) -> _Drive | None:
         """The beginning of a lost joint's bend that leads along the line."""
-        stops = self.room.to_low <= AT_STOP, self.room.to_high <= AT_STOP
-        to_middle = np.fmin(self.room.to_high, ENDLESS) - np.fmin(self.room.to_low, ENDLESS)
-        rates = folding_rates(self.posture, self._twist, to_middle, *stops)
+        joints, scaling = self._state.joints, self._jog.scaling
+        to_low, to_high = np.fmin((joints - scaling.low, scaling.high - joints), ENDLESS)
+        stops = scaling.stops(joints, AT_STOP)
+        rates = folding_rates(self.posture, self._twist, to_high - to_low, *stops)
         if not rates.any():
             return None
-        fastest = float((self._jog.scaling.speed / np.maximum(np.abs(rates), LOST)).min())
+        fastest = float((scaling.speed / np.maximum(np.abs(rates), LOST)).min())
         return _Drive(rates, fastest, self._place())
 
     def _leaving(self) -> _Drive | None:
@@ -278,7 +278,7 @@ class _Tick:
         return float(risen.sum())
 
     def _sliding(self, place: str, is_leaving: bool = False) -> _Drive:
-        stops = self.room.to_low <= AT_STOP, self.room.to_high <= AT_STOP
+        stops = self._jog.scaling.stops(self._state.joints, AT_STOP)
         damping = 0.5 * self._jog.onset
         rates = sliding_rates(self.posture.jacobian, self._twist, damping, *stops)
         rates = without_noise(rates)
@@ -287,7 +287,7 @@ class _Tick:
 
     def _is_trapped(self) -> bool:
         """Whether none of the twelve unit twists can be driven."""
-        near_stops = self.room.to_low <= CORNER, self.room.to_high <= CORNER
+        near_stops = self._jog.scaling.stops(self._state.joints, CORNER)
         unit_rates = self.posture.damped_rates(np.eye(6), self._jog._onset).T
         free = np.flatnonzero(~blocked(unit_rates, *near_stops))
         if self._jog.slides or self.sigma_min >= self._jog.onset or free.size in (0, 12):

@@ -91,6 +91,8 @@ class _Tree:
 
     def root(self) -> str:
         """The base; ConfigError names the roots where there is not one."""
+        if not self.roots:
+            raise ConfigError(['there is no link'])
         if len(self.roots) != 1:
             raise ConfigError([f'the base is not clear, --base: {_listed(self.roots)}'])
         return self.roots[0]
@@ -133,6 +135,7 @@ class _Tree:
         """tool0, or else the end of the arm; ConfigError where that is not clear, or not six axes.
 
         The arm goes on where one joint turns, and ends at what carries none or several: fingers.
+        After six axes a joint that others mimic drives fingers, too.
         """
         links = self.order(base)
         named = [link for link in links if link == TOOL or link.endswith((f'_{TOOL}', f'/{TOOL}'))]
@@ -140,6 +143,8 @@ class _Tree:
             return named[0]
         body, axes = self.body(base), 0
         while len(after := self.carried(body)) == 1 and after[0].kind in TURNING:
+            if axes >= JOINTS and any(j.mimics == after[0].name for j in self.robot.joints):
+                break
             body, axes = self.body(after[0].child), axes + 1
         if axes == JOINTS:
             last = [link for link in body if not self._goes_on(link, body)]
@@ -149,10 +154,11 @@ class _Tree:
         fitting = [link for link in links if self._is_arm(base, link)]
         if fitting and axes < FEW:
             raise ConfigError([f'the tip is not clear, --tip: {_listed(fitting)}'])
-        if axes < FEW:
+        if axes < FEW or not after:
             end = max(links, key=lambda link: (self._axes(base, link), len(self.path(base, link))))
         else:
-            end = after[0].child if len(after) == 1 else body[0]
+            is_arm = len(after) == 1 and self._carries_axes(after[0].child)
+            end = after[0].child if is_arm else body[0]
         self.check(base, end)
         raise ConfigError([f'the tip is not clear, --tip: {_listed(fitting)}'])
 
@@ -170,6 +176,11 @@ class _Tree:
 
     def _goes_on(self, link: str, body: Sequence[str]) -> bool:
         return any(joint.child in body for joint in self.below.get(link, []))
+
+    def _carries_axes(self, link: str) -> bool:
+        """Whether anything turns by itself behind the link, so that it is part of the arm."""
+        behind = (joint for link in self.order(link) for joint in self.below.get(link, []))
+        return any(joint.kind in TURNING and not joint.mimics for joint in behind)
 
     def _axes(self, base: str, tip: str) -> int:
         return sum(joint.kind in TURNING for joint in self.path(base, tip))

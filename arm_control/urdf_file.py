@@ -14,7 +14,7 @@ import numpy as np
 
 from manipulator.arrays import Array
 from manipulator.errors import ConfigError
-from manipulator.formatting import counted, shown
+from manipulator.formatting import counted, not_one_of, shown
 from manipulator.pose import Pose
 
 T = TypeVar('T')
@@ -154,7 +154,9 @@ def _root(text: str) -> ET.Element:
         root: ET.Element = ET.fromstring(text.lstrip('\ufeff \t\r\n'), parser)
     except ET.ParseError as error:
         raise ConfigError([f'is not XML: {error}']) from error
-    if any(XACRO in element.tag for element in root.iter()):
+    macros = [element.tag for element in root.iter() if XACRO in element.tag]
+    is_used = '${' in text or any(not tag.endswith('}property') for tag in macros)
+    if macros and is_used:
         raise ConfigError(['is xacro, needs plain URDF: run  xacro FILE > arm.urdf  first'])
     if root.tag != 'robot':
         raise ConfigError([f'its root is {shown(root.tag)}, needs <robot> (URDF)'])
@@ -207,7 +209,7 @@ def _inertial(link: ET.Element) -> Inertial | None:
 def _joint(name: str, element: ET.Element) -> UrdfJoint:
     kind = element.get('type', '')
     if kind not in KINDS:
-        raise ConfigError([f'type {shown(kind)} is not one of {list(KINDS)}'])
+        raise ConfigError([f'type {not_one_of(kind, KINDS)}'])
     parent, child = (_attribute(element.find(end), 'link') for end in ('parent', 'child'))
     limit, mimic = element.find('limit'), element.find('mimic')
     keys = ('lower', 'upper', 'velocity', 'effort')

@@ -13,7 +13,8 @@ from manipulator.errors import ManipulatorError
 from manipulator.machine import Machine
 from manipulator.planning.goal import Goal, Motion
 from manipulator.planning.plan import MotionState
-from manipulator.planning.planner import Start, plan_goal
+from manipulator.planning.planner import plan_goal
+from manipulator.planning.start import Start
 from manipulator.planning.worker import MOST_POSES, Effort
 from manipulator.pose import Pose
 

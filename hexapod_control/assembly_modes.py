@@ -30,7 +30,6 @@ INFINITE = 1e-5  # |e·e| of a solution without a finite rotation, |e| being 1
 REAL = 1e-9  # imaginary part of e, |e| being 1, that is rounding alone
 NEARLY_REAL = 1e-4  # and that can come of two real solutions which almost meet
 NO_PLACE = 1e-6  # of leg 1's squared length: how far below 0 is not rounding
-DOUBLE = 1e-5  # σmin where two solutions meet
 SAME = 1e-5  # distance of two poses that are one, as part of the platform's size
 TOLERANCE = 1e-10  # of the leg lengths, relative
 ROUNDING = 4e-15  # and what no further step improves
@@ -45,7 +44,8 @@ class AssemblyModes:
     """All poses of the platform for one set of leg lengths.
 
     sigma_min is each mode's smallest singular value of the leg Jacobian about the platform's
-    origin, rotations scaled by the platform joints' rms distance from their centroid.
+    origin, rotations scaled by the platform joints' rms distance from their centroid; two modes
+    that meet in a singular pose, where it is below 1e-5, are listed once, to about 1e-6 only.
     complex_count is the number of all solutions, each with its multiplicity; infinite_count of
     these have no finite rotation. `is_complete` is true when no solution can be missing.
     """
@@ -55,11 +55,6 @@ class AssemblyModes:
     complex_count: int
     infinite_count: int
     is_complete: bool
-
-    @property
-    def has_double_root(self) -> bool:
-        """Whether two modes meet in a singular pose; it is listed once, to about 1e-6 only."""
-        return any(s < DOUBLE for s in self.sigma_min)
 
 
 def assembly_modes(

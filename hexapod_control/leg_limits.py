@@ -27,33 +27,15 @@ from manipulator.arrays import Array, frozen
 from manipulator.config import PLACE_MM, SIZE_MM, quantity
 from manipulator.errors import ConfigError
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.limit import LimitGroup
+from manipulator.limits.limit import GroupedLimit
 from manipulator.limits.machine_limits import BodyHeight, JointRange
-from manipulator.pose import Pose
 
 SINGULARITY_MARGIN = 'smallest singular value of the leg Jacobian (docs/kinematics.md, 5)'
 CHARACTERISTIC_LENGTH = 'what one radian counts in that Jacobian: about the radius of the platform'
 LEG_NAMES = tuple(f'leg {leg}' for leg in range(1, LEGS + 1))
 
 
-@dataclass(frozen=True, eq=False)
-class PlatformLimit:
-    """A `Limit` on some of a platform's `limited_values`, within [low, high] each."""
-
-    group: LimitGroup
-    columns: slice
-    quantity: str
-    unit: str
-    owners: tuple[str, ...]
-    low: Array
-    high: Array
-
-    def values(self, pose: Pose, joints: Array) -> Array:
-        """The limited values (..., k)."""
-        return self.group.limited_values(pose, joints)[..., self.columns]
-
-
-def rod_closure(kinematics: ParallelPlatform, is_surplus: bool = False) -> PlatformLimit:
+def rod_closure(kinematics: ParallelPlatform, is_surplus: bool = False) -> GroupedLimit:
     """How much too short (or too long) each rod is to close its leg, in metres: at most 0.
 
     Depends on the pose alone and so has a value where the joints have none.
@@ -62,7 +44,7 @@ def rod_closure(kinematics: ParallelPlatform, is_surplus: bool = False) -> Platf
     return _each_leg(kinematics, columns, name, 'm', -np.inf, 0.0)
 
 
-def crank_joint_tilt(kinematics: RotaryHexapod, largest: float) -> PlatformLimit:
+def crank_joint_tilt(kinematics: RotaryHexapod, largest: float) -> GroupedLimit:
     """The change (rad) since home of the rod's angle to the plane in which its crank turns.
 
     The bolt of this joint is parallel to the servo's axis, about which the rod turns freely.
@@ -70,27 +52,27 @@ def crank_joint_tilt(kinematics: RotaryHexapod, largest: float) -> PlatformLimit
     return _each_leg(kinematics, TILT, 'crank joint tilt', 'rad', -largest, largest)
 
 
-def platform_joint_swing(kinematics: ParallelPlatform, largest: float) -> PlatformLimit:
+def platform_joint_swing(kinematics: ParallelPlatform, largest: float) -> GroupedLimit:
     """The rod's angle (rad) to its direction at home, as the platform sees it: a cone."""
     return _each_leg(kinematics, SWING, 'platform joint swing', 'rad', -np.inf, largest)
 
 
-def base_joint_swing(kinematics: ParallelPlatform, largest: float) -> PlatformLimit:
+def base_joint_swing(kinematics: ParallelPlatform, largest: float) -> GroupedLimit:
     """The rod's angle (rad) to its direction at home, as the base sees it: a cone."""
     return _each_leg(kinematics, LEANING, 'base joint swing', 'rad', -np.inf, largest)
 
 
-def singularity_margin(kinematics: ParallelPlatform, minimum: float) -> PlatformLimit:
+def singularity_margin(kinematics: ParallelPlatform, minimum: float) -> GroupedLimit:
     """The kinematics' σmin at least `minimum` (dimensionless)."""
     low, high = frozen([minimum]), frozen([np.inf])
-    return PlatformLimit(kinematics.limits, SIGMA, 'singularity margin', '', ('',), low, high)
+    return GroupedLimit(kinematics.limits, SIGMA, 'singularity margin', '', ('',), low, high)
 
 
 def _each_leg(
     kinematics: ParallelPlatform, columns: slice, quantity: str, unit: str, low: float, high: float
-) -> PlatformLimit:
+) -> GroupedLimit:
     bounds = (frozen(np.full(LEGS, end)) for end in (low, high))
-    return PlatformLimit(kinematics.limits, columns, quantity, unit, LEG_NAMES, *bounds)
+    return GroupedLimit(kinematics.limits, columns, quantity, unit, LEG_NAMES, *bounds)
 
 
 def _of_legs(ranges: Range | SixRanges) -> Array:

@@ -19,18 +19,6 @@ from manipulator.pose import Pose
 LEAST_SINE = 1e-6
 
 
-def from_zxz(angles: ArrayLike) -> Array:
-    """The rotation matrix of α, β, γ in radians; (..., 3) to (..., 3, 3): section 4."""
-    values = np.asarray(angles, dtype=np.float64)
-    (sa, sb, sg), (ca, cb, cg) = (np.moveaxis(f(values), -1, 0) for f in (np.sin, np.cos))
-    rows = [
-        [ca * cg - sa * cb * sg, -ca * sg - sa * cb * cg, sa * sb],
-        [sa * cg + ca * cb * sg, -sa * sg + ca * cb * cg, -ca * sb],
-        [sb * sg, sb * cg, cb],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-
-
 def to_zxz(rotations: ArrayLike, start: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
     """α, β, γ in radians of successive rotation matrices (n, 3, 3): (n, 3), continuous.
 

@@ -15,7 +15,7 @@ from hexapod_control.rails import RailPlatform, RailsConfig
 from hexapod_control.rotary import RotaryHexapod
 from manipulator.arrays import Array
 from manipulator.errors import ConfigError
-from manipulator.formatting import shown
+from manipulator.formatting import not_one_of
 from manipulator.limits.constraints import Constraints
 from manipulator.machine import Kind, Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
@@ -39,9 +39,9 @@ def platform(machine_file: MachineFile) -> Machine:
     """The same, but that its home may be beyond limits."""
     kind = machine_file.kind
     if kind not in KINDS:
-        raise ConfigError([f'kind: {shown(kind)} is not one of {sorted(KINDS)}'])
+        raise ConfigError([f'kind: {not_one_of(kind, sorted(KINDS))}'])
     kinematics, constraints = KINDS[kind].build(machine_file)
-    motion = MotionLimits.from_config(machine_file.motion)
+    motion = MotionLimits.from_config(machine_file.motion, kinematics.joint_unit)
     return Machine(
         kinematics,
         constraints,

@@ -4,10 +4,9 @@ docs/kinematics.md, section 7. Works for every machine whose joints follow from 
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from manipulator import rotation as so3
 from manipulator.analysis.free_paths import admits
+from manipulator.analysis.travel import travel
 from manipulator.arrays import Array, Mask
 from manipulator.machine import Machine
 from manipulator.pose import Pose
@@ -17,26 +16,18 @@ CHECKS_PER_STEP = 12
 BURN_IN = 80
 THINNING = 8
 WALKERS = 1000
-BISECTIONS = 30
-MOST_LENGTHS = 100
-"""Characteristic lengths within which an axis has its end."""
 
 
-def sample(
-    machine: Machine,
-    count: int,
-    generator: np.random.Generator,
-    characteristic_length: float = 0.07,
-) -> Pose:
+def sample(machine: Machine, count: int, generator: np.random.Generator) -> Pose:
     """`count` poses spread evenly over the connected component of home.
 
-    Walkers set out from home and take random twists, rotations made lengths by
-    characteristic_length (m). A step is at most 12/70 of that length and is taken only if the
+    Walkers set out from home and take random twists, rotations made lengths by the machine's
+    characteristic length. A step is at most 12/70 of that length and is taken only if the
     poses of its path, 1/70 apart, are all admitted: a walker can leave the component only through
     a gap narrower than that. A path and its reverse are equally likely, so the walk's
     limit is the even distribution. Poses of one walker are neighbours: take many poses.
     """
-    home = machine.kinematics.home
+    home, length = machine.kinematics.home, machine.kinematics.characteristic_length
     walkers = min(count, WALKERS)
     pose = Pose(np.tile(home.position, (walkers, 1)), np.tile(home.rotation, (walkers, 1, 1)))
     rounds = -(-count // walkers)
@@ -44,25 +35,20 @@ def sample(
     for tick in range(BURN_IN + (rounds - 1) * THINNING + 1):
         if tick >= BURN_IN and (tick - BURN_IN) % THINNING == 0:
             found.append(pose)
-        pose = _walked(machine, pose, generator, characteristic_length)
+        pose = _walked(machine, pose, generator, length)
     return Pose(
         np.concatenate([p.position for p in found])[:count],
         np.concatenate([p.rotation for p in found])[:count],
     )
 
 
-def axis_range(
-    machine: Machine, axis: int, characteristic_length: float = 0.07
-) -> tuple[float, float]:
+def axis_range(machine: Machine, axis: int) -> tuple[float, float]:
     """How far home moves along one axis alone: 0–2 are x, y, z in m, 3–5 about them in rad.
 
-    The lowest and highest offset before the first limit, in steps of a 70th of the
-    characteristic length, then by bisection.
+    The lowest and highest offset before the first limit.
     """
-    step = characteristic_length / CHECKS_PER_LENGTH
-    if axis >= 3:
-        step /= characteristic_length
-    return -_travel(machine, axis, -step), _travel(machine, axis, step)
+    home, twist = machine.kinematics.home, np.eye(6)[axis]
+    return -travel(machine, home, -twist).seconds, travel(machine, home, twist).seconds
 
 
 def _walked(machine: Machine, pose: Pose, generator: np.random.Generator, length: float) -> Pose:
@@ -86,26 +72,3 @@ def _is_path_free(machine: Machine, pose: Pose, twist: Array) -> Mask:
     path = pose[:, None].moved(parts * twist[:, None])
     poses = Pose.unchecked(path.position.reshape(-1, 3), path.rotation.reshape(-1, 3, 3))
     return np.asarray(admits(machine, poses).reshape(-1, len(parts)).all(axis=1))
-
-
-def _travel(machine: Machine, axis: int, step: float) -> float:
-    """The distance from home to the first limit, along `axis` in the direction of `step`."""
-    for lengths in (1, 10, MOST_LENGTHS):
-        steps = np.arange(1, lengths * CHECKS_PER_LENGTH)
-        inside = admits(machine, _shifted(machine.kinematics.home, axis, step * steps))
-        if not inside.all():
-            break
-    last = int(np.argmin(inside))
-    low, high = last * step, (last + 1) * step
-    for _ in range(BISECTIONS):
-        middle = (low + high) / 2
-        free = admits(machine, _shifted(machine.kinematics.home, axis, [middle]))[0]
-        low, high = (middle, high) if free else (low, middle)
-    return abs(low)
-
-
-def _shifted(home: Pose, axis: int, offsets: ArrayLike) -> Pose:
-    along = np.asarray(offsets, dtype=np.float64)
-    twists = np.zeros((along.size, 6))
-    twists[:, axis] = along
-    return Pose(home.position + twists[:, :3], so3.exp(twists[:, 3:]) @ home.rotation)

@@ -32,6 +32,8 @@ WELL = 0.6
 """Of the largest one, that of a posture that will do for home."""
 BENDS = tuple(math.radians(angle) for angle in (0, 30, -30, 60, -60, 90, -90))
 """Angles of joints 2 to 5 in postures that are tried as home."""
+OFF_STOPS, OFF_STOPS_SHARE = math.radians(10.0), 0.1
+"""How far home is from the ends of a joint's range: rad, but at most this part of the range."""
 LENGTH_SHARE, RADIUS_SHARE = 0.25, 0.06
 """Of all links together the characteristic length; of that a link's radius."""
 ROUNDING, ROUNDING_SHARE = 1e-15, 1e-12
@@ -40,7 +42,7 @@ GEARS = 1e7
 
 
 @dataclass(frozen=True)
-class Wishes:
+class ImportOptions:
     """What a URDF does not say, and its user may: home (6,) in degrees, acceleration in deg/s²."""
 
     home_deg: Sequence[float] | None = None
@@ -59,7 +61,7 @@ def machine_text(
     arm: UrdfArm,
     name: str,
     source: str,
-    wishes: Wishes,
+    options: ImportOptions,
     meshes: Sequence[str] = (),
     notes: Sequence[str] = (),
 ) -> Imported:
@@ -71,9 +73,9 @@ def machine_text(
     length = LENGTH_SHARE * reach_of(arm.chain)
     sections = (
         _head(arm, name, source),
-        [*_geometry(arm, length, wishes), *_meshes(meshes, notes)],
-        _limits(arm, length, wishes),
-        _motion(arm, wishes),
+        [*_geometry(arm, length, options), *_meshes(meshes, notes)],
+        _limits(arm, length, options),
+        _motion(arm, options),
         _dynamics(arm, length),
     )
     text = '\n'.join('\n'.join(lines) + '\n' for lines in sections)
@@ -93,7 +95,7 @@ def _head(arm: UrdfArm, name: str, source: str) -> Iterator[str]:
     yield 'driver: topic                      # other software moves the joints: docs/your-arm.md'
 
 
-def _geometry(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
+def _geometry(arm: UrdfArm, length: float, options: ImportOptions) -> Iterator[str]:
     chain = arm.chain
     yield 'geometry:'
     yield '  screws:                          # axes and points on them, in base axes at zero'
@@ -102,8 +104,8 @@ def _geometry(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
     yield f'  tool_position_mm: {_list(1e3 * chain.home.position)}'
     rpy = to_rpy(chain.home.rotation, EXACTLY)
     yield f'  tool_rpy_deg: {_list(np.degrees(rpy))}'
-    if wishes.home_deg is not None:
-        yield f'  home_deg: {_list(wishes.home_deg)}'
+    if options.home_deg is not None:
+        yield f'  home_deg: {_list(options.home_deg)}'
         return
     exact, (low, high) = np.degrees(home_of(arm, length)), np.degrees(_ends(arm))
     rounded = np.round(exact, 3)
@@ -118,16 +120,16 @@ def _meshes(files: Sequence[str], notes: Sequence[str]) -> Iterator[str]:
     yield from (f'  # {_plain(note)}' for note in notes)
 
 
-def _limits(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
+def _limits(arm: UrdfArm, length: float, options: ImportOptions) -> Iterator[str]:
     yield 'limits:'
     yield f'  characteristic_length_mm: {1e3 * length:.0f}.0  # assumed: a quarter of all links'
     yield f'  damping_onset: {ONSET}              # assumed'
     yield '  joints:'
     for joint in arm.joints:
-        yield _joint(joint, wishes)
+        yield _joint(joint, options)
 
 
-def _joint(joint: UrdfJoint, wishes: Wishes) -> str:
+def _joint(joint: UrdfJoint, options: ImportOptions) -> str:
     travel, notes = range_deg(joint), list[str]()
     words = [f'name: {_scalar(joint.name)}']
     if travel is None:
@@ -137,15 +139,15 @@ def _joint(joint: UrdfJoint, wishes: Wishes) -> str:
         notes += [] if _has_range(joint) else ['range']
     speed = speed_deg_s(joint)
     notes += [] if _is_credible(joint.velocity, CREDIBLE_SPEED, True) else ['speed']
-    acceleration = wishes.acceleration_deg_s2 or _ramped(speed)
-    notes += [] if wishes.acceleration_deg_s2 else ['acceleration']
+    acceleration = options.acceleration_deg_s2 or _ramped(speed)
+    notes += [] if options.acceleration_deg_s2 else ['acceleration']
     words += [f'speed_deg_s: {_number(speed)}', f'acceleration_deg_s2: {_number(acceleration)}']
     return f'    - {{{", ".join(words)}}}' + (f'  # assumed: {", ".join(notes)}' if notes else '')
 
 
-def _motion(arm: UrdfArm, wishes: Wishes) -> Iterator[str]:
+def _motion(arm: UrdfArm, options: ImportOptions) -> Iterator[str]:
     fastest = max(speed_deg_s(joint) for joint in arm.joints)
-    acceleration = wishes.acceleration_deg_s2 or _ramped(fastest)
+    acceleration = options.acceleration_deg_s2 or _ramped(fastest)
     yield 'motion:                            # assumed, all of the tool'
     yield '  linear_speed_mm_s: 250.0         # the speed that ISO 10218 allows beside people'
     yield '  linear_acceleration_mm_s2: 1500.0'
@@ -236,12 +238,13 @@ def posture(chain: Chain, low: Array, high: Array, length: float) -> Array:
     """Joints (6,) in rad: of the postures tried, the nearest to zero far from singular ones.
 
     Of those whose tool and joints are above the base plane, where there are any; within low and
-    high (6,). length (m): what one radian counts.
+    high (6,), and not at their ends. length (m): what one radian counts.
     """
     ends = zip(low.tolist(), high.tolist(), strict=True)
     rest = np.array([0.0 if a <= 0.0 <= b else (a + b) / 2 for a, b in ends])
     bends = np.array([(0.0, *four, 0.0) for four in product(BENDS, repeat=4)])
-    postures = np.clip(rest + bends, low, high)
+    inside = np.minimum(OFF_STOPS, OFF_STOPS_SHARE * (high - low))
+    postures = np.clip(rest + bends, low + inside, high - inside)
     sigma = chain.sigma_min(postures, length)
     is_above = _lowest(chain, postures) >= min(0.0, float(chain.points[:, 2].min()))
     allowed = is_above if (sigma[is_above] >= ONSET).any() else np.ones_like(is_above)

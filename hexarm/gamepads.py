@@ -1,12 +1,11 @@
 """Finding and loading gamepad mappings: config/joystick_NAME.yaml, or a path."""
 
-import difflib
 from pathlib import Path
 
 from hexarm.machines import folders, text_of
 from manipulator.config import build, parse_yaml
 from manipulator.errors import ConfigError
-from manipulator.formatting import shown
+from manipulator.formatting import did_you_mean, nearest, shown
 from manipulator.teleop.gamepad import Gamepad
 
 PREFIX = 'joystick_'
@@ -24,11 +23,9 @@ def load(name_or_path: str) -> Gamepad:
     if path.suffix not in ('.yaml', '.yml') and '/' not in name_or_path:
         known = shipped()
         if name_or_path not in known:
-            near = difflib.get_close_matches(name_or_path, known, n=1)
-            hint = f', did you mean {near[0]!r}?' if near else ''
-            problem = (
-                f'no gamepad is called {shown(name_or_path)}{hint} (shipped: {sorted(known)})'
-            )
+            hint = did_you_mean(nearest(name_or_path, known))
+            there = ', '.join(sorted(known))
+            problem = f'no gamepad is called {shown(name_or_path)}{hint} (shipped: {there})'
             raise ConfigError([problem])
         path = known[name_or_path]
     return build(Gamepad, parse_yaml(text_of(path), str(path)), source=str(path))

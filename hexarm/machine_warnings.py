@@ -34,6 +34,10 @@ US_PER_DEG = (5.5, 11.2)
 SINGULAR = 0.01
 """Smallest singular value below which home counts as singular; those of shipped homes: 0.25 up."""
 
+RADIANS = {'a right angle': np.pi / 2, 'half a turn': np.pi, 'a turn': 2 * np.pi}
+ROUNDED = 1e-3
+"""Share by which an angle in radians may be rounded, as in 3.14 or 1.5708."""
+
 GEARED_US = 700.0
 """So far from its centre goes a pulse that fills what there is: a geared servo, or a winch's."""
 
@@ -43,7 +47,7 @@ def warnings_of(
 ) -> list[str]:
     """One sentence for each doubt about a machine without problems; geometry is its section."""
     found = [*_assumed_planes(machine, geometry), *_other_bend(machine)]
-    found += [*_uneven_motion(machine), *_singular_home(machine)]
+    found += [*_uneven_motion(machine), *_singular_home(machine), *_tiny_ranges(machine)]
     if calibration is not None:
         found += _pulses(machine, calibration)
     return found
@@ -79,6 +83,33 @@ def _singular_home(machine: Machine) -> Iterator[str]:
             f'geometry: home is a singular posture (singularity margin {margin:.3f}): from there '
             'no line leads in some directions, and the reach from home is small; choose another'
         )
+
+
+def _tiny_ranges(machine: Machine) -> Iterator[str]:
+    """Joints of an arm none of which leaves zero by more degrees than a turn has radians."""
+    limit, kinematics = joint_range(machine), machine.kinematics
+    if limit is None or isinstance(kinematics, RotaryHexapod) or kinematics.joint_unit != 'rad':
+        return
+    farthest = np.degrees(np.abs([limit.low, limit.high]).max())
+    if farthest < 2 * np.pi * (1.0 + ROUNDED):
+        yield f'limits: no joint goes beyond {farthest:.3g}°: are the ranges in radians?'
+
+
+def radians_for_degrees(section: object, place: str = '') -> dict[str, str]:
+    """A sentence for each key in degrees that holds a right angle or a turn in radians."""
+    if isinstance(section, list):
+        found = [radians_for_degrees(value, place) for value in section]
+        return {key: text for each in reversed(found) for key, text in each.items()}
+    if isinstance(section, Mapping):
+        found = [radians_for_degrees(v, f'{place}.{k}'.lstrip('.')) for k, v in section.items()]
+        return {key: text for each in found for key, text in each.items()}
+    if not place.endswith('_deg') or 'us_per' in place or not isinstance(section, int | float):
+        return {}
+    for name, turn in RADIANS.items():
+        if abs(abs(section) - turn) < ROUNDED * turn:
+            meant = f'{section:g}° would be {name} in radians: is it in another unit?'
+            return {place: f'{place}: {meant}'}
+    return {}
 
 
 def _other_bend(machine: Machine) -> Iterator[str]:

@@ -1,6 +1,5 @@
 """Finding and loading machine files: by path, then beside the source, then in share/."""
 
-import difflib
 import os
 import re
 from collections.abc import Callable, Mapping
@@ -16,7 +15,14 @@ from bridge.servo_config import BoardConfig, ServosConfig
 from manipulator.arrays import frozen
 from manipulator.config import MAX_CHARACTERS, build, parse_yaml
 from manipulator.errors import ConfigError, InvalidInput
-from manipulator.formatting import reason, shortened, shown
+from manipulator.formatting import (
+    did_you_mean,
+    nearest,
+    not_one_of,
+    reason,
+    shortened,
+    shown,
+)
 from manipulator.frames import Frames
 from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine, MachineFile
@@ -92,8 +98,7 @@ def find(name_or_path: str) -> Path:
         return path
     if name_or_path in known:
         return known[name_or_path]
-    near = difflib.get_close_matches(name_or_path, list(known), n=1)
-    hint = f', did you mean {near[0]!r}?' if near else ''
+    hint = did_you_mean(nearest(name_or_path, known))
     raise ConfigError(
         [f'no machine is called {shown(name_or_path)}{hint} (shipped: {", ".join(sorted(known))})']
     )
@@ -212,9 +217,7 @@ def loader(kind: str) -> Callable[[MachineFile], Machine]:
     """What makes machines of this kind; ConfigError names the kinds that there are."""
     if kind in KINDS:
         return KINDS[kind]
-    near = difflib.get_close_matches(kind, list(KINDS), n=1)
-    hint = f', did you mean {near[0]!r}?' if near else ''
-    raise ConfigError([f'kind: {shown(kind)} is not one of {", ".join(KINDS)}{hint}'])
+    raise ConfigError([f'kind: {not_one_of(kind, KINDS)}'])
 
 
 def load(name_or_path: str) -> Machine:

@@ -7,9 +7,8 @@ import numpy as np
 from bridge.calibration import Calibration
 from hexapod_control.stacks.kinematics import StackKinematics
 from manipulator.arrays import Array
-from manipulator.config import nearest
 from manipulator.errors import NoSolution
-from manipulator.formatting import told_apart
+from manipulator.formatting import nearest, told_apart
 from manipulator.limits.wording import in_words
 from manipulator.machine import Machine
 from manipulator.pose import Pose

@@ -1,22 +1,10 @@
 /* What Python calls of the arms' mathematics. */
-#include <string.h>
-
 #include "arm.h"
 #include "general.h"
 #include "line_keeping.h"
 #include "matrix6.h"
 #include "python.h"
 #include "rate_scaling.h"
-
-static struct frame pose_of(real *const pose[2])
-{
-    struct frame frame;
-    memcpy(frame.position, pose[0], sizeof frame.position);
-    memcpy(frame.rotation, pose[1], sizeof frame.rotation);
-    return frame;
-}
-
-#define POSE(k) ((struct frame[1]){pose_of(a + (k))})
 
 static int are_finite(const real *numbers, int count)
 {
@@ -37,8 +25,7 @@ static Py_ssize_t each_chain_forward(real *const *a)
 {
     posture turned;
     chain_posture(AS(struct chain, 0), a[1], &turned);
-    memcpy(a[2], turned.tool.position, sizeof turned.tool.position);
-    memcpy(a[3], turned.tool.rotation, sizeof turned.tool.rotation);
+    put_pose(&turned.tool, a[2], a[3]);
     return !are_finite(turned.tool.position, 3);
 }
 
@@ -134,10 +121,9 @@ static Py_ssize_t each_part_driven(real *const *a)
     return 0;
 }
 
-DO(room_of, room_of(AS(struct joint_limits, 0), a[1], a[2]))
 DO(scale_rates, *AS(struct rate_scale, 5) =
                     scale_rates(AS(struct joint_limits, 0), a[1], a[2], a[3], a[4][0], a[4][1]))
-DO(follow_rates, follow_rates(AS(struct joint_limits, 0), a[1], a[3][0], a[2], a[3][1], a[4], a[5]))
+DO(follow_rates, follow_rates(AS(struct joint_limits, 0), a[2][0], a[1], a[2][1], a[3], a[4]))
 
 struct function ARM_FUNCTIONS[] = {
     EACH(chain_forward, ONCE(struct chain), IN(real[6]), OUT(real[3]), OUT(real[9])),
@@ -161,10 +147,9 @@ struct function ARM_FUNCTIONS[] = {
     EACH(damped_rates, ONCE(struct decomposed), ONCE(real), IN(real[6]), OUT(real[6])),
     EACH(part_driven, ONCE(struct decomposed), ONCE(real[2]), IN(real[6]), IN(real[6]),
          OUT(real[6]), OUT(real), OUT(real[6])),
-    EACH(room_of, ONCE(struct joint_limits), IN(real[6]), OUT(real[12])),
-    EACH(scale_rates, ONCE(struct joint_limits), IN(real[12]), IN(real[6]), IN(real[6]),
+    EACH(scale_rates, ONCE(struct joint_limits), IN(real[6]), IN(real[6]), IN(real[6]),
          ONCE(real[2]), OUT(struct rate_scale)),
-    EACH(follow_rates, ONCE(struct joint_limits), IN(real[12]), IN(real[6]), ONCE(real[2]),
-         OUT(real[6]), OUT(real[6])),
+    EACH(follow_rates, ONCE(struct joint_limits), IN(real[6]), ONCE(real[2]), OUT(real[6]),
+         OUT(real[6])),
     {.each = 0},
 };

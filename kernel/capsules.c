@@ -16,16 +16,10 @@ static void point_on(const real segment[6], real share, real point[3])
         point[i] = segment[i] + share * (segment[3 + i] - segment[i]);
 }
 
-static void between(const real from[3], const real to[3], real vector[3])
-{
-    for (int i = 0; i < 3; i++)
-        vector[i] = to[i] - from[i];
-}
-
 static real gap(const real a[3], const real b[3])
 {
     real vector[3];
-    between(a, b, vector);
+    minus3(b, a, vector);
     return real_sqrt(dot3(vector, vector));
 }
 
@@ -37,8 +31,8 @@ static real clamped(real share)
 static real point_distance(const real point[3], const real segment[6])
 {
     real along[3], to_point[3], foot[3];
-    between(segment, segment + 3, along);
-    between(segment, point, to_point);
+    minus3(segment + 3, segment, along);
+    minus3(point, segment, to_point);
     real square = dot3(along, along);
     point_on(segment, square > 0 ? clamped(dot3(to_point, along) / square) : 0, foot);
     return gap(point, foot);
@@ -48,9 +42,9 @@ static real point_distance(const real point[3], const real segment[6])
 static real crossing_distance(const real first[6], const real second[6])
 {
     real u[3], v[3], w[3], a[3], b[3];
-    between(first, first + 3, u);
-    between(second, second + 3, v);
-    between(second, first, w);
+    minus3(first + 3, first, u);
+    minus3(second + 3, second, v);
+    minus3(first, second, w);
     real uu = dot3(u, u), uv = dot3(u, v), vv = dot3(v, v), uw = dot3(u, w), vw = dot3(v, w);
     real determinant = uu * vv - uv * uv;
     if (!(determinant > PARALLEL * uu * vv))

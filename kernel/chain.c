@@ -31,8 +31,7 @@ static void turn_links(const struct chain *chain, const real joints[JOINTS],
         real turn[9], length[3];
         rotation_about(chain->axis[i], joints[i], turn);
         product9(links[i].rotation, turn, links[i + 1].rotation);
-        for (int k = 0; k < 3; k++)
-            length[k] = next[k] - chain->point[i][k];
+        minus3(next, chain->point[i], length);
         rotate3(links[i + 1].rotation, length, links[i + 1].position);
         for (int k = 0; k < 3; k++)
             links[i + 1].position[k] += links[i].position[k];
@@ -73,8 +72,7 @@ void chain_jacobian(const posture *turned, real jacobian[6][JOINTS])
 {
     for (int i = 0; i < JOINTS; i++) {
         real arm[3], velocity[3];
-        for (int k = 0; k < 3; k++)
-            arm[k] = turned->tool.position[k] - turned->point[i][k];
+        minus3(turned->tool.position, turned->point[i], arm);
         cross3(turned->axis[i], arm, velocity);
         for (int k = 0; k < 3; k++) {
             jacobian[k][i] = velocity[k];

@@ -18,10 +18,10 @@ typedef struct chain posture;
 void chain_displacements(const struct chain *chain, const real joints[JOINTS],
                          struct frame moved[JOINTS + 1]);
 
-/* D = T M^-1: how far the pose displaces what the last joint carries. */
+/* D = T M^-1 of (6.1): how far the pose displaces what the last joint carries. */
 void displacement(const struct chain *chain, const struct frame *pose, struct frame *moved);
 
-/* Axes, points and tool where the joints take them. */
+/* Axes, points and tool where the joints take them: (1.2). */
 void chain_posture(const struct chain *chain, const real joints[JOINTS], posture *turned);
 
 /* The tool's twist (v, w) in base axes for unit joint rates, six rows of six: (1.3). */

@@ -2,19 +2,13 @@
 
 #include "subproblems.h"
 
-static void difference3(const real a[3], const real b[3], real difference[3])
-{
-    for (int i = 0; i < 3; i++)
-        difference[i] = a[i] - b[i];
-}
-
 /* Joint 1, both turns of the arm's plane with `tip` in it towards the target: section 4, 1. */
 static int joint_1(const struct chain *chain, const real tip[3], const real target[3],
                    struct turn free, struct turn q1[2])
 {
     real arm[3], towards[3];
-    difference3(tip, chain->point[0], arm);
-    difference3(target, chain->point[0], towards);
+    minus3(tip, chain->point[0], arm);
+    minus3(target, chain->point[0], towards);
     return projections(chain->axis[0], chain->axis[1], towards, dot3(chain->axis[1], arm), free,
                        q1);
 }
@@ -24,7 +18,7 @@ static void from_shoulder(const struct chain *chain, struct turn q1, const real 
                           real local[3])
 {
     real arm[3], turned[3];
-    difference3(target, chain->point[0], arm);
+    minus3(target, chain->point[0], arm);
     rotate_about(chain->axis[0], turn_back(q1), arm, turned);
     for (int i = 0; i < 3; i++)
         local[i] = turned[i] + chain->point[0][i] - chain->point[1][i];
@@ -36,14 +30,14 @@ static int shoulder_and_elbow(const struct chain *chain, const real tip[3], cons
                               struct turn q3[2])
 {
     real upper[3], fore[3];
-    difference3(chain->point[1], chain->point[2], upper);
-    difference3(tip, chain->point[2], fore);
+    minus3(chain->point[1], chain->point[2], upper);
+    minus3(tip, chain->point[2], fore);
     if (!distances(chain->axis[2], fore, upper, dot3(target, target), free[2], q3))
         return 0;
     for (int elbow = 0; elbow < 2; elbow++) {
         real turned[3], reached[3];
         rotate_about(chain->axis[2], q3[elbow], fore, turned);
-        difference3(turned, upper, reached);
+        minus3(turned, upper, reached);
         q2[elbow] = facing(chain->axis[1], reached, target, free[1]);
     }
     return 1;
@@ -146,7 +140,7 @@ static struct turn inner_target(const struct closed_form *form, const struct fra
     const struct chain *chain = &form->chain;
     const real *w2 = chain->axis[1], *w5 = chain->axis[4], *w6 = chain->axis[5];
     real arm[3], side[3], a[3], b[3], there[3];
-    difference3(chain->point[3], form->centre, arm);
+    minus3(chain->point[3], form->centre, arm);
     rotate_about(w5, turn_back(q5), arm, a);
     rotate_about(w6, turn_back(q6), a, b);
     for (int i = 0; i < 3; i++)
@@ -226,8 +220,8 @@ static void gap_of_joint_1(const struct closed_form *form, const real centre[3],
 {
     const struct chain *chain = &form->chain;
     real away[3], arm[3], across[3];
-    difference3(centre, chain->point[0], away);
-    difference3(form->centre, chain->point[0], arm);
+    minus3(centre, chain->point[0], away);
+    minus3(form->centre, chain->point[0], arm);
     cross3(chain->axis[0], away, across);
     *gap = (struct gap){0, real_sqrt(dot3(across, across)),
                         real_fabs(dot3(chain->axis[1], arm)), (real)INFINITY};
@@ -246,8 +240,8 @@ static void gap_of_elbow(const struct chain *chain, const real tip[3], const rea
                          struct gap *gap)
 {
     real upper[3], fore[3];
-    difference3(chain->point[2], chain->point[1], upper);
-    difference3(tip, chain->point[2], fore);
+    minus3(chain->point[2], chain->point[1], upper);
+    minus3(tip, chain->point[2], fore);
     real a = in_plane(chain, upper), b = in_plane(chain, fore), d = in_plane(chain, target);
     real least = real_fabs(a - b), most = a + b;
     real beyond = d - most > least - d ? d - most : least - d;

@@ -15,8 +15,8 @@ struct closed_form {
 void closed_branches(const struct closed_form *form, const struct frame *pose,
                      const real near[JOINTS], real branches[CLOSED_BRANCHES][JOINTS]);
 
-/* Which triangle does not close: what has to be reached is `distance` from joint 1's axis or else
-   from the shoulder, may be `least` to `most`. */
+/* Which triangle of 4, step 1 or 2, does not close: what has to be reached is `distance` from joint
+   1's axis or else from the shoulder, may be `least` to `most`. */
 struct gap {
     real is_at_shoulder;
     real distance;

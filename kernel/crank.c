@@ -16,7 +16,7 @@ int crank_elbows(const struct crank_legs *legs, const real position[3], const re
     real gap[3][LEGS], y[LEGS], z[LEGS], side[LEGS], height[LEGS];
     leg_gaps(legs, position, rotation, gap);
     /* The triangle of crank, rod and gap, seen along the crank's axis: the crank's tip is `side`
-       along the gap and `height` across it, both by EC / r. So (2.2) needs no arc cosine. */
+       along the gap and `height` across it, both by EC / r. So (2.4). */
     for (int i = 0; i < LEGS; i++) {
         real x = leg_dot(legs->normal, gap, i), r = legs->crank[i], d = legs->rod[i];
         y[i] = leg_dot(legs->tangent, gap, i);

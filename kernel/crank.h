@@ -1,4 +1,4 @@
-/* Legs with a crank and a rod: docs/kinematics.md, 2. */
+/* Legs with a crank and a rod: docs/kinematics.md, 1 and 2. */
 #pragma once
 #include "real.h"
 
@@ -26,14 +26,15 @@ static inline real leg_dot(const real a[3][LEGS], const real b[3][LEGS], int i)
 /* Of v, fixed to the platform, the vector of leg i along base axis k. */
 static inline real leg_turned(const real rotation[9], const real v[3][LEGS], int k, int i)
 {
-    return rotation[3 * k] * v[0][i] + rotation[3 * k + 1] * v[1][i] + rotation[3 * k + 2] * v[2][i];
+    const real *row = rotation + 3 * k;
+    return row[0] * v[0][i] + row[1] * v[1][i] + row[2] * v[2][i];
 }
 
-/* From crank axes to platform joints, base axes. */
+/* v of (2.1): from crank axes to platform joints, base axes. */
 void leg_gaps(const struct crank_legs *legs, const real position[3], const real rotation[9],
               real gap[3][LEGS]);
 
-/* The crank angles of one pose with the elbow out and in, within half a turn of `middle`, see
-   (2.2); `in` may be null. NaN for a leg that does not close. Returns how many do not. */
+/* The crank angles of one pose with the elbow out and in, (2.4), within half a turn of `middle`;
+   `in` may be null. NaN for a leg that does not close. Returns how many do not. */
 int crank_elbows(const struct crank_legs *legs, const real position[3], const real rotation[9],
                  real out[LEGS], real *in);

@@ -1,4 +1,4 @@
-/* What limits a platform: docs/kinematics.md, 5 and 6. */
+/* What limits a platform: docs/kinematics.md, 2.2, 5.1 and 6; docs/motion.md, 1.1. */
 #pragma once
 #include "platform.h"
 
@@ -36,6 +36,7 @@ struct limit_ranges {
 struct limit_ranges limit_ranges(const struct platform *platform, const real low[VALUES],
                                  const real high[VALUES]);
 
-/* Whether the joints exist (are finite) and all values are in their ranges. */
+/* Whether the joints exist (are finite) and all values are in their ranges; for docs/workspace.md,
+   3, a million times a second. */
 int keeps_limits(const struct platform *platform, const struct limit_ranges *ranges,
                  const real position[3], const real rotation[9], const real joints[LEGS]);

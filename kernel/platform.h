@@ -12,7 +12,7 @@ struct platform {
 };
 
 /* The pose for joints (6), from a start, which becomes the pose. Cold (the rules name a side), a
-   leg that is bent the other way than at home is refused, too. */
+   leg that is bent the other way than at home is refused, too: 3.3, case 5. */
 struct newton_report platform_forward(const struct platform *platform,
                                       const struct newton_rules *rules, const real joints[LEGS],
-                                      real position[3], real rotation[9]);
+                                      struct frame *pose);

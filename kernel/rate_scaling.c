@@ -6,8 +6,6 @@
 #define STRAIGHT REAL(1e-12) /* rad/s^2 */
 /* Radians or rad/s that hold nothing back. */
 #define FAR REAL(1e12)
-/* Radians by which a jog stays off the end of each range. */
-#define ROUNDING REAL(1e-6)
 /* Of a joint's acceleration, what following a straight line at constant speed may take; the rest
    is left for braking on it. */
 #define BEND_SHARE REAL(0.25)
@@ -39,25 +37,17 @@ static int first_least(const real numbers[JOINTS])
     return first;
 }
 
-void room_of(const struct joint_limits *limits, const real joints[JOINTS], real room[2 * JOINTS])
+/* Radians to the end that the joint's rate leads to; negative beyond. */
+static real room(const struct joint_limits *limits, const real joints[JOINTS], int i, real rate)
 {
-    for (int i = 0; i < JOINTS; i++) {
-        room[i] = joints[i] - limits->ranges.low[i] - ROUNDING;
-        room[JOINTS + i] = limits->ranges.high[i] - ROUNDING - joints[i];
-    }
-}
-
-/* To the end that the joint's rate leads to. */
-static real ahead(const real room[2 * JOINTS], int joint, real rate)
-{
-    return rate > 0 ? room[JOINTS + joint] : room[joint];
+    return rate > 0 ? limits->ranges.high[i] - joints[i] : joints[i] - limits->ranges.low[i];
 }
 
 /* From what part of its rate each joint can stand before its stop, all braking together: with
    deceleration a and room r, v dt + v^2/(2a) <= r. All fall by the same part of themselves, as
    fast as the one that brakes worst; what its line bends towards the stop, a joint has to brake as
    well. Joints that stand may be anywhere. */
-static void braking_parts(const struct joint_limits *limits, const real room[2 * JOINTS],
+static void braking_parts(const struct joint_limits *limits, const real joints[JOINTS],
                           const real rates[JOINTS], const real bend[JOINTS], real dt,
                           real slowing, real parts[JOINTS])
 {
@@ -65,7 +55,7 @@ static void braking_parts(const struct joint_limits *limits, const real room[2 *
     for (int i = 0; i < JOINTS; i++)
         fall = least_of(fall, (limits->acceleration[i] - real_fabs(bend[i])) / size_of(rates[i]));
     for (int i = 0; i < JOINTS; i++) {
-        real size = size_of(rates[i]), most = fall * size, r = ahead(room, i, rates[i]);
+        real size = size_of(rates[i]), most = fall * size, r = room(limits, joints, i, rates[i]);
         real bent = rates[i] * bend[i] > 0 ? real_fabs(bend[i]) : 0;
         real a = most_of(most - bent, BRAKING_LEFT * most), slowed = a * dt;
         if (r <= AT_STOP)
@@ -75,7 +65,7 @@ static void braking_parts(const struct joint_limits *limits, const real room[2 *
     }
 }
 
-struct rate_scale scale_rates(const struct joint_limits *limits, const real room[2 * JOINTS],
+struct rate_scale scale_rates(const struct joint_limits *limits, const real joints[JOINTS],
                               const real rates[JOINTS], const real bend[JOINTS], real dt,
                               real slowing)
 {
@@ -89,7 +79,7 @@ struct rate_scale scale_rates(const struct joint_limits *limits, const real room
     real cruise = least_of(1, least_of(driven[fastest], bent[easiest]));
     for (int i = 0; i < JOINTS; i++)
         bending[i] = cruise * cruise * bend[i];
-    braking_parts(limits, room, rates, bending, dt, slowing, braked);
+    braking_parts(limits, joints, rates, bending, dt, slowing, braked);
     int gentlest = first_least(braked);
     if (cruise >= 1 && braked[gentlest] >= 1)
         return (struct rate_scale){1, HELD_BY_NONE, 0};
@@ -128,8 +118,8 @@ static void choose_rates(const struct joint_limits *limits, const real before[JO
         chosen[i] = before[i] + (part * rates[i] - before[i]) / slowest;
 }
 
-void follow_rates(const struct joint_limits *limits, const real room[2 * JOINTS], real part,
-                  const real rates[JOINTS], real dt, real before[JOINTS], real joints[JOINTS])
+void follow_rates(const struct joint_limits *limits, real part, const real rates[JOINTS], real dt,
+                  real before[JOINTS], real joints[JOINTS])
 {
     real chosen[JOINTS], shorter = 1;
     choose_rates(limits, before, part, rates, dt, chosen);
@@ -137,14 +127,14 @@ void follow_rates(const struct joint_limits *limits, const real room[2 * JOINTS]
         if (real_fabs(chosen[i]) < STANDING)
             chosen[i] = 0;
         else
-            shorter = least_of(shorter, most_of(ahead(room, i, chosen[i]), 0)
+            shorter = least_of(shorter, most_of(room(limits, joints, i, chosen[i]), 0)
                                             / real_fabs(chosen[i]) / dt);
     }
     for (int i = 0; i < JOINTS; i++) {
         before[i] = shorter * chosen[i];
         /* Only rounding is cut off: what stops do is in the rates. */
-        real low = least_of(limits->ranges.low[i] + ROUNDING, joints[i]);
-        real high = most_of(limits->ranges.high[i] - ROUNDING, joints[i]);
+        real low = least_of(limits->ranges.low[i], joints[i]);
+        real high = most_of(limits->ranges.high[i], joints[i]);
         joints[i] = least_of(most_of(joints[i] + dt * before[i], low), high);
     }
 }

@@ -2,16 +2,11 @@
 #pragma once
 #include "branches.h"
 
-/* In rad, rad/s and rad/s^2. */
+/* In rad, rad/s and rad/s^2; a jog ends at its ranges' stops. */
 struct joint_limits {
     struct ranges ranges;
     real speed[JOINTS], acceleration[JOINTS];
 };
-
-/* Radians to the low ends, then to the high ends; negative beyond. A jog stays a little off them:
-   who solves its pose again for the joints must not find one beyond. */
-void room_of(const struct joint_limits *limits, const real joints[JOINTS],
-             real room[2 * JOINTS]);
 
 enum { HELD_BY_NONE, HELD_BY_SPEED, HELD_BY_ACCELERATION, HELD_BY_STOP };
 
@@ -21,14 +16,14 @@ struct rate_scale {
     real joint; /* from 1 */
 };
 
-/* The part of `rates` that every joint can drive, and brake from before its stop. `bend` is how
-   they change while the tool goes straight on with all of them, `slowing` the part of itself (1/s)
-   by which they may fall before a stop. */
-struct rate_scale scale_rates(const struct joint_limits *limits, const real room[2 * JOINTS],
+/* The part of `rates` that every joint can drive, and brake from before its stop: 8.1 and 8.4.
+   `bend` is how they change while the tool goes straight on with all of them, `slowing` the part of
+   itself (1/s) by which they may fall before a stop. */
+struct rate_scale scale_rates(const struct joint_limits *limits, const real joints[JOINTS],
                               const real rates[JOINTS], const real bend[JOINTS], real dt,
                               real slowing);
 
 /* Rates that the accelerations allow after `before`, on the way to part x rates, and joints a tick
-   later. Stops outrank accelerations: a step that would pass one is shortened as a whole. */
-void follow_rates(const struct joint_limits *limits, const real room[2 * JOINTS], real part,
-                  const real rates[JOINTS], real dt, real before[JOINTS], real joints[JOINTS]);
+   later. Stops outrank accelerations: a step that would pass one is shortened as a whole. 8.4. */
+void follow_rates(const struct joint_limits *limits, real part, const real rates[JOINTS], real dt,
+                  real before[JOINTS], real joints[JOINTS]);

@@ -63,7 +63,7 @@ static int advance(const struct stack *stack, const struct frame *end,
 static int descended(const struct stack *stack, const struct frame *end, real *free)
 {
     struct normal normal;
-    real L[FREE][FREE], step[FREE], before = 0;
+    real L[FREE][FREE] = {{0}}, step[FREE], before = 0;
     for (int tries = 0; tries < MOST_STEPS; tries++) {
         put_stack_normal(stack, end, free, &normal);
         real longest = before > 0 ? solve(normal.size, L, normal.gradient, step) : INFINITY;

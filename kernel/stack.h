@@ -1,4 +1,4 @@
-/* Platforms on platforms, their redundancy resolved: docs/kinematics.md, 9. */
+/* Platforms on platforms, their redundancy resolved: docs/kinematics.md, 9.1 and 9.2. */
 #pragma once
 #include "se3.h"
 

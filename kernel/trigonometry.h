@@ -1,5 +1,6 @@
-/* Angles of many legs at once: no branch, no call, so that the compiler works on several legs at a
-   time. On the board, whose floats it does one by one, they are the library's. */
+/* For (1.1) and (2.4) of docs/kinematics.md, angles of many legs at once: no branch, no call, so
+   that the compiler works on several legs at a time. On the board, whose floats it does one by one,
+   they are the library's. */
 #pragma once
 #include "real.h"
 

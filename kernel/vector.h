@@ -2,6 +2,13 @@
 #pragma once
 #include "real.h"
 
+/* What maps coordinates of one frame to another: the frame's origin, and the rotation, row by row.
+   */
+struct frame {
+    real position[3];
+    real rotation[9];
+};
+
 static inline real dot3(const real a[3], const real b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -12,6 +19,12 @@ static inline void cross3(const real a[3], const real b[3], real product[3])
     product[0] = a[1] * b[2] - a[2] * b[1];
     product[1] = a[2] * b[0] - a[0] * b[2];
     product[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline void minus3(const real a[3], const real b[3], real difference[3])
+{
+    for (int i = 0; i < 3; i++)
+        difference[i] = a[i] - b[i];
 }
 
 /* R v. */

@@ -174,16 +174,13 @@ def part_driven(
     Adds to `off_line` what is missed in dt, unscaled.
     """
 
-def room_of(limits: Array, joints: Array, room: Array) -> int:
-    """Writes what is left of the joint ranges: see kernel/rate_scaling.h."""
-
 def scale_rates(
-    limits: Array, room: Array, rates: Array, bend: Array, dt_and_slowing: Array, scale: Array
+    limits: Array, joints: Array, rates: Array, bend: Array, dt_and_slowing: Array, scale: Array
 ) -> int:
     """Writes the part of rates that can be driven, and what sets it."""
 
 def follow_rates(
-    limits: Array, room: Array, rates: Array, part_and_dt: Array, before: Array, joints: Array
+    limits: Array, rates: Array, part_and_dt: Array, before: Array, joints: Array
 ) -> int:
     """Changes rates and joints to what they are dt later."""
 

@@ -7,7 +7,6 @@ that a section may have; the one with most of the keys is meant.
 """
 
 import dataclasses
-import difflib
 import math
 import re
 import types
@@ -18,7 +17,15 @@ from typing import Any, TypeVar
 import yaml
 
 from manipulator.errors import ConfigError
-from manipulator.formatting import counted, shortened, shown, told_apart
+from manipulator.formatting import (
+    counted,
+    did_you_mean,
+    nearest,
+    not_one_of,
+    shortened,
+    shown,
+    told_apart,
+)
 from manipulator.strict_yaml import content_of
 
 T = TypeVar('T')
@@ -64,6 +71,8 @@ def parse_yaml(text: str, source: str = '') -> dict[str, Any]:
         )
     try:
         content = content_of(text)
+    except yaml.MarkedYAMLError as error:
+        raise ConfigError([_short(_at_its_line(error))], source) from error
     except yaml.YAMLError as error:
         raise ConfigError([_short(error)], source) from error
     except (ValueError, TypeError, OverflowError) as error:
@@ -110,12 +119,14 @@ def _convert(expected: Any, value: object, where: str, problems: list[str]) -> A
         kinds = [a for a in arguments if a is not type(None)]
         if isinstance(value, Mapping) and all(map(dataclasses.is_dataclass, kinds)):
             return _convert_form(kinds, value, where, problems)
+        counts = [len(typing.get_args(k)) for k in kinds if typing.get_origin(k) is tuple]
+        if isinstance(value, list) and len(counts) > 1 and len(value) not in counts:
+            problems.append(_wrong_count(where, value, ' or '.join(map(str, counts))))
+            return ()
         return _convert(_fitting(kinds, value), value, where, problems)
     if origin is typing.Literal:
         if value not in arguments:
-            hint = _did_you_mean(nearest(str(value), [str(a) for a in arguments]))
-            choices = ', '.join(str(a) for a in arguments)
-            problems.append(f'{where}: {shown(value)} is not one of {choices}{hint}')
+            problems.append(f'{where}: {not_one_of(value, arguments)}')
         return value
     if origin is tuple:
         return _convert_list(arguments, value, where, problems)
@@ -143,9 +154,21 @@ def _convert_form(
     form = fitting_form(forms, value)
     if form is None:
         firsts = [dataclasses.fields(form)[0].name for form in forms]
-        problems.append(f'{where}: has the keys of no form or of two, needs one of {firsts}')
+        problems.append(
+            f'{where}: has the keys of no form or of two, needs one of {", ".join(firsts)}'
+        )
         return None
-    return _convert_section(form, value, where, problems)
+    own, *others = ([f.name for f in dataclasses.fields(one)] for one in (form, *forms))
+    foreign = {
+        name: names[0] for names in others for name in names if name in value and name not in own
+    }
+    problems += [
+        f'{_join(where, name)}: does not go with {own[0]}'
+        + (f', but with {first}' if first != name else '')
+        for name, first in foreign.items()
+    ]
+    rest = {name: entry for name, entry in value.items() if name not in foreign}
+    return _convert_section(form, rest, where, problems)
 
 
 def fitting_form(forms: list[Any], value: Mapping[Any, Any]) -> Any:
@@ -158,7 +181,7 @@ def fitting_form(forms: list[Any], value: Mapping[Any, Any]) -> Any:
 def unknown_key(where: str, name: object, known: list[str]) -> tuple[str, str]:
     """The known key that is nearest, empty where none is near; and the problem in words."""
     near = nearest(str(name), known)
-    return near, f'{_join(where, name)}: unknown key{_did_you_mean(near)}'
+    return near, f'{_join(where, name)}: unknown key{did_you_mean(near)}'
 
 
 def _convert_section(schema: Any, value: object, where: str, problems: list[str]) -> Any:
@@ -197,13 +220,16 @@ def _convert_list(arguments: Any, value: object, where: str, problems: list[str]
     if arguments[-1] is Ellipsis:
         arguments = (arguments[0],) * len(value)
     if len(value) != len(arguments):
-        entries = counted(len(value), 'entry', 'entries')
-        problems.append(f'{where}: has {entries}, needs {len(arguments)}')
+        problems.append(_wrong_count(where, value, str(len(arguments))))
         return ()
     return tuple(
         _convert(kind, entry, f'{where}[{i}]', problems)
         for i, (kind, entry) in enumerate(zip(arguments, value, strict=True))
     )
+
+
+def _wrong_count(where: str, value: list[Any], needed: str) -> str:
+    return f'{where}: has {counted(len(value), "entry", "entries")}, needs {needed}'
 
 
 def _convert_scalar(expected: Any, value: object, where: str, problems: list[str]) -> Any:
@@ -250,21 +276,23 @@ def _kind(value: object) -> str:
     return names.get(type(value)) or f'{one} {shown(value)}'
 
 
-def nearest(word: str, choices: list[str]) -> str:
-    """The choice that a misspelt word means; empty where none is near."""
-    return next(iter(difflib.get_close_matches(word, choices, n=1)), '')
-
-
-def _did_you_mean(word: str) -> str:
-    return f', did you mean {word!r}?' if word else ''
-
-
 def _join(where: str, key: object) -> str:
     name = shortened(str(key))
     return f'{where}.{name}' if where else name
 
 
-def _short(error: Exception) -> str:
+def _at_its_line(error: yaml.MarkedYAMLError) -> str:
+    """What YAML does not allow, and the line of the text."""
+    mark = error.problem_mark
+    if mark is None:
+        return str(error)
+    place, written = f'line {mark.line + 1}', (mark.get_snippet() or '').split('\n')[0].strip()
+    if error.problem and "'\\t'" in error.problem:
+        return f'{place} begins with a tab, YAML needs spaces there: {shown(written)}'
+    return f'{place}: {", ".join(filter(None, (error.context, error.problem)))}: {shown(written)}'
+
+
+def _short(error: object) -> str:
     return shortened(' '.join(str(error).split()), MOST_OF_A_REASON)
 
 

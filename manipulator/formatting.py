@@ -1,5 +1,6 @@
 """How messages write lengths, counts and the reasons of the operating system."""
 
+import difflib
 import math
 from collections.abc import Iterable
 
@@ -16,8 +17,12 @@ METRES_FROM = 0.9999
 def length(metres: float, digits: int = 4) -> str:
     """A length for people, without powers of ten: '22.8 mm', from a metre on '45.2 m'."""
     value, unit = (metres, 'm') if abs(metres) > METRES_FROM else (1e3 * metres, 'mm')
-    written = f'{float(f"{value:.{digits}g}"):.10f}'.rstrip('0').rstrip('.')
-    return f'{written} {unit}'
+    return f'{plain(value, digits)} {unit}'
+
+
+def plain(value: float, digits: int = 4) -> str:
+    """With so many digits that count, without powers of ten and zeros at the end."""
+    return f'{float(f"{value:.{digits}g}"):.10f}'.rstrip('0').rstrip('.')
 
 
 def told_apart(numbers: Iterable[float], fewest: int = 6) -> list[str]:
@@ -47,6 +52,23 @@ def shown(value: object) -> str:
     return shortened(repr(value[: MOST_SHOWN + 1] if isinstance(value, str) else value))
 
 
+def nearest(word: str, choices: Iterable[str]) -> str:
+    """The choice that a misspelt word means; empty where none is near."""
+    return next(iter(difflib.get_close_matches(word, list(choices), n=1)), '')
+
+
+def did_you_mean(word: str) -> str:
+    """The end of a sentence about a misspelt word: empty for none."""
+    return f', did you mean {word!r}?' if word else ''
+
+
+def not_one_of(value: object, choices: Iterable[object]) -> str:
+    """Of an input that must be one of a few words: "'fre' is not one of free, parallel, …"."""
+    words = [str(choice) for choice in choices]
+    near = nearest(str(value)[:MOST_SHOWN], words)
+    return f'{shown(value)} is not one of {", ".join(words)}{did_you_mean(near)}'
+
+
 def shortened(text: str, most: int = MOST_SHOWN) -> str:
     """A text, or the beginning of a long one and that it is cut."""
     return text if len(text) <= most else f'{text[:most]}…'
@@ -55,5 +77,5 @@ def shortened(text: str, most: int = MOST_SHOWN) -> str:
 def reason(error: Exception) -> str:
     """Why a file could not be used, without numbers of errors and the file's name again."""
     if isinstance(error, UnicodeDecodeError):
-        return f'it is no text (byte {error.start})'
+        return f'it is no text in UTF-8 (byte {error.start})'
     return (isinstance(error, OSError) and error.strerror) or str(error)

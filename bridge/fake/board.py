@@ -149,10 +149,6 @@ class Board:
         if not self._boot_left_us:
             self._program.host_feed(self._host, received, len(received))
 
-    def feed_busy(self, received: bytes) -> None:
-        """The same, all at once, while the program is busy: what its ring cannot hold is lost."""
-        self._program.host_receive(self._host, received, len(received))
-
     def step(self, dt: float) -> None:
         """Lets `dt` seconds pass; a period of pulses, and a STATE, begins every 20 ms."""
         passed_us = round(dt * 1e6)

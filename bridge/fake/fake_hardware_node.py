@@ -18,7 +18,7 @@ from bridge.protocol import ResetCause
 from bridge.servo_config import BoardConfig, SimulationConfig
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, LinkError
-from manipulator.formatting import shown
+from manipulator.formatting import not_one_of
 from manipulator.nodes.parameters import declare
 from manipulator.nodes.qos import MEASUREMENT
 
@@ -75,7 +75,7 @@ class FakeHardware(Node):
         )
         moved = declare(self, 'plant', 'servo', "'servo', or 'mujoco': loads, torque limits")
         if preset not in PRESETS:
-            raise InvalidInput(f'parameter preset: {shown(preset)} is not one of {list(PRESETS)}')
+            raise InvalidInput(f'parameter preset: {not_one_of(preset, PRESETS)}')
         config = board_config(name)
         config = replace(config, simulation=PRESETS[preset](config.simulation))
         hysteresis = math.radians(own) if own >= 0 else config.hysteresis
@@ -118,7 +118,7 @@ class FakeHardware(Node):
                 self._board.battery_mv = round(1000 * float(parameter.value))
             elif parameter.name == 'fault' and parameter.value:
                 if parameter.value not in KINDS:
-                    reason = f'fault: {shown(parameter.value)} is not one of {", ".join(KINDS)}'
+                    reason = f'fault: {not_one_of(parameter.value, KINDS)}'
                     return SetParametersResult(successful=False, reason=reason)
                 self._faults.inject(FaultKind(parameter.value))
         return SetParametersResult(successful=True)

@@ -145,7 +145,8 @@ def _answer(call: Call, reason: str, done: str) -> None:
 def _columns(message: JointTrajectory, names: Sequence[str]) -> tuple[Array, Array]:
     """Times (n,) and positions (n, joints) in the order of `names`; InvalidInput otherwise."""
     if sorted(message.joint_names) != sorted(names):
-        raise InvalidInput(f'joints are {list(message.joint_names)}, needs {list(names)}')
+        given, needed = (', '.join(some) for some in (message.joint_names, names))
+        raise InvalidInput(f'joints are {given or "none"}, needs {needed}')
     order = [list(message.joint_names).index(name) for name in names]
     if any(len(point.positions) != len(names) for point in message.points):
         raise InvalidInput(f'a point has no {len(names)} positions')

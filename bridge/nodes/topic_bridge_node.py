@@ -18,6 +18,7 @@ from bridge.driver import MachineReport
 from bridge.link_monitor import JointTable, MachineStatus
 from bridge.nodes.board_topics import LEVELS, BoardTopics
 from bridge.nodes.stop_node import StopNode
+from bridge.stop_socket import StopSocket, stop_address
 from bridge.topic_driver import TopicDriver
 from manipulator.arrays import Array
 from manipulator.deadlines import STATE_PERIOD
@@ -37,7 +38,8 @@ FAKE = 'fake'
 """The port of a simulated driver, whose joints are where they are commanded."""
 SENT = 'driver/joint_command'
 PERIOD = 0.02
-"""Seconds between two looks at the deadlines, and two joint states of a simulated driver."""
+"""Seconds between two looks at the deadlines and the stop socket, and between two joint states of
+a simulated driver."""
 SHORTEST = 0.008
 """Seconds between two joint states; a driver may report a thousand a second."""
 
@@ -70,6 +72,10 @@ class TopicBridge(Node):
         self.create_service(SetBool, '~/enable', self._on_enable)
         self.create_service(Trigger, '~/clear_fault', self._on_clear_fault)
         self._stop_node = StopNode(self, self._stop, self._on_stop)
+        address = stop_address(self.get_fully_qualified_name(), self.context.get_domain_id())
+        self._stop_socket = StopSocket(address, self._stop)
+        if self._stop_socket.trouble:
+            self.get_logger().warning(self._stop_socket.trouble)
         self._timer = SteadyTimer(self, PERIOD, self._tick)
         beside = list(received_by(self._stop_node))
         self._diagnostics = Diagnostics(self, self._report, ('joint_command', SENT), beside)
@@ -78,6 +84,7 @@ class TopicBridge(Node):
     def close(self) -> None:
         """Sends nothing more: the driver keeps the joints where they are."""
         self._stop_node.close()
+        self._stop_socket.close()
 
     def _on_joints(self, message: JointState) -> None:
         now = time.monotonic()
@@ -137,6 +144,7 @@ class TopicBridge(Node):
         return response
 
     def _tick(self) -> None:
+        self._stop_socket.receive()
         now = time.monotonic()
         with self._lock:
             if self._driver.is_simulated:

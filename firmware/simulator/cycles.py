@@ -11,7 +11,7 @@ from hexarm.board import build as firmware_build
 from hexarm.board.header import header_of
 
 MARKS, DONE = 255, 255
-NOTHING, INVERSE, ARM_STEP, SINE, ALGEBRAIC, GEOMETRIC = 1, 2, 3, 4, 5, 6
+NOTHING, INVERSE, ARM_STEP, SINE, ALGEBRAIC, GEOMETRIC, KERNEL_STEP = 1, 2, 3, 4, 5, 6, 7
 TIMES = {
     'inverse_time': INVERSE,
     'step_time': ARM_STEP,
@@ -46,7 +46,7 @@ def costs(machine: str = 'robocake') -> dict[int, Cost]:
     assert marks['level'][-1] == DONE, 'the bench did not come to its end'
     found = {}
     idle = 0.0
-    for mark in (NOTHING, INVERSE, ARM_STEP, SINE, ALGEBRAIC, GEOMETRIC):
+    for mark in (NOTHING, INVERSE, ARM_STEP, SINE, ALGEBRAIC, GEOMETRIC, KERNEL_STEP):
         cycles = marks['cycle'][marks['level'] == mark].astype(np.int64)
         spent = cycles[1::2] - cycles[::2]
         idle = float(spent.mean()) if mark == NOTHING else idle
@@ -63,6 +63,7 @@ def main() -> None:
     rows = (
         ('inverse kinematics, six cranks', INVERSE, 'at 50 Hz there are 20 ms'),
         ('resolved-rate step of an arm', ARM_STEP, '< 20 ms on a C167 (Fadeev, Loginov)'),
+        ('damped step of any arm (kernel)', KERNEL_STEP, 'the same'),
         ('inverse of that arm, algebraic', ALGEBRAIC, ''),
         ('inverse of that arm, geometric', GEOMETRIC, ''),
         ('one sine', SINE, '2 ms on a C167'),

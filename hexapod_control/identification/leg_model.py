@@ -122,7 +122,32 @@ def own_leg(values: Array) -> Array:
     return spread.reshape(count, LEGS, LEGS * width)
 
 
-def rigid_point_motions(points: Array, name: str) -> dict[str, Array]:
+ANCHORS, JOINTS = slice(0, 18), slice(18, 36)
+"""Of the parameters of every kind of leg."""
+
+
+def rigid_motions_of(anchors: Array, joints: Array, count: int) -> dict[str, Array]:
+    """Directions (count,) of all anchors (6, 3), or all platform joints, moved as one body."""
+    found = {}
+    base = _rigid_point_motions(anchors, 'the anchors')
+    platform = _rigid_point_motions(joints, 'the platform joints')
+    for part, motions in ((ANCHORS, base), (JOINTS, platform)):
+        for motion, direction in motions.items():
+            found[motion] = np.zeros(count)
+            found[motion][part] = direction
+    return found
+
+
+def turned_with_the_anchors(frames: Array) -> dict[str, Array]:
+    """Turns (3, 6) about each leg's three axes, columns of frames (6, 3, 3), by rigid motion."""
+    whole = {}
+    for axis, direction in zip('xyz', np.eye(3), strict=True):
+        turns = np.linalg.solve(frames, np.broadcast_to(direction[:, None], (LEGS, 3, 1)))
+        whole[f'the anchors turned together about {axis}'] = turns[..., 0].T
+    return whole
+
+
+def _rigid_point_motions(points: Array, name: str) -> dict[str, Array]:
     """Directions (18,) of six points that move as one body: three shifts and three turns."""
     shifts = {
         f'{name} shifted together along {axis}': np.tile(direction, LEGS)

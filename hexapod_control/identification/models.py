@@ -9,15 +9,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hexapod_control.geometry import LEGS, RotaryGeometry
+from hexapod_control.geometry import RotaryGeometry
 from hexapod_control.identification.leg_model import (
+    ANCHORS,
+    JOINTS,
     LegModel,
     Legs,
     Tolerances,
     leg_parameters,
     own_leg,
     points_parameters,
-    rigid_point_motions,
+    rigid_motions_of,
+    turned_with_the_anchors,
 )
 from hexapod_control.identification.rail_model import RailModel
 from hexapod_control.linear import LinearPlatform, linear_legs
@@ -85,7 +88,6 @@ def _points(key: str, points: Array, digits: int = 4) -> list[str]:
 DIGITS = 6
 """Of directions."""
 
-ANCHORS, JOINTS = slice(0, 18), slice(18, 36)
 CRANKS, RODS = slice(36, 42), slice(42, 48)
 ZEROS, HEADINGS, TILTS = slice(48, 54), slice(54, 60), slice(60, 66)
 
@@ -154,18 +156,11 @@ class RotaryModel(LegModel):
 
     def rigid_motions(self, values: Array) -> dict[str, Array]:
         """See `Model`."""
-        g, found = self.identified(values), dict[str, Array]()
-        base = rigid_point_motions(g.crank_centres, 'the anchors')
-        platform = rigid_point_motions(g.platform_points, 'the platform joints')
-        for part, motions in ((ANCHORS, base), (JOINTS, platform)):
-            for motion, direction in motions.items():
-                found[motion] = np.zeros(len(self.parameters))
-                found[motion][part] = direction
+        g = self.identified(values)
+        found = rigid_motions_of(g.crank_centres, g.platform_points, len(self.parameters))
         frames = np.stack([*self._turning_axes(values), g.normals], axis=-1)
-        for axis, direction in zip('xyz', np.eye(3), strict=True):
-            turns = np.linalg.solve(frames, np.broadcast_to(direction[:, None], (LEGS, 3, 1)))
-            moved = found[f'the anchors turned together about {axis}']
-            moved[HEADINGS], moved[TILTS], moved[ZEROS] = turns[..., 0].T
+        for motion, turns in turned_with_the_anchors(frames).items():
+            found[motion][HEADINGS], found[motion][TILTS], found[motion][ZEROS] = turns
         return found
 
     def _turning_axes(self, values: Array) -> tuple[Array, Array]:
@@ -182,9 +177,6 @@ class RotaryModel(LegModel):
         cosine, sine = np.cos(angles), np.sin(angles)
         along = cosine * found.tangents + sine * found.ups
         return along, cosine * found.ups - sine * found.tangents
-
-
-POINTS = 18
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,8 +212,8 @@ class LinearModel(LegModel):
         g = self.geometry
         return dataclasses.replace(
             g,
-            base_points=g.base_points + values[:POINTS].reshape(6, 3),
-            platform_points=g.platform_points + values[POINTS : 2 * POINTS].reshape(6, 3),
+            base_points=g.base_points + values[ANCHORS].reshape(6, 3),
+            platform_points=g.platform_points + values[JOINTS].reshape(6, 3),
         )
 
     def screw_turns(self, values: Array, poses: Pose) -> tuple[Array | float, Array | float]:
@@ -233,17 +225,12 @@ class LinearModel(LegModel):
 
     def joint_offsets(self, values: Array) -> Array:
         """(6,): true length less the commanded one, m."""
-        return values[2 * POINTS :]
+        return values[JOINTS.stop :]
 
     def rigid_motions(self, values: Array) -> dict[str, Array]:
         """See `Model`."""
         g = self.identified(values)
-        base = rigid_point_motions(g.base_points, 'the anchors')
-        platform = rigid_point_motions(g.platform_points, 'the platform joints')
-        nothing, offsets = np.zeros(POINTS), np.zeros(6)
-        return {name: np.concatenate([v, nothing, offsets]) for name, v in base.items()} | {
-            name: np.concatenate([nothing, v, offsets]) for name, v in platform.items()
-        }
+        return rigid_motions_of(g.base_points, g.platform_points, len(self.parameters))
 
 
 def model_of(

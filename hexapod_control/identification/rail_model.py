@@ -7,20 +7,23 @@ import numpy as np
 
 from hexapod_control.geometry import LEGS
 from hexapod_control.identification.leg_model import (
+    ANCHORS,
+    JOINTS,
     LegModel,
     Legs,
     Tolerances,
     leg_parameters,
     own_leg,
     points_parameters,
-    rigid_point_motions,
+    rigid_motions_of,
+    turned_with_the_anchors,
 )
 from hexapod_control.rails import RailGeometry
 from manipulator import rotation as so3
 from manipulator.analysis.measurements import Parameter
 from manipulator.arrays import Array
 
-ANCHORS, JOINTS, RODS = slice(0, 18), slice(18, 36), slice(36, 42)
+RODS = slice(36, 42)
 YAWS, PITCHES = slice(42, 48), slice(48, 54)
 
 
@@ -81,18 +84,11 @@ class RailModel(LegModel):
 
     def rigid_motions(self, values: Array) -> dict[str, Array]:
         """See `Model`."""
-        g, found = self.identified(values), dict[str, Array]()
-        base = rigid_point_motions(g.rail_points, 'the anchors')
-        platform = rigid_point_motions(g.platform_points, 'the platform joints')
-        for part, motions in ((ANCHORS, base), (JOINTS, platform)):
-            for motion, direction in motions.items():
-                found[motion] = np.zeros(len(self.parameters))
-                found[motion][part] = direction
+        g = self.identified(values)
+        found = rigid_motions_of(g.rail_points, g.platform_points, len(self.parameters))
         frames = np.stack([*self._turning_axes(values), g.directions], axis=-1)
-        for axis, direction in zip('xyz', np.eye(3), strict=True):
-            turns = np.linalg.solve(frames, np.broadcast_to(direction[:, None], (LEGS, 3, 1)))
-            moved = found[f'the anchors turned together about {axis}']
-            moved[YAWS], moved[PITCHES] = turns[:, :2, 0].T
+        for motion, turns in turned_with_the_anchors(frames).items():
+            found[motion][YAWS], found[motion][PITCHES] = turns[:2]
         return found
 
     def _turning_axes(self, values: Array) -> tuple[Array, Array]:

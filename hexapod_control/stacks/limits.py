@@ -12,7 +12,7 @@ from manipulator.analysis.slope import nearest_point
 from manipulator.arrays import Array, Mask, frozen
 from manipulator.errors import ManipulatorError
 from manipulator.limits.constraints import Constraints
-from manipulator.limits.limit import Bounds, BrakingPaths, Grouped, Limit, Search
+from manipulator.limits.limit import Bounds, BrakingPaths, Grouped, GroupedLimit, Limit, Search
 from manipulator.limits.machine_limits import JointRange
 from manipulator.limits.task_space import QUANTITIES, pose_values
 from manipulator.pose import Pose
@@ -26,23 +26,6 @@ DIFFERENCE = 1e-6
 """Of the characteristic length, for slopes of margins."""
 SETTLED = 1e-9
 MOST_CUTS = 30
-
-
-@dataclass(frozen=True, eq=False)
-class SectionLimit:
-    """A limit of one section, among the values of the stack's `StackLimits`."""
-
-    group: 'StackLimits'
-    columns: slice
-    quantity: str
-    unit: str
-    owners: tuple[str, ...]
-    low: Array
-    high: Array
-
-    def values(self, pose: Pose, joints: Array) -> Array:
-        """The limited values (..., k)."""
-        return self.group.limited_values(pose, joints)[..., self.columns]
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +201,7 @@ def constraints_of(kinematics: StackKinematics) -> Constraints:
             first = LEGS * len(sections) + VALUES * i
             columns = slice(first + limit.columns.start, first + limit.columns.stop)
             others.append(
-                SectionLimit(
+                GroupedLimit(
                     group, columns, limit.quantity, limit.unit, owners, limit.low, limit.high
                 )
             )

@@ -14,7 +14,7 @@ from hexarm.board.kinematics import crank_hexapod
 from hexarm.simulation.model import mechanism
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
-from manipulator.formatting import shown
+from manipulator.formatting import not_one_of
 
 TELL_EVERY = 10.0
 
@@ -42,7 +42,7 @@ def _with_plant(
     kind: str, name: str, machine: FakeMachine, tell: Callable[[str], object]
 ) -> FakeMachine:
     if kind not in PLANTS:
-        raise InvalidInput(f'parameter plant: {shown(kind)} is not one of {list(PLANTS)}')
+        raise InvalidInput(f'parameter plant: {not_one_of(kind, PLANTS)}')
     if kind == SERVO:
         return machine
     from hexarm.simulation.plant import MujocoPlant  # noqa: PLC0415 (needs mujoco)
@@ -55,7 +55,7 @@ def _with_plant(
 
 
 class Timed:
-    """A plant that says every ten simulated seconds how much faster than the clock it is."""
+    """A plant that prints every ten simulated seconds how much faster than the clock it is."""
 
     def __init__(self, inner: Plant, tell: Callable[[str], object]) -> None:
         self._inner = inner

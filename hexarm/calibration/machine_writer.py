@@ -63,7 +63,7 @@ def random_poses(
     """
     kinematics = machine.kinematics
     if not isinstance(kinematics, SerialArm):
-        poses = sample(machine, count, generator, kinematics.characteristic_length)
+        poses = sample(machine, count, generator)
         return kinematics.inverse(poses), poses
     low, high = kinematics.limits.sampled
     middle, half = (low + high) / 2, SHARE_OF_RANGE * (high - low) / 2

@@ -12,7 +12,6 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from difflib import get_close_matches
 from pathlib import Path
 
 from bridge.fake.board_thread import BoardThread, FakeMachine
@@ -26,7 +25,7 @@ from hexarm.cli.statuses import INTERRUPTED
 from hexarm.machines import read
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
-from manipulator.formatting import counted, shown
+from manipulator.formatting import counted, did_you_mean, nearest, shown
 from manipulator.nodes.devices.terminal import Terminal
 from manipulator.yaml_edit import with_values
 
@@ -123,9 +122,9 @@ def chosen_servos(servos: tuple[ServoConfig, ...], names: list[str] | None) -> t
     known = [servo.name for servo in servos]
     for name in names or ():
         if name not in known:
-            near = get_close_matches(name, known, n=1)
-            hint = f', did you mean {near[0]!r}?' if near else ''
-            raise InvalidInput(f'no servo is called {shown(name)}{hint} (there are {known})')
+            hint = did_you_mean(nearest(name, known))
+            there = ', '.join(known)
+            raise InvalidInput(f'no servo is called {shown(name)}{hint} (there are {there})')
     return tuple(known.index(name) for name in names or known)
 
 

@@ -114,7 +114,7 @@ def play_of(file: MachineFile) -> float:
     if play > 0.0:
         return play
     raise InvalidInput(
-        'how far the joints are off is not in the machine file (simulation.hysteresis_deg or '
+        'the machine file gives no play of the servos (simulation.hysteresis_deg or '
         'hysteresis_mm): give --noise A, in rad or m'
     )
 

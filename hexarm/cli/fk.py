@@ -72,12 +72,15 @@ def from_home(machine: Machine, joints: Array, units: Units) -> Answer:
         'violations': violations,
         **counts,
     }
+    margin = f'singularity margin {solution.sigma_min:.3f}'
+    search = [
+        f'found in {counted(solution.iterations, "iteration")}, '
+        f'residual {solution.residual * units.per_metre:.2g} {units.length}, {margin}',
+        text,
+    ]
     lines = [
         *units.pose(pose),
-        f'found in {counted(solution.iterations, "iteration")}, '
-        f'residual {solution.residual * units.per_metre:.2g} {units.length}, '
-        f'singularity margin {solution.sigma_min:.3f}',
-        text,
+        *([margin] if counts['other_modes'] == 0 and not solution.iterations else search),
         *(f'beyond a limit: {v}' for v in violations),
     ]
     return answer, lines

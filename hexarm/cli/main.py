@@ -2,7 +2,6 @@
 
 import argparse
 import contextlib
-import difflib
 import os
 import re
 import sys
@@ -12,6 +11,7 @@ from typing import Any, NoReturn
 from hexarm.cli.commands import Commands, declare
 from hexarm.cli.statuses import INTERRUPTED, PIPE_CLOSED, REFUSED
 from manipulator.errors import ConfigError, InvalidInput, ManipulatorError, Refused
+from manipulator.formatting import did_you_mean, nearest
 from manipulator.requirements import missing
 
 EXAMPLES = """\
@@ -41,9 +41,8 @@ class Parser(argparse.ArgumentParser):
         found = re.search(r"invalid choice: '(.*?)' \(choose from (.*)\)", message)
         if found is not None:
             choices = re.findall(r'[\w-]+', found[2])
-            near = difflib.get_close_matches(found[1].lower(), choices, n=1)
-            message = f'{found[1]!r} is not one of {", ".join(choices)}'
-            message += f', did you mean {near[0]!r}?' if near else ''
+            near = nearest(found[1].lower(), choices)
+            message = f'{found[1]!r} is not one of {", ".join(choices)}{did_you_mean(near)}'
         super().error(message[:MOST_OF_AN_ERROR])
 
 

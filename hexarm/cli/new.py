@@ -20,6 +20,7 @@ from hexarm.new.arms import arm_text
 from hexarm.new.cranks import crank_text
 from hexarm.new.cylinders import cylinder_text
 from hexarm.new.questions import QUESTIONS, Question, checked
+from hexarm.new.rails import rail_text
 from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError, InvalidInput, ManipulatorError
 from manipulator.formatting import reason, shown
@@ -28,7 +29,7 @@ from manipulator.requirements import missing
 Ask = Callable[[str], str]
 WORKSPACE_POINTS = {True: 20_000, False: 1000}
 """By whether the inverse is explicit: a picture within some seconds."""
-TEXTS = {'crank': crank_text, 'linear': cylinder_text, 'arm': arm_text}
+TEXTS = {'crank': crank_text, 'linear': cylinder_text, 'rail': rail_text, 'arm': arm_text}
 WELCOME = """\
 hexarm new makes a machine file of your measures: millimetres, degrees, grams.
 Enter takes what is in [brackets]; an answer that is not understood is asked for again.
@@ -127,7 +128,7 @@ def _of_urdf(source: Path, tip: str) -> str:
         robot = read_urdf(urdf_text(source))
         arm = arm_of(robot, None, None if tip == 'auto' else tip)
         name = robot.name or source.stem
-        return arm_import.machine_text(arm, name, source.name, arm_import.Wishes()).text
+        return arm_import.machine_text(arm, name, source.name, arm_import.ImportOptions()).text
     except ConfigError as error:
         raise ConfigError(error.problems, str(source)) from error
 
@@ -261,7 +262,7 @@ def _listed() -> str:
     for question in QUESTIONS:
         if question.key not in {key for key, _ in rows}:
             usual = question.default
-            told = question.text if usual in (None, '') else f'{question.text} [{_typed(usual)}]'
+            text = question.text if usual in (None, '') else f'{question.text} [{_typed(usual)}]'
             some = f': {", ".join(question.choices)}' if question.choices else ''
-            rows.append((question.key, f'{told}{some}'))
+            rows.append((question.key, f'{text}{some}'))
     return '\n'.join(f'  {key:<24} {text}' for key, text in rows)

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from hexarm.cli.answers import Answer, answering
 from hexarm.cli.progress import progress
 from hexarm.papers.finding import Missing
 from hexarm.papers.report import rendered, to_json
@@ -24,11 +25,12 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
         '--quick', action='store_true',
         help='fewer samples, no noise in the moving model: some seconds',
     )  # fmt: skip
-    parser.set_defaults(run=run)
+    parser.add_argument('--json', action='store_true', help='answer for programs')
+    parser.set_defaults(run=answering(answer))
 
 
-def run(arguments: argparse.Namespace) -> int:
-    """Writes the report, its figures and its numbers; prints what contradicts or is missing."""
+def answer(arguments: argparse.Namespace) -> Answer:
+    """Writes the report and what belongs to it; what contradicts the papers or is missing."""
     output: Path = arguments.output
     if output.suffix != '.md':
         raise InvalidInput(f'--output {output}: the name must end in .md')
@@ -39,12 +41,11 @@ def run(arguments: argparse.Namespace) -> int:
         except OSError as error:
             raise InvalidInput(f'cannot write {output}: {reason(error)}') from error
         on_stage('report', 1.0)
-    for line in contradictions(this.findings):
-        print(line)
-    for part in this.missing:
-        print(f'missing: {part.source}, {part.topic}: {part.why}')
-    print(output)
-    return 0
+    contradicted = list(contradictions(this.findings))
+    lacking = [f'{part.source}, {part.topic}: {part.why}' for part in this.missing]
+    files = {'report': str(output), 'numbers': str(output.with_suffix('.json'))}
+    lines = [*contradicted, *(f'missing: {text}' for text in lacking), str(output)]
+    return {**files, 'contradictions': contradicted, 'missing': lacking}, lines
 
 
 def write(this: Reproduction, output: Path) -> None:

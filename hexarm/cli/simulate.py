@@ -155,7 +155,7 @@ def prepared(arguments: argparse.Namespace) -> Experiment:
     load = static_load(machine.kinematics, dynamics)
     poses = poses_of(cycle)
     joints = machine.kinematics.inverse(poses)
-    check_holds(load, mechanism.drives, mechanism.joints, poses, joints)
+    check_holds(load, mechanism.drives, machine.kinematics, poses, joints)
     chosen = dynamics.compensation if arguments.compensate is None else arguments.compensate
     return Experiment(
         machine, mechanism, cycle, part, corners_out(machine, asked.amplitude[0]),

@@ -9,6 +9,7 @@ from hexarm.simulation.compensation import Compensation
 from hexarm.simulation.rigid_body import Mechanism, RigidBody
 from manipulator.analysis.accuracy import JointErrors
 from manipulator.arrays import Array
+from manipulator.formatting import plain
 from manipulator.machine import Machine
 from manipulator.planning.cycle import Cycle
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 KG_CM, N_CM = 0.0980665, 0.01
 G = 9.80665
+ALL_OF_IT = 0.95
+"""Share of a drive's free speed above which nothing is left to follow a faster motion."""
 
 
 @dataclass(frozen=True)
@@ -65,31 +68,41 @@ def in_words(this: Experiment, numbers: dict[str, Any]) -> list[str]:
     effort, most = nearest_to(np.array(numbers['joint_effort']), drives.effort)
     speed, fastest = nearest_to(np.array(numbers['joint_speed']), drives.speed)
     factor, unit = (np.degrees(1.0), '°/s') if is_rotary else (1e3, 'mm/s')
-    forces = f'{effort:.4g} {"N·m" if is_rotary else "N"} of {most:.4g}'
+    forces = f'{plain(effort)} {"N·m" if is_rotary else "N"} of {plain(most)}'
     if is_rotary and drives.effort.max() < 1.0:
         forces += f' ({effort / N_CM:.3g} N·cm, {effort / KG_CM:.3g} kg·cm of {most / KG_CM:.3g})'
     reach = f'of the 64 corners of the amplitudes {this.corners_out} are out of reach'
     if this.part < 1.0:
         reach += f'; the motion is done with {100 * this.part:.1f} % of the amplitudes'
-    speeds = ', '.join(f'{1e3 * v:.1f}' for v in numbers['axis_speed'])
+    speeds = ', '.join(plain(1e3 * v, 3) for v in numbers['axis_speed'])
     accelerations = ', '.join(f'{v:.3g}' for v in numbers['axis_acceleration'])
+    loops = f'loops        open by at most {1e3 * numbers["closure_error"]:.2g} mm'
+    end, closed = ('platform', [loops]) if this.mechanism.closures else ('tool', [])
     noise = []
     if 'noise_position_rms' in numbers:
         moved = 1e6 * numbers['noise_position_rms']
-        noise = [f'servo noise  moves the platform by {moved:.1f} µm rms']
+        noise = [f'servo noise  moves the {end} by {moved:.1f} µm rms']
     return [
         reach,
-        f'platform     at most {1e3 * numbers["platform_speed"]:.1f} mm/s and '
+        f'{end:<12} at most {plain(1e3 * numbers["platform_speed"], 3)} mm/s and '
         f'{numbers["platform_acceleration"]:.3g} m/s² = '
         f'{numbers["platform_acceleration"] / G:.3g} g',
         f'  on x, y, z at most {speeds} mm/s and {accelerations} m/s²',
-        f'joint speed  at most {factor * speed:.4g} {unit} of {factor * fastest:.4g}',
+        f'joint speed  at most {plain(factor * speed)} {unit} of {plain(factor * fastest)}',
         f'joint effort at most {forces}',
-        f'behind by    at most {1e3 * numbers["position_error"]:.3f} mm and '
-        f'{np.degrees(numbers["angle_error"]):.3f}°',
-        f'loops        open by at most {1e3 * numbers["closure_error"]:.2g} mm',
+        _behind(numbers, speed > ALL_OF_IT * fastest),
+        *closed,
         *noise,
     ]
+
+
+def _behind(numbers: dict[str, Any], is_at_full_speed: bool) -> str:
+    """The following error, and why where the drives have no speed left."""
+    lag = 1e3 * numbers['position_error'], np.degrees(numbers['angle_error'])
+    text = 'behind by    at most {:.3f} mm and {:.3f}°'.format(*lag)
+    if not is_at_full_speed:
+        return text
+    return f'{text}: too fast for the drives, try a lower --frequency or --amplitude'
 
 
 def nearest_to(values: Array, limits: Array) -> tuple[float, float]:

@@ -17,7 +17,7 @@ from manipulator.analysis.survey import Survey, survey
 from manipulator.analysis.volume import Box, Volume
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput
-from manipulator.formatting import counted
+from manipulator.formatting import counted, plain
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
@@ -120,7 +120,7 @@ def _in_words(found: Survey) -> list[str]:
     lines.append(f'volume with some orientation       {_volume(some)}')
     lines.append(
         f'  roll, pitch, yaw each within ±{found.tilt:g} rad; a lower bound: the second half of '
-        f'the search found {1e3 * found.search_gain:.3g} dm³ of it'
+        f'the search found {plain(1e3 * found.search_gain, 3)} dm³ of it'
     )
     return lines
 
@@ -140,7 +140,7 @@ def _sampling(machine: Machine, found: Survey) -> str:
 
 
 def _volume(volume: Volume) -> str:
-    text = f'{1e3 * volume.value:.5g} ± {1e3 * volume.error:.2g} dm³'
+    text = f'{plain(1e3 * volume.value, 5)} ± {plain(1e3 * volume.error, 2)} dm³'
     return f'{text} ({100 * volume.confidence:.0f} %, {counted(volume.points, "position")})'
 
 

@@ -52,7 +52,7 @@ def cylinder_text(m: Measures) -> Iterator[str]:
     yield from lines.motion(machine, lines.RATED * speed, 'mm')
     if not is_by_driver:
         yield ''
-        yield from _servos(m, machine.kinematics.joint_names)
+        yield from pulses_text(m, machine.kinematics.joint_names, _middle(m))
         yield line(f'  park_mm: {lines.row(np.round(legs, 2))}', 'where they are switched on')
         yield ''
         yield from lines.link('hysteresis_mm: 0.2')
@@ -97,10 +97,10 @@ def _limits(m: Measures, machine: Machine, scale: float) -> Iterator[str]:
 
 
 def _geometry(m: Measures, height: float, legs: Array) -> Iterator[str]:
-    told = f'legs of {legs.min():.1f} … {legs.max():.1f} mm' if np.ptp(legs) > 0.1 else (
+    comment = f'legs of {legs.min():.1f} … {legs.max():.1f} mm' if np.ptp(legs) > 0.1 else (
         f'all legs {legs.mean():.1f} mm')  # fmt: skip
     yield from _joints(m)
-    yield line(f'  home_height_mm: {num(height)}', told)
+    yield line(f'  home_height_mm: {num(height)}', comment)
 
 
 def _joints(m: Measures) -> Iterator[str]:
@@ -122,25 +122,24 @@ def _joints(m: Measures) -> Iterator[str]:
     yield line(f'  platform_joint_height_mm: {num(m["platform_joint_height_mm"])}', 'below it')
 
 
-def _servos(m: Measures, names: tuple[str, ...]) -> Iterator[str]:
+def pulses_text(m: Measures, names: tuple[str, ...], middle: float) -> Iterator[str]:
+    """The section servos of drives that push, at `middle` (mm) in the middle of their stroke."""
     first, last = m['pulse_us']
     low, high = sorted((first, last))
     sign, scale = (1 if last > first else -1), (high - low) / m['stroke_mm']
     yield 'servos:'
-    yield '  # length = centre_mm + sign · (pulse − centre_us) / us_per_mm'
+    yield '  # position = centre_mm + sign · (pulse − centre_us) / us_per_mm'
     yield line(f'  speed_mm_s: {num(m["cylinder_speed_mm_s"])}', 'no load')
     yield '  joints:'
     for k, name in enumerate(names):
         yield (
             f'    - {{name: {name}, channel: {k}, sign: {sign}, '
-            f'centre_us: {num((low + high) / 2)}, centre_mm: {num(_middle(m))}, '
+            f'centre_us: {num((low + high) / 2)}, centre_mm: {num(middle)}, '
             f'us_per_mm: {num(scale, 4)}, pulse_range_us: {lines.row((low, high))}}}'
         )
 
 
 def _dynamics(m: Measures, scale: float) -> Iterator[str]:
-    force: Any = m['cylinder_force_n']
-    rotor = lines.significant(1e3 * force * TO_SPEED / (1e-3 * m['cylinder_speed_mm_s']))
     yield from platform_dynamics(m, scale)
     for part, length in (('cylinder', 0.9 * m['retracted_mm']), ('piston', 1.1 * m['stroke_mm'])):
         mass, radius = (40.0, 8.0) if part == 'cylinder' else (16.0, 4.0)
@@ -148,7 +147,14 @@ def _dynamics(m: Measures, scale: float) -> Iterator[str]:
             f'  {part}: {{mass_g: {mass}, radius_mm: {radius}, '
             f'length_mm: {num(lines.significant(length))}, source: estimate}}'
         )
-    yield (
+    yield drive_text(m)
+
+
+def drive_text(m: Measures) -> str:
+    """The key drive of the section dynamics."""
+    force: Any = m['cylinder_force_n']
+    rotor = lines.significant(1e3 * force * TO_SPEED / (1e-3 * m['cylinder_speed_mm_s']))
+    return (
         f'  drive: {{force_n: {num(force)}, proportional_band_mm: 1.0, backdrive_n: {num(force)}, '
         f'rotor_mass_g: {num(rotor)}, source: "estimate, geared lead screw"}}'
     )

@@ -1,4 +1,4 @@
-"""What platforms on cranks and on cylinders share: joints, servo, scales.
+"""What platforms on cranks, cylinders and rails share: joints, servo, scales.
 
 Measures are those of hexarm/new/questions.py, in millimetres and degrees.
 """

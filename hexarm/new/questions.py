@@ -17,9 +17,8 @@ from hexarm.new.reading import (
     words,
 )
 from hexarm.new.servos import SERVOS
-from manipulator.config import nearest
 from manipulator.errors import InvalidInput
-from manipulator.formatting import shown
+from manipulator.formatting import did_you_mean, nearest, shown
 
 Answers = Mapping[str, Any]
 
@@ -46,22 +45,28 @@ class Question:
         """Whether what was answered so far makes it a question."""
         return all(answers.get(key) in values for key, values in self.when.items())
 
+    def may_be_asked(self, answers: Answers) -> bool:
+        """Whether it may become one by what is not answered yet."""
+        return all(answers.get(key, values[0]) in values for key, values in self.when.items())
+
 
 KINDS = {
     'crank': 'six servos with horns and rods under a platform',
     'linear': 'six cylinders or linear servos under a platform (Gough-Stewart)',
+    'rail': 'six struts on carriages that slide on rails (hexaglide, 6-PUS)',
     'arm': 'six joints in a row',
+}
+CIRCLES_OR_POINTS = {
+    'circles': 'joints on two circles, by radii and angles',
+    'coordinates': 'six points each, as measured or drawn',
 }
 FORMS = {
     'crank': {
-        'circles': 'joints on two circles, by radii and angles',
-        'coordinates': 'six points each, as measured or drawn',
+        **CIRCLES_OR_POINTS,
         'paper': 'R, p, q, l, s of a hexagonal body (Prokopovich 2019)',
     },
-    'linear': {
-        'circles': 'joints on two circles, by radii and angles',
-        'coordinates': 'six points each, as measured or drawn',
-    },
+    'linear': CIRCLES_OR_POINTS,
+    'rail': CIRCLES_OR_POINTS,
     'arm': {
         'dh': 'a standard Denavit–Hartenberg table',
         'modified_dh': 'a modified one (Craig)',
@@ -80,8 +85,9 @@ SERVO_CHOICES = {
 LEGS = tuple(f'leg {k}' for k in range(1, 7))
 JOINTS = tuple(f'joint {k}' for k in range(1, 7))
 BY_ONE = 'one angle a for a, 120-a, 120+a, 240-a, 240+a, -a; or six'
-CRANK, LINEAR, ARM = ({'kind': (kind,)} for kind in KINDS)
-PLATFORM = {'kind': ('crank', 'linear')}
+CRANK, LINEAR, RAIL, ARM = ({'kind': (kind,)} for kind in KINDS)
+PLATFORM = {'kind': ('crank', 'linear', 'rail')}
+PUSHED = {'kind': ('linear', 'rail')}
 CIRCLES = {**PLATFORM, 'given_by': ('circles',)}
 POINTS = {'given_by': ('coordinates',)}
 PAPER = {**CRANK, 'given_by': ('paper',)}
@@ -106,7 +112,8 @@ QUESTIONS: tuple[Question, ...] = (
     *(_choice('given_by', 'Which measures are there?', forms, {'kind': (kind,)})
       for kind, forms in FORMS.items()),
     Question('base_radius_mm', "radius of the circle of the base's joints (of a crank: where the "
-             "servo's axis meets the plane of the rod's end)", number(SIZE), when=CIRCLES),
+             "servo's axis meets the plane of the rod's end; of a rail: the strut's lower joint "
+             'with the carriage at the beginning of its travel)', number(SIZE), when=CIRCLES),
     Question('base_angles_deg', f'their angles from the x axis: {BY_ONE}',
              numbers((1, 6), ANGLE), when=CIRCLES),
     Question('base_joint_height_mm', "height of those joints above the base's origin",
@@ -118,7 +125,8 @@ QUESTIONS: tuple[Question, ...] = (
     Question('platform_joint_height_mm', "from the platform's origin to its joints, towards the "
              'base', number(PLACE), 0.0, CIRCLES),
     _rows('base_joints_mm', "the joints on the base, x y z (of a crank: where the servo's axis "
-          "meets the plane of the rod's end)", POINT, {**PLATFORM, **POINTS}, LEGS),
+          "meets the plane of the rod's end; of a rail: the strut's lower joint with the carriage "
+          'at the beginning of its travel)', POINT, {**PLATFORM, **POINTS}, LEGS),
     _rows('platform_joints_mm', "the joints on the platform, x y z from the platform's origin",
           POINT, {**PLATFORM, **POINTS}, LEGS),
     Question('body_radius_mm', 'R: from the axis to each side of the body', number(SIZE),
@@ -136,18 +144,29 @@ QUESTIONS: tuple[Question, ...] = (
     Question('horn_direction_deg', 'where a level horn points, seen from above, from the x axis: '
              f'{BY_ONE}', numbers((1, 6), ANGLE),
              when={**CRANK, 'given_by': ('circles', 'coordinates')}),
-    Question('rod_length_mm', 'rod: between its joints', number(SIZE), when=CRANK),
+    Question('rod_length_mm', 'rod or strut: between its joints', number(SIZE),
+             when={'kind': ('crank', 'rail')}),
+    _choice('rail_direction', 'Where do the carriages go, from the beginning of their travel?',
+            {'up': 'straight up', 'down': 'straight down',
+             'out': 'level, away from the middle of the base', 'in': 'level, towards it',
+             'own': 'each in a direction of its own'}, RAIL),
+    _rows('rail_directions', 'where each carriage goes, x y z, of any length', POINT,
+          {**RAIL, 'rail_direction': ('own',)}, LEGS),
+    _choice('carriages', 'Where is a carriage at home, along its rail?',
+            {'behind': 'not yet past its joint on the platform', 'ahead': 'past it',
+             'auto': 'where it is nearer to the middle of its travel'}, RAIL, 'auto'),
     Question('retracted_mm', 'cylinder, retracted: between its joints', number(SIZE), when=LINEAR),
-    Question('stroke_mm', 'stroke of the cylinder', number(SIZE), when=LINEAR),
-    Question('cylinder_speed_mm_s', 'speed without load', number(SIZE), when=LINEAR),
-    Question('cylinder_force_n', 'force in N', number(SIZE), 40.0, LINEAR),
-    _choice('cylinder_input', 'What moves the cylinders?',
+    Question('stroke_mm', 'stroke of the cylinder, travel of the carriage', number(SIZE),
+             when=PUSHED),
+    Question('cylinder_speed_mm_s', 'its speed without load', number(SIZE), when=PUSHED),
+    Question('cylinder_force_n', 'its force in N', number(SIZE), 40.0, PUSHED),
+    _choice('cylinder_input', 'What moves the cylinders or carriages?',
             {'pulses': 'RC pulses: linear servos', 'driver': 'a ROS 2 driver of their own'},
-            LINEAR, 'pulses'),
+            PUSHED, 'pulses'),
     Question('pulse_us', 'pulses at the ends of the stroke', numbers((2,), (100.0, 30000.0)),
-             [1000.0, 2000.0], {**LINEAR, 'cylinder_input': ('pulses',)}),
+             [1000.0, 2000.0], {**PUSHED, 'cylinder_input': ('pulses',)}),
     Question('home_height_mm', 'height of the platform at home (below the base: negative); auto: '
-             'above it, with level horns or cylinders at half their stroke',
+             'above it, with level horns, or cylinders or carriages at half their stroke',
              height, 'auto', PLATFORM),
     _rows('dh_table', 'a (mm), alpha (°), d (mm), and the offset of θ (°) if there is one',
           numbers((3, 4), PLACE), TABLES, JOINTS),
@@ -174,8 +193,8 @@ QUESTIONS: tuple[Question, ...] = (
              'where it would hit something)', number((1.0, 360.0)), 180.0, CRANK),
     Question('horn_at_middle_deg', 'angle of the horn above level in the middle of that travel; '
              'auto: where it is at home', height, 'auto', CRANK),
-    Question('joint_swing_deg', "how far a rod's or cylinder's ball joints swing each way from "
-             'home', number((1.0, 90.0)), 30.0, PLATFORM),
+    Question('joint_swing_deg', "how far the ball joints of a rod, strut or cylinder swing each "
+             'way from home', number((1.0, 90.0)), 30.0, PLATFORM),
     Question('platform_g', 'mass of the platform in g, for simulations', number(SIZE), 100.0,
              PLATFORM),
     Question('payload_g', 'mass of what it carries in g', number((0.0, 1e9)), 0.0, PLATFORM),
@@ -192,7 +211,8 @@ def checked(given: Mapping[str, Any]) -> dict[str, Any]:
         value = given.get(question.key, question.default)
         try:
             if value is None:
-                raise InvalidInput(f'missing: {question.text}')
+                choices = f' {", ".join(question.choices)}' if question.choices else ''
+                raise InvalidInput(f'missing: {question.text}{choices}')
             answers[question.key] = question.parse(value)
         except InvalidInput as error:
             problems.append(f'{question.key}: {error}')
@@ -200,10 +220,8 @@ def checked(given: Mapping[str, Any]) -> dict[str, Any]:
     for key in given:
         if key not in known:
             near = nearest(str(key), sorted(known))
-            problems.append(
-                f'{shown(key)}: unknown' + (f', did you mean {near!r}?' if near else '')
-            )
-        elif key not in answers and not any(p.startswith(f'{key}:') for p in problems):
+            problems.append(f'{shown(key)}: unknown{did_you_mean(near)}')
+        elif not any(q.may_be_asked(answers) for q in QUESTIONS if q.key == key):
             problems.append(f'{key}: not a measure of this kind of machine')
     if problems:
         raise InvalidInput('\n'.join(problems))

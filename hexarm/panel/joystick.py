@@ -7,18 +7,12 @@ press never comes to life again, whatever beats still arrive; only a new press d
 Each beat is answered with a tick, the time of the answer, and the page puts the newest tick that
 it has seen into its next beat: so a beat shows how long ago page and line were both alive.
 Nothing moves before the first tick came back. Times are monotonic, in seconds.
-
-The messages of pages and joystick are JSON text; malformed ones raise InvalidInput.
 """
 
-import json
-import math
 from dataclasses import dataclass, field
-from typing import Any
 
-from manipulator.arrays import Array, frozen
+from manipulator.arrays import Array
 from manipulator.deadlines import RELEASE
-from manipulator.errors import InvalidInput
 
 ANOTHER = 'another page has the joystick'
 LAPSED = 'no heartbeat came from the page: press again'
@@ -113,45 +107,3 @@ class Joystick:
         self._reasons[page] = reason
         if self._hold is not None and self._hold.page == page:
             self._hold = None
-
-
-LONGEST = 1000
-MOST_PRESSES = 1 << 31
-AXES = 6
-
-
-def parsed(text: str | bytes) -> Beat | int:
-    """A beat, or the number of a press that was released."""
-    if not isinstance(text, str) or len(text) > LONGEST:
-        raise InvalidInput(f'needs a text of at most {LONGEST} characters')
-    try:
-        message = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise InvalidInput(f'is not JSON: {error}') from error
-    if not isinstance(message, dict):
-        raise InvalidInput('needs an object')
-    press = message.get('press')
-    if type(press) is not int or not 0 <= press < MOST_PRESSES:
-        raise InvalidInput('press needs a whole number from 0')
-    if message.get('released') is True:
-        return press
-    tick = message.get('tick')
-    return Beat(press, None if tick is None else _number('tick', tick), _stick(message))
-
-
-def answer(tick: float, has_it: bool, is_taken: bool, reason: str) -> str:
-    """What the page needs for its next beat and for its one line of text."""
-    return json.dumps({'tick': tick, 'has_it': has_it, 'is_taken': is_taken, 'reason': reason})
-
-
-def _stick(message: dict[str, Any]) -> Any:
-    stick = message.get('stick')
-    if not isinstance(stick, list) or len(stick) != AXES:
-        raise InvalidInput(f'stick needs {AXES} numbers')
-    return frozen([min(max(_number('stick', part), -1.0), 1.0) for part in stick])
-
-
-def _number(name: str, value: Any) -> float:
-    if type(value) not in (int, float) or not math.isfinite(value):
-        raise InvalidInput(f'{name} needs finite numbers')
-    return float(value)

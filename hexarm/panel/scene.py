@@ -11,6 +11,7 @@ import numpy as np
 
 from hexarm.link_meshes import LinkMesh
 from hexarm.panel.body import Body
+from hexarm.panel.nearness import BOX_COLOUR, Nearness
 from hexarm.panel.pieces import hull, wxyz_of
 from hexarm.panel.room import shares
 from hexarm.panel.view import Stance, View
@@ -26,7 +27,6 @@ APART = 5e-3
 
 TRAIL_STEP = 0.004
 TRAIL_COLOUR, HULL_COLOUR = (255, 200, 87), (150, 190, 255)
-BOX_COLOUR = (120, 128, 138)
 REACH_LOOKS: dict[str, dict[str, Any]] = {
     'solid': {'opacity': 0.07},
     'net': {'wireframe': True, 'opacity': 0.22},
@@ -53,7 +53,8 @@ class Scene:
         self._scale = 1.0 / float(np.ptp(points, axis=0).max())
         low, high = points.min(axis=0) * self._scale, points.max(axis=0) * self._scale
         self._floor_height = float(min(low[2], 0.0)) - 0.06
-        self._surroundings()
+        boxes = self._surroundings()
+        self._near = Nearness(self._scene, machine, self._scale, boxes)
         self._floor()
         self._camera(server, (low + high) / 2, float(high[2] - low[2]))
         style = kinematics, self._scale
@@ -73,7 +74,9 @@ class Scene:
         if view.measured is not None:
             left = shares(self._machine, view.measured.pose, view.measured.joints)
             self._measured.show(view.measured, left)
-            pivot = view.measured.pose @ view.frames.T_platform_pivot
+            frames = view.frames
+            self._near.show(view.measured, frames.T_platform_pivot.position * bool(frames.tool))
+            pivot = view.measured.pose @ frames.T_platform_pivot
             self._place(self._pivot, pivot)
             self._remember(pivot.position * self._scale)
         is_apart = view.commanded is not None and self._are_apart(view.commanded, view.measured)
@@ -148,19 +151,21 @@ class Scene:
         if not np.allclose(handle.wxyz, wxyz_of(pose), atol=STILL):
             handle.wxyz = wxyz_of(pose)
 
-    def _surroundings(self) -> None:
-        """What the machine may not meet; the grid lies where its floor is."""
+    def _surroundings(self) -> dict[int, Any]:
+        """What the machine may not meet, by number; the grid lies where its floor is."""
+        boxes = {}
         for i, obstacle in enumerate(self._machine.obstacles):
             low, high = obstacle.corners * self._scale
             if obstacle.is_endless:
                 self._floor_height = float(low[2])
                 continue
             is_workspace = obstacle.side == STAY_IN
-            self._scene.add_box(
+            boxes[i] = self._scene.add_box(
                 f'/surroundings/{i}', BOX_COLOUR, tuple(high - low), position=(low + high) / 2,
                 wireframe=is_workspace, opacity=0.25 if is_workspace else 0.55, cast_shadow=False,
                 receive_shadow=False,
             )  # fmt: skip
+        return boxes
 
     def _floor(self) -> None:
         self._scene.add_grid(

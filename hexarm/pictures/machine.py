@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from mpl_toolkits.mplot3d import Axes3D
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 from hexarm.pictures import style
 from manipulator.arrays import Array
@@ -34,6 +35,15 @@ LEGS = 6
 """Of which a stack numbers the lowest platform's."""
 SHORTEST = 0.05
 """mm of a link with a length."""
+NAME_SIZE = 8
+"""Points of the text of a length in space."""
+ALONG = np.linspace(0.0, 1.0, 9)
+NAMED = ('crank', 'rod', 'link')
+"""Parts of which the first has its length beside it."""
+AWAY = (3.0, 9.0, 16.0, 24.0)
+"""Points from a part to its length: the nearest of those that are clear."""
+CORNERS = np.array([[x, y] for x in (-1.0, 0.0, 1.0) for y in (-1.0, 0.0, 1.0)])
+ENOUGH = 1.2
 ROOM = 0.24
 """Around a view, as a share of its size, for the measures."""
 
@@ -53,7 +63,7 @@ def draw(machine: Machine, pose: Pose, picture: Path, name: str) -> Path:
         axes.set_title(title, loc='left', color=style.SOFT)
         (_radii if across == (0, 1) else _heights)(axes, strokes, across, pose)
     _space(figure.add_axes((0.5, 0.47, 0.48, 0.45), projection='3d'), strokes)
-    figure.text(0.55, 0.475, ', '.join(_lengths(strokes)), size=9)
+    figure.text(0.55, 0.915, ', '.join(_lengths(strokes)), size=9)
     return style.save(figure, picture)
 
 
@@ -178,14 +188,58 @@ def _lengths(strokes: Strokes) -> list[str]:
 
 
 def _space(axes: Axes3D, strokes: Strokes) -> None:
-    """With the lengths of links, or of the first leg's parts, on them."""
+    """With the lengths of links, or of the first leg's parts, beside them."""
     for part, points in strokes:
         axes.plot(*points.T, **PARTS.get(part, PARTS['rod']))
-    for part in ('crank', 'rod', 'link'):
-        for points in _of(strokes, part)[:1]:
-            for begin, end in pairwise(points):
-                length = float(np.linalg.norm(end - begin))
-                if length > SHORTEST:
-                    axes.text(*((begin + end) / 2), f' {length:.4g}', size=8, weight='bold')
     style.space(axes, 0.88)
     axes.view_init(elev=24, azim=-58)
+    _name_lengths(axes, strokes)
+
+
+def _pairs(points: Iterable[Array]) -> list[tuple[Array, Array]]:
+    """The ends in mm of all parts that have a length."""
+    pairs = (pair for part in points for pair in pairwise(part))
+    return [pair for pair in pairs if np.linalg.norm(pair[1] - pair[0]) > SHORTEST]
+
+
+def _name_lengths(axes: Axes3D, strokes: Strokes) -> None:
+    """The length of each part beside it, clear of all parts and of the other lengths."""
+    axes.figure.draw_without_rendering()  # sets the projection
+    taken: list[Array] = []
+    for pair in _pairs(points for _, points in strokes):
+        begin, end = _on_paper(axes, np.stack(pair))
+        taken += [begin + s * (end - begin) for s in ALONG]
+    for pair in _pairs(_of(strokes, part)[0] for part in NAMED if _of(strokes, part)):
+        text = f'{np.linalg.norm(pair[1] - pair[0]):.4g}'
+        half = NAME_SIZE * np.array([0.35 * len(text), 0.6])
+        place = _clear_place(_on_paper(axes, np.stack(pair)), half, taken)
+        axes.annotate(
+            text, tuple(place), xycoords='figure points', size=NAME_SIZE, weight='bold',
+            ha='center', va='center',
+        )  # fmt: skip
+        taken += [place + half * corner for corner in CORNERS]
+
+
+def _clear_place(part: Array, half: Array, taken: list[Array]) -> Array:
+    """The nearest place beside a part (2, 2) that is clear for a text of twice `half` (2,)."""
+    along = part[1] - part[0]
+    across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1.0)
+    places = [
+        part.mean(axis=0) + side * (away + abs(across) @ half) * across
+        for away in AWAY
+        for side in (1.0, -1.0)
+    ]
+    return max(places, key=lambda place: _clearance(place, half, taken))
+
+
+def _on_paper(axes: Axes3D, points: Array) -> Array:
+    """Points (n, 3) in mm as points (n, 2) of 1/72 inch from the figure's lower left."""
+    x, y, _ = proj_transform(*points.T, axes.get_proj())
+    pixels = np.asarray(axes.transData.transform(np.column_stack([x, y])))
+    return np.asarray(pixels * 72.0 / axes.figure.dpi)
+
+
+def _clearance(place: Array, half: Array, taken: list[Array]) -> float:
+    """How far the nearest taken point is from a text, in halves of its size; at most ENOUGH."""
+    away = np.abs((np.array(taken) - place) / half).max(axis=1)
+    return float(np.floor(min(away.min(), ENOUGH) * 10) / 10)

@@ -40,6 +40,10 @@ FONT = {
 }  # fmt: skip
 NEAR_LIMIT = 4.0
 """Times the largest value in view, so far a limit is drawn as a line."""
+MOST_NUMBERS = 5
+"""Beside the longest axis in space."""
+BESIDE_NUMBERS = 9.0
+"""Points from the axis z to its name, which is upright in a tall box."""
 LEAST_SHARE = 0.35
 """Of the longest axis in space, what the others are at least."""
 WIDTH = 11.0
@@ -84,12 +88,13 @@ def axis(k: int) -> dict[str, Any]:
 def space(axes: Axes3D, zoom: float = 0.9) -> None:
     """Axes in mm at one scale, with few numbers; after all was drawn on them."""
     axes.set(xlabel='x (mm)', ylabel='y (mm)', zlabel='z (mm)')
-    for name in 'xyz':
-        getattr(axes, f'{name}axis').set_major_locator(MaxNLocator(5))
     ends = np.array([axes.get_xlim3d(), axes.get_ylim3d(), axes.get_zlim3d()])
     sizes = np.maximum(np.ptp(ends, axis=1), LEAST_SHARE * np.ptp(ends, axis=1).max())
     for name, middle, size in zip('xyz', ends.mean(axis=1), sizes, strict=True):
         getattr(axes, f'set_{name}lim3d')(middle - size / 2, middle + size / 2)
+        numbers = MaxNLocator(max(2, round(MOST_NUMBERS * size / sizes.max())))
+        getattr(axes, f'{name}axis').set_major_locator(numbers)
+    axes.zaxis.labelpad = BESIDE_NUMBERS
     axes.set_box_aspect(sizes / sizes.max(), zoom=zoom)
 
 

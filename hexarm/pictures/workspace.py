@@ -16,12 +16,15 @@ from manipulator.analysis.inside import AXES, Section, joint_rates, section, sur
 from manipulator.analysis.survey import SEED, Survey
 from manipulator.analysis.volume import Box, Volume, bounding_box, volume, with_orientation
 from manipulator.arrays import Array
+from manipulator.kinematics import BRANCH_JUMP
 from manipulator.machine import Machine
 
 GRIDS = {True: 161, False: 61}
 RINGS = {True: 37, False: 19}
 """By whether the inverse is explicit; others take up to a millisecond a pose."""
 SPEED = 0.03
+EVEN = 1e-6
+"""Of a value: what is no difference."""
 PLANES = ((0, 1), (0, 2), (1, 2))
 SHAPE, SPEEDS = 'workspace', 'joint_speeds'
 
@@ -68,7 +71,7 @@ def _shape(machine: Machine, box: Box, found: Volume, name: str) -> Figure:
     for row, (field, label, colours, factor) in enumerate(rows):
         values = [factor * getattr(plane.conditions, field) for plane in planes]
         inside = np.concatenate([v[np.isfinite(v)] for v in values])
-        limits = np.quantile(inside, [0.0, 0.98])
+        limits = _colour_limits(inside)
         for column, (plane, value) in enumerate(zip(planes, values, strict=True)):
             place = (0.385 + 0.19 * column, 0.535 - 0.445 * row, 0.14, 0.32)
             drawn = draw_section(figure.add_axes(place), plane, value, (colours, *limits), machine)
@@ -76,6 +79,13 @@ def _shape(machine: Machine, box: Box, found: Volume, name: str) -> Figure:
         figure.colorbar(drawn, cax=bar)
         figure.text(0.385, 0.875 - 0.445 * row, label, color=style.SOFT)
     return figure
+
+
+def _colour_limits(values: Array) -> tuple[float, float]:
+    """Without the highest values; of a value that is the same everywhere, itself in the middle."""
+    low, high = np.quantile(values, [0.0, 0.98]).tolist()
+    is_even = high - low <= EVEN * abs(high)
+    return (0.0, 2.0 * high) if is_even else (low, high)
 
 
 def _surface(axes: Axes3D, machine: Machine) -> None:
@@ -90,7 +100,7 @@ def _surface(axes: Axes3D, machine: Machine) -> None:
     axes.plot_surface(
         x, y, z, cmap='YlGnBu_r', rstride=1, cstride=1, lw=0.15, edgecolor='#ffffff90'
     )
-    style.space(axes)
+    style.space(axes, 0.8)
     axes.view_init(elev=18, azim=-60)
 
 
@@ -134,8 +144,10 @@ def _speeds(machine: Machine, found: Survey, name: str) -> Figure:
     home, kinematics = machine.kinematics.home, machine.kinematics
     poses = home.moved(x[:, None] * np.eye(6)[0])
     factor, unit = (np.degrees(1.0), '°') if kinematics.joint_unit == 'rad' else (1e3, 'mm')
-    joints = factor * kinematics.inverse_or_nan(poses)
+    joints = _with_gaps(kinematics.inverse_or_nan(poses))
     rates = factor * SPEED * joint_rates(machine, poses)[..., 0]
+    rates[np.isnan(joints)] = np.nan
+    joints *= factor
     figure: Figure = plt.figure(figsize=(style.WIDTH, 4.4), dpi=100)
     left, right = map(style.plotted, figure.subplots(1, 2))
     figure.subplots_adjust(left=0.07, right=0.98, bottom=0.12, top=0.76, wspace=0.2)
@@ -146,10 +158,17 @@ def _speeds(machine: Machine, found: Survey, name: str) -> Figure:
         right.plot(1e3 * x, rates[:, k], **look)
     left.set(xlabel='x from home (mm)', ylabel=f'joint position ({unit})')
     right.set(xlabel='x from home (mm)', ylabel=f'joint speed ({unit}/s)')
-    bound = 1.15 * float(np.quantile(np.abs(rates), 0.985))
+    bound = 1.15 * float(np.nanquantile(np.abs(rates), 0.985))
     right.set_ylim(-bound, bound)
     style.limits(right, float(factor * np.max(machine.motion.joint.speed)), f'{unit}/s')
     figure.legend(
         *left.get_legend_handles_labels(), ncols=6, loc='upper left', bbox_to_anchor=(0.06, 0.9)
     )
     return figure
+
+
+def _with_gaps(joints: Array) -> Array:
+    """Joints (n, joints) with NaN where one comes to another branch: no curve joins the two."""
+    jumps = np.abs(np.diff(joints, axis=0)).max(axis=-1) > BRANCH_JUMP
+    is_gap = np.append(jumps, False) | np.insert(jumps, 0, False)
+    return np.where(is_gap[:, None], np.nan, joints)

@@ -173,11 +173,17 @@ class DynamicsConfig(GravityConfig):
 
 
 @dataclass(frozen=True)
-class RotaryDynamicsConfig(DynamicsConfig):
-    """A crank platform's masses and drives."""
+class PlatformDynamicsConfig(DynamicsConfig):
+    """What every parallel platform moves beside its legs."""
 
     platform: PlateConfig = key('a hexagonal plate about its joints')
     payload: PayloadConfig = key('what is carried, on the xy plane of the moving frame')
+
+
+@dataclass(frozen=True)
+class RotaryDynamicsConfig(PlatformDynamicsConfig):
+    """A crank platform's masses and drives."""
+
     crank: RodConfig = key('every crank, a round rod')
     rod: RodConfig = key('every rod, round')
     servo: TubeConfig = key('every servo, drawn as a cylinder')
@@ -185,22 +191,18 @@ class RotaryDynamicsConfig(DynamicsConfig):
 
 
 @dataclass(frozen=True)
-class LinearDynamicsConfig(DynamicsConfig):
+class LinearDynamicsConfig(PlatformDynamicsConfig):
     """A linear platform's masses and drives: a leg is a cylinder below and a piston above."""
 
-    platform: PlateConfig = key('a hexagonal plate about its joints')
-    payload: PayloadConfig = key('what is carried, on the xy plane of the moving frame')
     cylinder: TubeConfig = key('lower part of every leg')
     piston: TubeConfig = key('upper part of every leg')
     drive: PushingDriveConfig = key('a servo that pushes')
 
 
 @dataclass(frozen=True)
-class RailDynamicsConfig(DynamicsConfig):
+class RailDynamicsConfig(PlatformDynamicsConfig):
     """The masses and drives of a platform on rails; a carriage's length is along its rail."""
 
-    platform: PlateConfig = key('a hexagonal plate about its joints')
-    payload: PayloadConfig = key('what is carried, on the xy plane of the moving frame')
     carriage: TubeConfig = key('every carriage, drawn as a cylinder along its rail')
     rod: RodConfig = key('every rod, round')
     drive: PushingDriveConfig = key('a servo that pushes')
@@ -208,7 +210,7 @@ class RailDynamicsConfig(DynamicsConfig):
 
 @dataclass(frozen=True)
 class LinkConfig:
-    """A link and the drive that turns it: a round rod from its joint to the next, unless told.
+    """A link and the drive that turns it: a round rod from its joint to the next, unless given.
 
     centre_mm, inertia_g_mm2 (moments about the centre) and products_g_mm2 (xy, xz, yz) in base
     axes at zero angles.

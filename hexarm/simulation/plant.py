@@ -25,7 +25,7 @@ class MujocoPlant:
     ) -> None:
         missing = set(mechanism.joints) - set(names)
         if missing:
-            raise InvalidInput(f'no servo is called {sorted(missing)}')
+            raise InvalidInput(f'no servo is called {", ".join(sorted(missing))}')
         self._order = [names.index(name) for name in mechanism.joints]
         joints = np.asarray(park)[self._order]
         self.simulation = Simulation(mechanism, kinematics.forward(joints).pose, joints)

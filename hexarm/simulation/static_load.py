@@ -168,7 +168,7 @@ class Stalls(ManipulatorError, ValueError):
 
 
 def check_holds(
-    load: StaticLoad, drives: Drives, names: tuple[str, ...], poses: Pose, joints: Array
+    load: StaticLoad, drives: Drives, kinematics: Kinematics, poses: Pose, joints: Array
 ) -> None:
     """Raises Stalls at the worst of poses (N) where gravity needs more than a drive gives."""
     efforts = np.abs(load(poses, joints))
@@ -181,9 +181,10 @@ def check_holds(
         f'{name} {1e3 * value:.1f}' for name, value in zip('xyz', pose.position, strict=True)
     )
     turn = ', '.join(f'{value:.3f}' for value in pose.rpy)
+    unit = 'N·m' if kinematics.joint_unit == 'rad' else 'N'
     raise Stalls(
-        f'{names[joint]} stalls at {place} mm, rpy {turn} rad: needs {efforts[worst, joint]:.4g}, '
-        f'its drive gives {drives.effort[joint]:.4g} (N·m or N)',
+        f'{kinematics.joint_names[joint]} stalls at {place} mm, rpy {turn} rad: needs '
+        f'{efforts[worst, joint]:.4g} {unit}, its drive gives {drives.effort[joint]:.4g} {unit}',
         int(joint) + 1,
         pose,
     )

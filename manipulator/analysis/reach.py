@@ -58,7 +58,7 @@ def reach(machine: Machine, pose: Pose, near: Array | None = None) -> Reach:
 
 
 def readings(machine: Machine, pose: Pose, near: Array | None = None) -> tuple[LimitReading, ...]:
-    """Every limit that has a value at one pose, the nearest first."""
+    """Every limit that has a value at one pose, the nearest first; endless joints have none."""
     found = slopes(machine, pose, near)
     names, values = found.readings.names, found.readings.values
     margins = found.readings.margins.reshape(2, -1)
@@ -67,7 +67,8 @@ def readings(machine: Machine, pose: Pose, near: Array | None = None) -> tuple[L
     with np.errstate(divide='ignore', invalid='ignore'):
         distance = np.where(slope > 0.0, margin / slope, np.copysign(np.inf, margin))
     low, high = found.readings.low, found.readings.high
-    order = [k for k in np.argsort(distance, kind='stable') if np.isfinite(values[k])]
+    exists = np.isfinite(values) & (np.isfinite(low) | np.isfinite(high))
+    order = [k for k in np.argsort(distance, kind='stable') if exists[k]]
     return tuple(
         LimitReading(
             quantity=names[k][0],
@@ -83,11 +84,13 @@ def readings(machine: Machine, pose: Pose, near: Array | None = None) -> tuple[L
 
 
 def smallest_margins(machine: Machine, count: int = 3) -> tuple[LimitReading, ...]:
-    """Of home: the nearest reading of each limited quantity, of the `count` nearest ones."""
-    nearest: dict[str, LimitReading] = {}
+    """Of home: the smallest of each limited quantity, of the `count` nearest quantities."""
+    smallest: dict[str, LimitReading] = {}
     for reading in readings(machine, machine.kinematics.home):
-        nearest.setdefault(reading.quantity, reading)
-    return tuple(nearest.values())[:count]
+        known = smallest.setdefault(reading.quantity, reading)
+        if reading.margin < known.margin:
+            smallest[reading.quantity] = reading
+    return tuple(smallest.values())[:count]
 
 
 def explained(machine: Machine, pose: Pose, near: Array | None = None) -> str:

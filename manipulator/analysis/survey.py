@@ -170,6 +170,7 @@ def survey(machine: Machine, points: int, tilt: float, on_progress: OnProgress) 
         return volume(reached, wide, few, same, partial(on_progress, f'orientations {stage}/2'))
 
     half, whole = added(turned.steps // 2, 1), added(turned.steps, 2)
+    whole = max(half, whole, key=lambda found: found.value)  # the longer search may find others
     error = float(np.hypot(constant.error, whole.error))
     some = replace(whole, value=constant.value + whole.value, error=error)
     return Survey(found, constant, share, some, whole.value - half.value, tilt, box)

@@ -1,20 +1,13 @@
-"""How far a machine can go along a twist, and along a path."""
+"""How far a machine can go along a twist."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from manipulator.analysis.free_paths import (
-    admits,
-    is_by_joints,
-    is_connected,
-    last_free,
-    line_between,
-)
-from manipulator.analysis.reach import reach
+from manipulator.analysis.free_paths import admits, is_by_joints, last_free
 from manipulator.analysis.readings import CHECKS_PER_LENGTH, displaced, scale
 from manipulator.arrays import Array
-from manipulator.errors import InvalidInput
+from manipulator.errors import InvalidInput, Unreachable
 from manipulator.machine import Machine
 from manipulator.pose import Pose
 
@@ -39,31 +32,6 @@ class Travel:
     reason: str
 
 
-@dataclass(frozen=True, eq=False)
-class Fault:
-    """Where a path leaves the reach: after pose `segment` (from 0), at `share` to the next pose.
-
-    pose is the first that is out of reach; a fault at share 0 of segment 0 is in the first pose.
-    """
-
-    segment: int
-    share: float
-    pose: Pose
-    reason: str
-
-
-@dataclass(frozen=True)
-class PathReport:
-    """Whether all of a path can be driven; the first fault of each segment that cannot."""
-
-    faults: tuple[Fault, ...]
-
-    @property
-    def is_drivable(self) -> bool:
-        """Whether nothing is in the path."""
-        return not self.faults
-
-
 def travel(machine: Machine, pose: Pose, twist: Array, near: Array | None = None) -> Travel:
     """How far `pose` can go along a twist (6,): the position straight, turning about one axis.
 
@@ -84,30 +52,17 @@ def travel(machine: Machine, pose: Pose, twist: Array, near: Array | None = None
     reason = ''
     if free < longest:
         beyond = displaced(machine, pose, (free + BEYOND * length) * direction)
-        reason = reach(machine, beyond, near).reason
+        reason = _refusal(machine, beyond, near)
     return Travel(free / speed, free, end, reason)
 
 
-def path_report(machine: Machine, poses: Pose, near: Array | None = None) -> PathReport:
-    """Every segment from one of the poses (N,) to the next, straight and with one turn.
-
-    Before the first segment, a fault is a first pose out of reach or not connected to home.
-    """
-    faults = []
-    if not is_connected(machine, poses[0]):
-        reason = reach(machine, poses[0], near).reason or 'no path from home to it was found'
-        faults.append(Fault(0, 0.0, poses[0], reason))
-    near = _followed(machine, poses[0], near)
-    for k in range(poses.position.shape[0] - 1):
-        path = line_between(machine, poses[k], poses[k + 1])
-        inside = admits(machine, path, near)
-        if not inside.all() and not (k == 0 and faults):
-            first = int(np.argmin(inside))
-            share = first / (len(inside) - 1)
-            faults.append(Fault(k, share, path[first], reach(machine, path[first], near).reason))
-        if near is not None:
-            near = machine.kinematics.inverse_along(path, near)[-1]
-    return PathReport(tuple(faults))
+def _refusal(machine: Machine, pose: Pose, near: Array | None) -> str:
+    """Why a pose is out of reach."""
+    try:
+        machine.constraints.check(pose, machine.kinematics.inverse(pose, near))
+    except Unreachable as error:
+        return str(error)
+    return ''
 
 
 def _followed(machine: Machine, pose: Pose, near: Array | None) -> Array | None:

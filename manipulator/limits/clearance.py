@@ -34,7 +34,9 @@ class Clearance:
     """A `Limit`: every clearance at least 0, its owner a sentence as 'link 3 meets the floor'.
 
     tip (3,): the point of the tool in force, platform frame; None of a machine without tools. From
-    the platform's origin to it is one more part. group and columns: see `Grouped`.
+    the platform's origin to it is one more part. group and columns: see `Grouped`. names and radii
+    are of the parts, the tool with them; pairs (2, n) of parts, and faced (2, m), a part and an
+    obstacle, are what must not meet.
     """
 
     bodies: Bodies
@@ -47,8 +49,12 @@ class Clearance:
     owners: tuple[str, ...] = field(init=False)
     low: Array = field(init=False)
     high: Array = field(init=False)
-    _of_pairs: tuple[Indices, Indices, Array] = field(init=False, repr=False)
-    _of_boxes: tuple[Indices, Array, Array] = field(init=False, repr=False)
+    names: tuple[str, ...] = field(init=False)
+    radii: Array = field(init=False)
+    pairs: Indices = field(init=False, repr=False)
+    faced: Indices = field(init=False, repr=False)
+    _boxes: Array = field(init=False, repr=False)
+    _widths: Array = field(init=False, repr=False)
     _rows: tuple[Indices, Indices] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -57,12 +63,14 @@ class Clearance:
         if self.tip is not None:
             moving = (*moving, len(names))
             names, radii = (*names, TOOL), np.append(radii, self.bodies.tool_radius)
-        first, second = np.array(self.bodies.pairs, dtype=np.intp).reshape(-1, 2).T
-        faced = [(part, box) for part in moving for box in self.obstacles]
-        parts = np.array([part for part, _ in faced], dtype=np.intp)
-        boxes = np.array([box.numbers for _, box in faced]).reshape(-1, 7)
+        boxes = range(len(self.obstacles))
+        faced = [(part, box) for part in moving for box in boxes]
         owners = [f'{names[i]} meets {names[k]}' for i, k in self.bodies.pairs]
-        owners += [f'{names[part]} {box.words}' for part, box in faced]
+        owners += [f'{names[part]} {self.obstacles[box].words}' for part, box in faced]
+        pairs, met = (
+            np.array(some, dtype=np.intp).reshape(-1, 2).T.copy()
+            for some in (self.bodies.pairs, faced)
+        )
         unique = list(dict.fromkeys(owners))
         rows = np.array([unique.index(owner) for owner in owners], dtype=np.intp)
         order = np.argsort(rows, kind='stable')
@@ -71,8 +79,12 @@ class Clearance:
             'low': frozen(np.zeros(len(unique))),
             'high': frozen(np.full(len(unique), np.inf)),
             '_rows': (order, np.searchsorted(rows[order], np.arange(len(unique)))),
-            '_of_pairs': (first, second, radii[first] + radii[second]),
-            '_of_boxes': (parts, boxes, radii[parts]),
+            'names': names,
+            'radii': frozen(radii),
+            'pairs': pairs,
+            'faced': met,
+            '_widths': np.concatenate([radii[pairs].sum(axis=0), radii[met[0]]]),
+            '_boxes': np.array([self.obstacles[box].numbers for _, box in faced]).reshape(-1, 7),
         }.items():
             object.__setattr__(self, name, value)
 
@@ -81,15 +93,25 @@ class Clearance:
 
         Of capsules with one name, as the lines of a platform, the least.
         """
+        everything = self.distances(self.segments(pose, joints))
+        order, starts = self._rows
+        if len(order) == len(starts):
+            return everything
+        least: Array = np.minimum.reduceat(np.take(everything, order, axis=-1), starts, axis=-1)
+        return least
+
+    def segments(self, pose: Pose, joints: Array) -> Array:
+        """Those of `Bodies`, and the tool's."""
         segments = self.bodies.segments(pose, joints)
-        if self.tip is not None:
-            tool = np.concatenate(
-                [pose.position, pose.position + pose.rotation @ self.tip], axis=-1
-            )
-            one = stretched(tool[..., None, :], (*segments.shape[:-2], 1, 6))
-            segments = np.concatenate([segments, one], axis=-2)
-        first, second, widths = self._of_pairs
-        parts, boxes, radii = self._of_boxes
+        if self.tip is None:
+            return segments
+        tool = np.concatenate([pose.position, pose.position + pose.rotation @ self.tip], axis=-1)
+        one = stretched(tool[..., None, :], (*segments.shape[:-2], 1, 6))
+        return np.concatenate([segments, one], axis=-2)
+
+    def distances(self, segments: Array) -> Array:
+        """Metres (..., n + m) between `pairs`, then those `faced`, of parts that are so placed."""
+        (first, second), parts = self.pairs, self.faced[0]
         lead = segments.shape[:-2]
         between, room = np.empty((*lead, len(first))), np.empty((*lead, len(parts)))
         if first.size:
@@ -97,13 +119,8 @@ class Clearance:
             _kernel.segment_distance(one, other, between)
         if parts.size:
             own = np.take(segments, parts, axis=-2)
-            _kernel.box_clearance(own, stretched(boxes, (*room.shape, 7)), room)
-        everything = np.concatenate([between - widths, room - radii], axis=-1)
-        order, starts = self._rows
-        if len(order) == len(starts):
-            return everything
-        least: Array = np.minimum.reduceat(np.take(everything, order, axis=-1), starts, axis=-1)
-        return least
+            _kernel.box_clearance(own, stretched(self._boxes, (*room.shape, 7)), room)
+        return np.concatenate([between, room], axis=-1) - self._widths
 
 
 @dataclass(frozen=True, eq=False)

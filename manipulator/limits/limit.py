@@ -148,6 +148,23 @@ class Grouped(Protocol):
         ...
 
 
+@dataclass(frozen=True, eq=False)
+class GroupedLimit:
+    """A `Limit` on some of a group's `limited_values`, within [low, high] each."""
+
+    group: LimitGroup
+    columns: slice
+    quantity: str
+    unit: str
+    owners: tuple[str, ...]
+    low: Array
+    high: Array
+
+    def values(self, pose: Pose, joints: Array) -> Array:
+        """The limited values (..., k)."""
+        return self.group.limited_values(pose, joints)[..., self.columns]
+
+
 @dataclass(frozen=True)
 class Violation:
     """One value outside its range; `excess` ≥ 0 is by how much."""

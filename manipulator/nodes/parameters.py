@@ -19,7 +19,7 @@ from rclpy.parameter import Parameter
 
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
-from manipulator.formatting import shown
+from manipulator.formatting import not_one_of, shown
 from manipulator.planning.cycle import Cycle
 from manipulator.planning.goal import Motion, OnUnreachable
 from manipulator.planning.orientation import Orientation
@@ -113,8 +113,8 @@ def choice(name: str, value: object) -> Enum:
     try:
         return kind(value)
     except ValueError:
-        known = ', '.join(one.value for one in kind)
-        raise Refused(f'parameter {name}: {shown(value)} is not one of {known}') from None
+        known = [one.value for one in kind]
+        raise Refused(f'parameter {name}: {not_one_of(value, known)}') from None
 
 
 def _checked_choices(parameters: Sequence[Parameter]) -> SetParametersResult:

@@ -1,9 +1,9 @@
 """The thread in which a node's plans are made, beside the control loop."""
 
 import sys
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from threading import Event
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from manipulator.errors import Refused
 from manipulator.planning.worker import Effort, Job, Task
@@ -25,18 +25,20 @@ class PlanningThread:
     def __init__(self) -> None:
         sys.setswitchinterval(SWITCH_INTERVAL)
         self._pool = ThreadPoolExecutor(1, thread_name_prefix='planning')
-        self._unfinished: list[Future[object]] = []
+        self._unfinished: list[Job[Any]] = []
 
     def submit(self, task: Task[T]) -> Job[T]:
         """See `Worker`."""
-        self._unfinished = [future for future in self._unfinished if not future.done()]
+        self._unfinished = [job for job in self._unfinished if not job.is_done]
         if len(self._unfinished) > MOST_WAITING:
             raise Refused(f'{MOST_WAITING} plans wait already: try again')
         cancelled = Event()
         future = self._pool.submit(task, Effort(is_cancelled=cancelled.is_set))
-        self._unfinished.append(future)  # type: ignore[arg-type]
-        return Job(future, cancelled.set)
+        self._unfinished.append(Job(future, cancelled.set))
+        return self._unfinished[-1]
 
     def close(self) -> None:
-        """Gives up what waits; does not wait for what is being worked on."""
-        self._pool.shutdown(wait=False, cancel_futures=True)
+        """Gives up what waits and what is being worked on, and does not wait for its end."""
+        for job in self._unfinished:
+            job.cancel()
+        self._pool.shutdown(wait=False)

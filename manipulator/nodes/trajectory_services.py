@@ -18,7 +18,8 @@ from manipulator.nodes.messages import goal_of, pose_message, seconds
 from manipulator.nodes.parameters import CycleParameters, GoalParameters
 from manipulator.planning.goal import Goal
 from manipulator.planning.plan import MotionState
-from manipulator.planning.planner import ComparedPlan, Start, compared
+from manipulator.planning.planner import ComparedPlan, compared
+from manipulator.planning.start import Start
 from manipulator.planning.worker import Job, Worker
 from manipulator.trajectory.controller import MotionController
 

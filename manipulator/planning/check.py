@@ -58,14 +58,19 @@ class Batch:
 
 
 def check_plan(
-    plan: Plan, machine: Machine, near: Array, dt: float, effort: Effort | None = None
+    plan: Plan,
+    machine: Machine,
+    near: Array,
+    dt: float,
+    effort: Effort | None = None,
+    before: Array | None = None,
 ) -> LimitUtilisation:
     """Simulates the plan, tick by tick, on the branch of the inverse that joints `near` are on.
 
     Returns the utilisation of speed and acceleration limits. A plan that begins beyond a limit may
     not go further out. Raises Refused, with the place, joint or leg, value and limit, where the
     path leaves the reach of the machine or would need another branch, and where planning would
-    cost more `effort` than a plan may.
+    cost more `effort` than a plan may. before (n,): the joints one tick before the plan begins.
     """
     constraints, worst = machine.constraints, LimitUtilisation(0.0, '')
     for part in _batches(plan, machine, near, dt, effort or Effort()):
@@ -75,7 +80,7 @@ def check_plan(
         if fault is not None:
             tick, reason = fault
             raise Refused(f'{plan.where(float(part.times[tick]))}: {reason}')
-        found = limit_utilisation(part, machine, dt)
+        found = limit_utilisation(part, machine, dt, before if part.times[0] == 0.0 else None)
         worst = max(worst, found, key=lambda one: one.factor)
     return worst
 
@@ -96,9 +101,15 @@ def first_fault(
     return first, _why_not(machine, constraints, poses[first], joints[: first + 1])
 
 
-def limit_utilisation(part: Batch, machine: Machine, dt: float) -> LimitUtilisation:
-    """The worst ratio to a limit; accelerations count by their square root, as time does."""
-    speed = np.diff(part.joints, axis=0) / dt
+def limit_utilisation(
+    part: Batch, machine: Machine, dt: float, before: Array | None = None
+) -> LimitUtilisation:
+    """The worst ratio to a limit; accelerations count by their square root, as time does.
+
+    before (n,): the joints one tick before, where they are known.
+    """
+    rows = part.joints if before is None else np.vstack([before, part.joints])
+    speed = np.diff(rows, axis=0) / dt
     acceleration = np.diff(speed, axis=0) / dt
     limits, names = machine.motion.for_plans, machine.kinematics.joint_names
     readings = {
@@ -119,7 +130,7 @@ def limit_utilisation(part: Batch, machine: Machine, dt: float) -> LimitUtilisat
     }
     peaks = {name: float(ratios.max(initial=0.0)) for name, ratios in readings.items()}
     worst = max(peaks, key=lambda name: peaks[name])
-    tick = int(np.argmax(readings[worst]))
+    tick = min(int(np.argmax(readings[worst])), len(part.times) - 1)
     return LimitUtilisation(peaks[worst], worst, float(part.times[tick]))
 
 

@@ -36,12 +36,16 @@ class OnUnreachable(Enum):
 class Flow:
     """How a stream of goals moves at one of them: twist (6,) and its time derivative (6,).
 
-    due: when to be there, on the clock of who plans, in seconds.
+    Of joints, the rates (n,) and their derivatives.
+
+    due: when to be there; until: when the next goal but one must have come. Both in seconds, on
+    the clock of who plans.
     """
 
     twist: Array
     acceleration: Array
     due: float
+    until: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +56,8 @@ class Goal:
     (n,): those to arrive with, None where any of the pose's will do. orientation: where the
     pose's comes from. flow: of the stream of goals that it continues, None where it continues
     none. on_unreachable: see there. received: when, by a monotonic clock, in seconds; 0 where
-    that is not known. note: what is to be said of it while it is pursued, as that it is the
-    nearest pose.
+    that is not known. note: what is reported of it while it is pursued, as that it is the nearest
+    pose.
     """
 
     pose: Pose

@@ -5,6 +5,7 @@ It starts from rest where the machine is, at its first point or before it, and e
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -34,18 +35,26 @@ NARROWEST = 2.0
 """Ticks of half a corner, where no joint's acceleration asks for more."""
 
 
-@dataclass(frozen=True, eq=False)
-class JointTrajectory:
-    """The joints' curve, and the poses (k,) at equal steps of its time.
+class JointCurve(Protocol):
+    """Joints over time."""
 
-    ends (m,): when each point is reached; numbers (m,): as their sender counts them.
-    """
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        ...
+
+    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+        """q, q̇ and q̈ (..., n) at each of the times (...), those of the ends before and after."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class JointCurvePlan:
+    """The joints' curve, and the poses (k,) at equal steps of its time."""
 
     kinematics: Kinematics
-    curve: Curve
+    curve: JointCurve
     knots: Pose
-    ends: Array
-    numbers: tuple[int, ...]
 
     @property
     def duration(self) -> float:
@@ -56,10 +65,6 @@ class JointTrajectory:
     def checked_duration(self) -> float:
         """All of it."""
         return self.duration
-
-    def percent(self, time: float) -> int:
-        """How much of its time is over at the last half second before `time`."""
-        return int(100 * (time // 0.5 * 0.5) / max(self.duration, 0.5))
 
     def joints_at(self, times: Array | float) -> Array:
         """See `Plan`."""
@@ -83,14 +88,26 @@ class JointTrajectory:
         pose = Pose(poses.position.reshape(*shape, 3), poses.rotation.reshape(*shape, 3, 3))
         return MotionState(pose, twist.reshape(*shape, 6), acceleration.reshape(*shape, 6))
 
+    def _knot(self, time: float) -> int:
+        last = len(self.knots.position) - 1
+        return min(max(round(time / max(self.duration, 1e-9) * last), 0), last)
+
+
+@dataclass(frozen=True, eq=False)
+class JointTrajectory(JointCurvePlan):
+    """ends (m,): when each point is reached; numbers (m,): as their sender counts them."""
+
+    ends: Array
+    numbers: tuple[int, ...]
+
+    def percent(self, time: float) -> int:
+        """How much of its time is over at the last half second before `time`."""
+        return int(100 * (time // 0.5 * 0.5) / max(self.duration, 0.5))
+
     def where(self, time: float) -> str:
         """See `Plan`: by the time, and the point that comes next."""
         following = min(int(np.searchsorted(self.ends, time)), len(self.ends) - 1)
         return f'{time:.2f} s after the start, before point {self.numbers[following]}'
-
-    def _knot(self, time: float) -> int:
-        last = len(self.knots.position) - 1
-        return min(max(round(time / max(self.duration, 1e-9) * last), 0), last)
 
 
 def _times(jacobian: Array, rates: Array) -> Array:

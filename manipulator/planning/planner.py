@@ -1,6 +1,5 @@
 """From a goal to a plan within all limits: slowed down where it is too fast, or refused."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,19 +12,20 @@ from manipulator.planning.check import check_plan
 from manipulator.planning.cycle import Cycle
 from manipulator.planning.goal import Flow, Goal, Motion
 from manipulator.planning.joint_move import KNOTS, plan_joint_move
+from manipulator.planning.joint_stream import KNOTS as JOINT_KNOTS
+from manipulator.planning.joint_stream import (
+    JointState,
+    plan_joint_move_in_motion,
+    plan_joint_stream,
+)
 from manipulator.planning.path_timing import TimedPath
-from manipulator.planning.plan import MotionState, Plan
+from manipulator.planning.plan import Plan
 from manipulator.planning.point_to_point import plan_line_move, plan_move_in_motion
-from manipulator.planning.stream import SHORTEST, STILL, plan_stream_move
+from manipulator.planning.start import Start, plan_along_stream, slowed_down
+from manipulator.planning.stream_move import plan_stream_move
 from manipulator.planning.worker import Effort, TooLong
 from manipulator.pose import Pose
 from manipulator.unit_hints import hint_at_metres
-
-ATTEMPTS = 8
-MARGIN = 1.01
-MOST_SLOWDOWN = 30.0
-"""Times that a move may take of what platform or tool alone would need: what joints that must turn
-faster near a singular posture may cost."""
 
 FARTHEST = 1e5
 """Characteristic lengths from home beyond which nothing is computed: numbers would overflow."""
@@ -41,19 +41,6 @@ SAME_JOINTS = 1e-3
 """rad or m within which joints count as the requested ones."""
 
 
-@dataclass(frozen=True, eq=False)
-class Start:
-    """Where a plan begins: a state of motion, the joints (n,) there; dt is a tick (s).
-
-    time is when, on the clock of `Flow.due`.
-    """
-
-    state: MotionState
-    joints: Array
-    dt: float
-    time: float = 0.0
-
-
 def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Plan:
     """The plan to a goal by its `motion`; a path or cycle that begins there is checked as well.
 
@@ -62,12 +49,19 @@ def plan_goal(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pla
     """
     refuse_absurd(machine, goal.pose)
     if goal.motion in (Motion.JOINT, Motion.UNWIND):
+        begin, is_moving = start.joint_motion, not start.state.is_at_rest
+        if begin is not None and goal.joints is not None and (goal.flow or is_moving):
+            joints = _off_the_stops(machine, goal.joints)
+            return _plan_joints_in_motion(machine, start, begin, joints, goal.flow, effort)
         return _plan_joints(machine, start, goal, effort)
-    flowing = (
-        None if goal.flow is None else _plan_stream(machine, start, goal.pose, goal.flow, effort)
-    )
-    if flowing is not None:
-        return flowing
+    flow, limits = goal.flow, machine.motion.for_plans
+    if flow is not None:
+        flowing = plan_along_stream(
+            machine, start, flow, effort,
+            lambda how: plan_stream_move(start.state, goal.pose, flow, start.time, limits, how),
+        )  # fmt: skip
+        if flowing is not None:
+            return flowing
     try:
         return _plan_line(machine, start, goal, effort)
     except Refused as refusal:
@@ -134,26 +128,36 @@ def plan_to(machine: Machine, start: Start, pose: Pose, effort: Effort | None = 
         return plan_move_in_motion(start.state, pose, limits, slowdown)
 
     try:
-        return _slowed_down(machine, start, line, effort or Effort())
+        return slowed_down(machine, start, line, effort or Effort())
     except Refused:
         check_goal(machine, pose, start.joints)
         raise
 
 
-def _plan_stream(
-    machine: Machine, start: Start, pose: Pose, flow: Flow, effort: Effort
-) -> Plan | None:
-    """The move that follows a stream, None where it would pass a limit, or nothing moves."""
-    if start.state.is_at_rest and np.abs(flow.twist).max() < STILL:
-        return None
-    seconds = max(flow.due - start.time, SHORTEST / 2.0)
-    try:
-        move = plan_stream_move(start.state, pose, flow, seconds, machine.motion.for_plans)
-        if move is not None and check_plan(move, machine, start.joints, start.dt, effort).fits:
-            return move
-    except Refused:
-        pass
-    return None
+def _plan_joints_in_motion(
+    machine: Machine,
+    start: Start,
+    begin: JointState,
+    joints: Array,
+    flow: Flow | None,
+    effort: Effort,
+) -> Plan:
+    """A move to joints (n,) from the motion of others, along the stream that they continue."""
+    cost = FORWARD_COST * JOINT_KNOTS
+
+    def move(limits: MotionLimits, slowdown: float) -> Plan:
+        effort.spend(cost)
+        return plan_joint_move_in_motion(machine, begin, joints, limits, slowdown)
+
+    if flow is not None:
+        effort.spend(cost)
+        flowing = plan_along_stream(
+            machine, start, flow, effort,
+            lambda how: plan_joint_stream(machine, begin, joints, flow, start.time, how),
+        )  # fmt: skip
+        if flowing is not None:
+            return flowing
+    return slowed_down(machine, start, move, effort)
 
 
 def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Plan:
@@ -172,7 +176,7 @@ def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> 
         return plan_joint_move(machine, start.state.pose, start.joints, joints, slowdown)
 
     try:
-        plan = _slowed_down(machine, start, move, effort)
+        plan = slowed_down(machine, start, move, effort)
     except NoSolution as error:
         raise Refused(f'on the joint move: {error}') from error
     _check_arrival(machine, goal, joints, start.dt, effort)
@@ -235,25 +239,6 @@ def _check_arrival(machine: Machine, goal: Goal, joints: Array, dt: float, effor
             f'{name} would arrive {away[worst]:.3g} {unit} from its required position, '
             'on another branch of the inverse kinematics'
         )
-
-
-def _slowed_down(
-    machine: Machine, start: Start, plan: Callable[[MotionLimits, float], Plan], effort: Effort
-) -> Plan:
-    """The first of ever slower plans within all limits; Refused where none is."""
-    slowdown = 1.0
-    for _ in range(ATTEMPTS):
-        move = plan(machine.motion.for_plans, slowdown)
-        peak = check_plan(move, machine, start.joints, start.dt, effort)
-        if peak.fits:
-            return move
-        slowdown *= peak.factor * MARGIN
-        if slowdown > MOST_SLOWDOWN:
-            break
-    raise Refused(
-        f'{move.where(peak.time)}: {peak.quantity} would still be above its limit at '
-        f'1/{slowdown:.3g} of full speed, as near singular postures'
-    )
 
 
 def _hint(machine: Machine, start: Start, goal: Goal, effort: Effort) -> str:

@@ -8,13 +8,12 @@ w = 0, far from the edge at |w| = π. docs/motion.md, section 2.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import ruckig
 
 from manipulator import rotation as so3
-from manipulator.arrays import Array
+from manipulator.arrays import Array, frozen
 from manipulator.errors import Refused
 from manipulator.motion_limits import MotionLimits
 from manipulator.planning.plan import MotionState, PosePlan
@@ -25,18 +24,58 @@ FASTEST = 1e9
 
 
 @dataclass(frozen=True, eq=False)
-class Profile:
-    """A ruckig trajectory of one coordinate."""
+class Cubics:
+    """A ruckig trajectory of d coordinates as its polynomials: plans keep no object of ruckig.
+
+    Each coordinate has its own times `begins` (d, k), and from each of them on a cubic: position,
+    velocity, acceleration and jerk there, `states` (4, d, k).
+    """
 
     duration: float
-    _trajectory: Any
+    begins: Array
+    states: Array
+
+    @staticmethod
+    def of(trajectory: ruckig.Trajectory) -> 'Cubics':
+        """Its braking to within the bounds, its seven phases, and the rest at its end."""
+        (profiles,) = trajectory.profiles
+        lasting = np.array([[*one.brake.t, *one.t] for one in profiles])
+        begins = np.pad(np.cumsum(lasting, axis=1), ((0, 0), (1, 0)))
+        states = [
+            [[*getattr(one.brake, name), *getattr(one, name)] for one in profiles]
+            for name in ('p', 'v', 'a')
+        ]
+        jerks = [[*one.brake.j, *one.j, 0.0] for one in profiles]
+        return Cubics(float(trajectory.duration), frozen(begins), frozen([*states, jerks]))
+
+    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+        """Positions, velocities and accelerations (..., d) at the times (...).
+
+        Those of the ends before and after.
+        """
+        t = np.clip(times, 0.0, self.duration)[..., None]
+        phase = (self.begins <= t[..., None]).sum(axis=-1) - 1
+        each = np.arange(len(self.begins))
+        t = t - self.begins[each, phase]
+        p, v, a, j = self.states[:, each, phase]
+        return p + t * (v + t * (a / 2 + t * (j / 6))), v + t * (a + t * (j / 2)), a + t * j
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """A trajectory of one coordinate, from 0 to 1."""
+
+    cubics: Cubics
+
+    @property
+    def duration(self) -> float:
+        """Seconds from 0 to 1."""
+        return self.cubics.duration
 
     def at(self, times: Array | float) -> tuple[Array, Array, Array]:
         """s, ṡ and s̈ at each of the times (...), those of the ends before and after."""
-        flat = np.clip(np.ravel(times), 0.0, self.duration)
-        samples = np.array([self._trajectory.at_time(t)[:3] for t in flat.tolist()])
-        s, rate, pull = np.moveaxis(samples.reshape(*np.shape(times), 3), -1, 0)
-        return np.clip(s, 0.0, 1.0), rate, pull
+        s, rate, pull = self.cubics.at(times)
+        return np.clip(s[..., 0], 0.0, 1.0), rate[..., 0], pull[..., 0]
 
 
 def profile_within(bounds: Sequence[float], slowdown: float = 1.0) -> Profile:
@@ -46,11 +85,22 @@ def profile_within(bounds: Sequence[float], slowdown: float = 1.0) -> Profile:
     names = ('velocity', 'acceleration', 'jerk')
     for power, (name, bound) in enumerate(zip(names, bounds, strict=True), start=1):
         setattr(request, f'max_{name}', [min(bound, FASTEST) / slowdown**power])
-    trajectory = ruckig.Trajectory(1)
-    result = ruckig.Ruckig(1).calculate(request, trajectory)
+    return Profile(_calculated(request, 1))
+
+
+def _calculated(request: ruckig.InputParameter, coordinates: int) -> Cubics:
+    """The trajectory of so many coordinates; Refused where ruckig finds none, or fails."""
+    trajectory = ruckig.Trajectory(coordinates)
+    try:
+        result = ruckig.Ruckig(coordinates).calculate(request, trajectory)
+    except ValueError as error:  # of a result without a name in Python: -101, of the duration
+        raise Refused('no jerk-limited move was found: it would take too long') from error
+    except ruckig.RuckigError as error:
+        text = ' '.join(str(error).split()).removeprefix('[ruckig] ').partition(' input:')[0]
+        raise Refused(f'no jerk-limited move was found (ruckig: {text})') from error
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise Refused(f'no jerk-limited profile was found ({result.name})')
-    return Profile(float(trajectory.duration), trajectory)
+        raise Refused(f'no jerk-limited move was found ({result.name})')
+    return Cubics.of(trajectory)
 
 
 def coordinates(state: MotionState, reference: Array) -> tuple[Array, Array, Array]:
@@ -135,11 +185,15 @@ def plan_line_move(
 
 @dataclass(frozen=True, eq=False)
 class MoveInMotion(PosePlan):
-    """A ruckig trajectory in the coordinates about the goal's orientation."""
+    """A trajectory in the coordinates about the goal's orientation."""
 
     goal: Pose
-    duration: float
-    _trajectory: Any
+    cubics: Cubics
+
+    @property
+    def duration(self) -> float:
+        """Seconds until rest at the goal."""
+        return self.cubics.duration
 
     @property
     def checked_duration(self) -> float:
@@ -148,9 +202,7 @@ class MoveInMotion(PosePlan):
 
     def at(self, times: Array | float) -> MotionState:
         """Position, velocity and acceleration of the coordinates, turned into a state."""
-        flat = np.clip(np.ravel(times), 0.0, self.duration)
-        samples = np.array([self._trajectory.at_time(t)[:3] for t in flat.tolist()])
-        x, v, a = np.moveaxis(samples.reshape(*np.shape(times), 3, 6), -2, 0)
+        x, v, a = self.cubics.at(times)
         return state_of(x, v, a, self.goal.rotation)
 
     def where(self, time: float) -> str:
@@ -166,20 +218,26 @@ def plan_move_in_motion(
     slowdown k ≥ 1 divides speed by k, acceleration by k² and jerk by k³. Raises Refused where
     ruckig finds none.
     """
-    request = ruckig.InputParameter(6)
-    x, v, a = coordinates(start, goal.rotation)
-    request.current_position, request.current_velocity = x.tolist(), v.tolist()
-    request.current_acceleration = a.tolist()
-    request.target_position = [*goal.position.tolist(), 0.0, 0.0, 0.0]
-    for name, power in (('speed', 1), ('acceleration', 2), ('jerk', 3)):
-        bounds = [getattr(limits.linear, name) / slowdown**power] * 3
-        bounds += [getattr(limits.angular, name) / slowdown**power] * 3
-        if name == 'speed':
-            bounds = np.minimum(bounds, limits.axis_speeds / slowdown).tolist()
-        ruckig_name = 'velocity' if name == 'speed' else name
-        setattr(request, f'max_{ruckig_name}', bounds)
-    trajectory = ruckig.Trajectory(6)
-    result = ruckig.Ruckig(6).calculate(request, trajectory)
-    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise Refused(f'no jerk-limited move was found ({result.name})')
-    return MoveInMotion(goal, float(trajectory.duration), trajectory)
+    bounds = [
+        np.repeat(
+            [getattr(part, name) / slowdown**power for part in (limits.linear, limits.angular)], 3
+        )
+        for power, name in enumerate(('speed', 'acceleration', 'jerk'), start=1)
+    ]
+    bounds[0] = np.minimum(bounds[0], limits.axis_speeds / slowdown)
+    target = np.concatenate([goal.position, np.zeros(3)])
+    return MoveInMotion(goal, quickest(coordinates(start, goal.rotation), target, bounds))
+
+
+def quickest(start: tuple[Array, Array, Array], target: Array, bounds: Sequence[Array]) -> Cubics:
+    """The move from coordinates with two derivatives, each (n,), to rest at a target.
+
+    bounds: of speed, acceleration and jerk, (n,) each. Raises Refused where there is none.
+    """
+    request = ruckig.InputParameter(len(target))
+    for name, values in zip(('position', 'velocity', 'acceleration'), start, strict=True):
+        setattr(request, f'current_{name}', values.tolist())
+    request.target_position = target.tolist()
+    for name, most in zip(('velocity', 'acceleration', 'jerk'), bounds, strict=True):
+        setattr(request, f'max_{name}', np.minimum(most, FASTEST).tolist())
+    return _calculated(request, len(target))

@@ -5,7 +5,6 @@ a button, or of an axis that is moved far enough from its rest.
 """
 
 import dataclasses
-import difflib
 import math
 from collections import Counter
 from collections.abc import Sequence
@@ -14,7 +13,7 @@ from typing import Literal, get_args
 
 from manipulator.config import quantity
 from manipulator.errors import ConfigError
-from manipulator.formatting import shown
+from manipulator.formatting import not_one_of
 from manipulator.teleop.modes import MODES
 
 AT_REST = 0.2
@@ -150,11 +149,7 @@ class Gamepad:
         problems = [
             f'{name}: empty' for name in ('sticks', 'modes', 'frames') if not getattr(self, name)
         ]
-        for mode in self.modes:
-            if mode not in MODES:
-                near = difflib.get_close_matches(mode, MODES, n=1)
-                hint = f', did you mean {near[0]!r}?' if near else ''
-                problems.append(f'modes: {shown(mode)} is not one of {list(MODES)}{hint}')
+        problems += [f'modes: {not_one_of(m, MODES)}' for m in self.modes if m not in MODES]
         if self.shift is None and any(stick.layer == 'shift' for stick in self.sticks):
             problems.append('shift: missing, but a stick has the layer shift')
         taken = Counter((p.button, p.axis, p.beyond > p.rest) for p in self.presses.values())

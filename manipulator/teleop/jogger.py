@@ -13,6 +13,7 @@ import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput, Refused
+from manipulator.formatting import not_one_of
 from manipulator.frames import Frames
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
@@ -30,7 +31,7 @@ AXES: dict[str, Callable[[Frames, Pose], Array | None]] = {
 def check_axes(frame: str) -> None:
     """Raises Refused, naming the frames that there are, for any other."""
     if frame not in AXES:
-        raise Refused(f'frame {frame[:80]!r} is not one of {list(AXES)[1:]}')
+        raise Refused(f'frame {not_one_of(frame, list(AXES)[1:])}')
 
 
 def in_work_axes(command: Array, frame: str, pose: Pose, frames: Frames) -> Array:

@@ -3,7 +3,6 @@
 The tool is kept parallel to a coordinate axis of the base, or points at one point in space.
 """
 
-import difflib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.errors import Refused
+from manipulator.formatting import not_one_of
 from manipulator.pose import Pose
 from manipulator.teleop.jog_modes import (
     Feedback,
@@ -132,9 +132,7 @@ def jog_mode(name: str, feedback: Feedback, point: Array | None = None) -> JogMo
 def check_name(name: str) -> None:
     """Raises Refused for an unknown name, with the nearest known one."""
     if name not in MODES:
-        near = difflib.get_close_matches(name[:80], MODES, n=1)
-        hint = f', did you mean {near[0]!r}?' if near else ''
-        raise Refused(f'jog mode {name[:80]!r} is not one of {list(MODES)}{hint}')
+        raise Refused(f'jog mode {not_one_of(name, MODES)}')
 
 
 def _look_at(feedback: Feedback, point: Array | None) -> JogMode:

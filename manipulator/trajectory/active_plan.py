@@ -9,11 +9,12 @@ from functools import cached_property
 from manipulator.errors import Refused
 from manipulator.planning.cycle import Cycle
 from manipulator.planning.joint_move import JointMove
+from manipulator.planning.joint_stream import JointMoveInMotion
 from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
 from manipulator.planning.point_to_point import LineMove, MoveInMotion
-from manipulator.planning.stream import StreamMove
+from manipulator.planning.stream_move import StreamMove
 from manipulator.states import MotionMode
 
 MODES: dict[type, MotionMode] = {
@@ -22,6 +23,7 @@ MODES: dict[type, MotionMode] = {
     MoveInMotion: MotionMode.MOVE,
     StreamMove: MotionMode.MOVE,
     JointMove: MotionMode.MOVE,
+    JointMoveInMotion: MotionMode.MOVE,
     Cycle: MotionMode.CYCLE,
     TimedPath: MotionMode.PATH,
     JointTrajectory: MotionMode.PATH,

@@ -42,7 +42,8 @@ class ClosedLoop:
         """The pose to command for the reference `pose`; is_active: see `Correction.step`."""
         executor.awaits_arrival = True
         executor.slow_down(self._scaling(machine, executor, pose) if is_active else 1.0)
-        return self._correction.step(machine, pose, executor.joints, is_active)
+        is_stream = executor.is_streaming
+        return self._correction.step(machine, pose, executor.joints, is_active, is_stream)
 
     def _scaling(self, machine: Machine, executor: Executor, pose: Pose) -> float:
         """The scaling factor with which a path comes to a turn of a joint at CREEP."""

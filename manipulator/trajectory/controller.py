@@ -161,7 +161,7 @@ class MotionController:
         def act() -> None:
             supervisor = self.supervisor
             goal = joint_goal(supervisor.machine, supervisor.executor, named)
-            supervisor.executor.pursue(replace(goal, stamp=stamp))
+            supervisor.executor.pursue(replace(goal, stamp=stamp, received=now))
 
         self._early.take(act, refuse, now)
 
@@ -180,7 +180,7 @@ class MotionController:
         """As `home`, to where the servos are switched on and off."""
         machine = self.supervisor.machine
         if machine.park is None:
-            raise Refused('the machine file has no usable park position (section servos)')
+            raise Refused('no usable park position (park_deg or park_mm of section servos)')
         try:
             pose = machine.kinematics.forward(machine.park).pose
         except NoSolution as error:

@@ -107,14 +107,16 @@ class Correction:
         moving: Mask = rest > self._dead_band / 2 + SETTLED
         return moving
 
-    def step(self, machine: Machine, pose: Pose, joints: Array, is_active: bool) -> Pose:
+    def step(
+        self, machine: Machine, pose: Pose, joints: Array, is_active: bool, is_stream: bool = False
+    ) -> Pose:
         """The pose to command for the reference's pose and joints (n,) of this tick.
 
         The correction stays as it is while it is not active, and is cut where the command would
-        break a limit of the machine.
+        break a limit of the machine. is_stream: see `Reserve.note`.
         """
         self._references.append(joints)
-        self._reserve.note(pose, joints)
+        self._reserve.note(pose, joints, is_stream)
         self._play.move(joints)
         if is_active and self._is_new:
             self._learn()

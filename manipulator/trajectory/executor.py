@@ -15,9 +15,11 @@ from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.planning.cycle import Cycle
 from manipulator.planning.goal import Goal
+from manipulator.planning.joint_stream import JointMoveInMotion
 from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
+from manipulator.planning.stream_move import StreamMove
 from manipulator.planning.worker import InPlace, Worker
 from manipulator.pose import Pose
 from manipulator.states import MotionMode, MotionResult
@@ -121,6 +123,11 @@ class Executor:
         """Whether a path is executed that has no times of its own."""
         plan = self._active.plan
         return isinstance(plan, TimedPath) and not plan.is_stamped
+
+    @property
+    def is_streaming(self) -> bool:
+        """Whether a stream of goals is followed."""
+        return isinstance(self._active.plan, StreamMove | JointMoveInMotion)
 
     def slow_down(self, most: float) -> None:
         """Scales the active plan to `most` of its speed, from (0, 1], as fast as it may brake."""

@@ -14,10 +14,11 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import ManipulatorError, Refused, Unreachable
 from manipulator.machine import Machine
-from manipulator.planning.goal import Goal, OnUnreachable
+from manipulator.planning.goal import Goal, Motion, OnUnreachable
 from manipulator.planning.nearest_goal import NearestGoal
-from manipulator.planning.plan import MotionState, Plan
-from manipulator.planning.planner import Start, plan_goal
+from manipulator.planning.plan import Hold, MotionState, Plan
+from manipulator.planning.planner import plan_goal
+from manipulator.planning.start import Start
 from manipulator.planning.stream import Stream
 from manipulator.planning.worker import Effort, InPlace, Job, TooLong, Worker
 from manipulator.pose import Pose
@@ -31,6 +32,9 @@ TICK_POSES = 200
 
 NOTABLE = 5
 """Ticks of planning after which that is reported: most plans, and streams of goals, take less."""
+
+STEP = 1e-3
+"""Seconds, for differences of joints."""
 
 SAME_POSE = 1e-9
 """m and rad between the start of a plan and the pose that is held."""
@@ -82,7 +86,8 @@ class Planning:
     def __init__(self, machine: Machine, dt: float, worker: Worker) -> None:
         self._machine, self._dt, self._worker = machine, dt, worker
         self._quick = InPlace(TICK_POSES) if machine.kinematics.is_explicit else None
-        self._stream = Stream(0.0 if self._quick else LEADS[0] * dt)
+        self._stream = Stream(0.0 if self._quick else LEADS[0] * dt, Pose.twist_to)
+        self._joint_stream = Stream(LEADS[0] * dt, _change)
         self._nearest = NearestGoal(machine)
         self._now = 0.0
         self._newest: Goal | None = None
@@ -105,7 +110,15 @@ class Planning:
         """Plans a goal at the next `step`; the machine is at `pose`, with joints (n,)."""
         if goal.on_unreachable is OnUnreachable.NEAREST:
             goal = self._nearest.reached(goal, pose, joints)
-        self._newest = self._stream.continued(goal, self._now)
+        self._newest = self._continued(goal)
+
+    def _continued(self, goal: Goal) -> Goal:
+        """The goal, with its flow where it continues a stream of poses, or of joints."""
+        is_simple = goal.then is None or isinstance(goal.then, Goal)
+        if is_simple and goal.motion is Motion.JOINT and goal.joints is not None:
+            return self._joint_stream.continued(goal, goal.joints, self._now)
+        is_of_poses = is_simple and goal.motion is not Motion.JOINT and goal.joints is None
+        return self._stream.continued(goal, goal.pose if is_of_poses else None, self._now)
 
     def cancel(self) -> None:
         """Gives up all plans that have not begun."""
@@ -175,8 +188,13 @@ class Planning:
         """Runs in the worker, with the inverse kinematics up to the plan's start."""
         effort.spend(len(ahead.times))
         joints = ahead.joints_at_end(self._machine)
-        start = Start(ahead.state, joints, self._dt, ahead.at)
+        before = ahead.joints_before_end(self._machine, joints, self._dt)
+        start = Start(ahead.state, joints, self._dt, ahead.at, ahead.rates_at_end, before)
         return plan_goal(self._machine, start, goal, effort)
+
+
+def _change(before: Array, after: Array) -> Array:
+    return after - before
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,6 +209,29 @@ class _Ahead:
     state: MotionState
     joints: Array
     at: float
+
+    @property
+    def rates_at_end(self) -> tuple[Array, Array] | None:
+        """Rates of the joints, with their derivatives (n,); None for a plan of poses."""
+        middle = float(np.clip(self.times[-1], STEP, max(self.plan.duration - STEP, STEP)))
+        rows = self.plan.joints_at(middle + STEP * np.array([-1.0, 0.0, 1.0]))
+        if rows is None:
+            return None
+        pulls = (rows[2] - 2.0 * rows[1] + rows[0]) / STEP**2
+        rates = (rows[2] - rows[0]) / (2.0 * STEP) + (self.times[-1] - middle) * pulls
+        return rates, pulls
+
+    def joints_before_end(self, machine: Machine, joints: Array, dt: float) -> Array | None:
+        """The joints (n,) a tick before those at the end; None where another plan had them."""
+        if isinstance(self.plan, Hold):
+            return joints
+        time = float(self.times[-1]) - dt
+        if time < 0.0:
+            return None
+        rows = self.plan.joints_at(np.array([time]))
+        if rows is None:
+            rows = machine.kinematics.inverse_along(self.plan.at(np.array([time])).pose, joints)
+        return rows[0] if bool(np.isfinite(rows).all()) else None
 
     def joints_at_end(self, machine: Machine) -> Array:
         """The joints (n,) at the last of the times."""

@@ -1,4 +1,7 @@
-"""What the motion of a reference leaves of the speed and acceleration limits, for a correction."""
+"""What the motion of a reference leaves of the speed and acceleration limits, for a correction.
+
+A stream of goals is as smooth as its user makes it: a correction adds little to its acceleration.
+"""
 
 import numpy as np
 
@@ -9,6 +12,12 @@ from manipulator.pose import Pose
 SPEED_SHARE = 0.4
 """Of the speed that is left, what a correction may use: it can then brake as fast as that shrinks
 while a plan speeds up."""
+
+ADDED = 0.2
+"""Of the share of the acceleration limits that a stream uses: what a correction may use."""
+
+REMEMBERED = 2.0
+"""Seconds in which the acceleration of a stream is forgotten."""
 
 TINY = 1e-12
 
@@ -22,9 +31,11 @@ class Reserve:
         self._joints: Array = np.zeros(0)
         self._speed: Array = np.zeros(0)
         self._acceleration: Array = np.zeros(0)
+        self._most: Array = np.zeros(2)
+        self._is_stream = False
 
-    def note(self, pose: Pose, joints: Array) -> None:
-        """Takes the reference of this tick."""
+    def note(self, pose: Pose, joints: Array, is_stream: bool) -> None:
+        """Takes the reference of this tick; is_stream: it follows a stream of goals."""
         speed = np.zeros(6 + len(joints))
         if self._pose is not None:
             moved = np.concatenate([self._pose.twist_to(pose), joints - self._joints])
@@ -32,6 +43,9 @@ class Reserve:
         before = self._speed if len(self._speed) else speed
         self._acceleration = (speed - before) / self._dt
         self._pose, self._joints, self._speed = pose, joints, speed
+        kept = (1.0 - self._dt / REMEMBERED) * self._most
+        self._most = np.maximum(kept, _sizes(self._acceleration[:6], joints)[:2])
+        self._is_stream = is_stream
 
     def speed_share(
         self, motion: MotionLimits, joints: Array, twist: Array, fastest: float
@@ -61,6 +75,9 @@ class Reserve:
             ]
         )
         left: Array = np.maximum(limits - _sizes(used[:6], used[6:]), 0.0)
+        if kind == 'acceleration' and self._is_stream:
+            share = ADDED * float((self._most / limits[:2]).max())
+            left = np.minimum(left, max(share, TINY) * limits)
         return left
 
 

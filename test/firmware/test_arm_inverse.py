@@ -1,11 +1,11 @@
 """arm_inverse.c on this computer: both closed forms give the joints back."""
 
 import ctypes
+from functools import partial
 
 import numpy as np
 import pytest
 
-from bridge.fake.program import program
 from hexarm.machines import load
 
 FLOATS = ctypes.POINTER(ctypes.c_float)
@@ -18,8 +18,13 @@ class Lengths(ctypes.Structure):
     _fields_ = (('upper', ctypes.c_float), ('fore', ctypes.c_float))
 
 
-def solved(way, centre, rotation):
-    call = getattr(program(), f'arm_inverse_{way}')
+@pytest.fixture
+def solved(steps):
+    return partial(solution, steps)
+
+
+def solution(steps, way, centre, rotation):
+    call = getattr(steps, f'arm_inverse_{way}')
     call.restype = ctypes.c_bool
     joints = np.zeros(6, np.float32)
     arrays = [np.ascontiguousarray(np.ravel(a), np.float32) for a in (centre, rotation)]
@@ -28,7 +33,7 @@ def solved(way, centre, rotation):
 
 
 @pytest.mark.parametrize('way', WAYS)
-def test_joints_of_the_branch_come_back(way):
+def test_joints_of_the_branch_come_back(solved, way):
     """The shipped arm has L2 = L3 = 0.4 m; q3, q5 > 0, the wrist off the axis of joint 1."""
     chain = load('arm_6r').kinematics.chain
     joints = np.random.default_rng(5).uniform(
@@ -42,5 +47,5 @@ def test_joints_of_the_branch_come_back(way):
 
 @pytest.mark.parametrize('way', WAYS)
 @pytest.mark.parametrize('centre', [(0.9, 0.0, 0.0), (0.0, 0.0, 0.5)])
-def test_a_centre_beyond_the_arm_or_on_its_axis_is_refused(way, centre):
+def test_a_centre_beyond_the_arm_or_on_its_axis_is_refused(solved, way, centre):
     assert solved(way, centre, np.eye(3)) is None

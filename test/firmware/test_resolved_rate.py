@@ -1,11 +1,11 @@
-"""resolved_rate.c on this computer against the Python formulas of the same paper."""
+"""The arm steps of firmware/bench on this computer, against the formulas in double precision."""
 
 import ctypes
 
 import numpy as np
 import pytest
 
-from bridge.fake.program import program
+from hexarm.machines import load
 from hexarm.papers.paper_arm import PaperArm, projection_rates, projections
 
 ARM = PaperArm(0.3, 0.4, 0.35)
@@ -17,8 +17,8 @@ class Lengths(ctypes.Structure):
 
 
 @pytest.fixture(scope='module')
-def step():
-    library = program()
+def step(steps):
+    library = steps
     library.resolved_rate_step.restype = ctypes.c_bool
 
     def call(joints, velocity, dt):
@@ -71,3 +71,18 @@ def test_rates_are_those_of_the_python_formulas(step):
 @pytest.mark.parametrize('q', [(0, 0.3, 0, 0, 1, 0), (0, 0.5, 1.2, 0.3, 0, 0.2)])
 def test_singular_joints_are_refused_and_stay(step, q):
     assert step(q, (0.1, 0, 0), 0.02) is None
+
+
+def test_the_kernel_in_float_makes_the_damped_step(steps):
+    arm, dt = load('arm_6r').kinematics, 0.02
+    twist = np.array([0.1, -0.05, 0.02, 0.2, -0.1, 0.3])
+    by_length = np.array([1 / arm.characteristic_length] * 3 + [1.0] * 3)
+    for q in regular_joints(50):
+        jacobian = by_length[:, None] * arm.chain.jacobian(q)
+        normal = jacobian.T @ jacobian + 1e-4 * np.eye(6)
+        expected = q + dt * np.linalg.solve(normal, jacobian.T @ (by_length * twist))
+        chain, moved, wanted = (np.float32(a) for a in (arm.chain.numbers, q, twist))
+        pointers = [a.ctypes.data_as(FLOATS) for a in (chain, moved, wanted)]
+        size, time = ctypes.c_float(arm.characteristic_length), ctypes.c_float(dt)
+        steps.kernel_step(pointers[0], size, *pointers[1:], time)
+        assert moved == pytest.approx(expected, abs=1e-5)

@@ -84,7 +84,7 @@ def test_a_table_and_a_cycle_are_played_and_end_enabled(enabled):
 
 def test_refusals_report_why(enabled):
     enabled.upload(swing(rows=600), 'the table has more rows than the board can hold')
-    enabled.upload(JointTrajectory(joint_names=['elbow']), "joints are ['elbow'], needs")
+    enabled.upload(JointTrajectory(joint_names=['elbow']), 'joints are elbow, needs')
     with pytest.raises(Refused, match='no such program'):
         enabled.switch('serial_bridge/play_table', True)
     enabled.switch('serial_bridge/enable', False)

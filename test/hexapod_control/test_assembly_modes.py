@@ -205,7 +205,7 @@ def test_lengths_at_a_singular_pose_give_a_double_root():
     base, platform = circle(1.0, 50), circle(0.5, 10)
     quarter_turn = Pose(np.array([0.0, 0.0, 1.0]), so3.exp([0, 0, np.pi / 2]))
     modes = assembly_modes(base, platform, lengths_at(base, platform, quarter_turn))
-    assert modes.has_double_root
+    assert min(modes.sigma_min) < 1e-5
     assert min(distance(mode, quarter_turn) for mode in modes.poses) < 1e-4
 
 
@@ -214,7 +214,6 @@ def test_legs_that_cannot_close_have_no_modes():
     modes = assembly_modes(base, platform, [9.0, 1.0, 1.0, 1.0, 1.0, 1.0])
     assert modes.poses == ()
     assert modes.complex_count == 40
-    assert not modes.has_double_root
 
 
 @pytest.mark.parametrize('degrees', [10, 20, 30, 50])

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
+from euler import from_zxz
 
-from hexapod_control.leg_motion import from_zxz, to_zxz
+from hexapod_control.leg_motion import to_zxz
 from manipulator import rotation as so3
 
 

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
+from euler import from_zxz
 
-from hexapod_control.leg_motion import LegMotion, from_zxz, leg_motion, level_pose, paper_motion
+from hexapod_control.leg_motion import LegMotion, leg_motion, level_pose, paper_motion
 from hexapod_control.linear_geometry import LinearGeometry, PlatesConfig
 from hexarm.papers.plane_method import PlaneMethod
 from manipulator import rotation as so3

@@ -66,7 +66,7 @@ def test_a_strut_of_400_mm_stands_back_by_the_root_of_its_square_less_the_height
 def test_struts_keep_their_length_over_the_whole_workspace(rails):
     """From the numbers of the file alone."""
     g = {k: np.array(v) for k, v in parse_yaml(Path(RAILS).read_text())['geometry'].items()}
-    poses = sample(rails, 300, np.random.default_rng(1), 0.2)
+    poses = sample(rails, 300, np.random.default_rng(1))
     for pose, joints in zip(poses, rails.kinematics.inverse(poses), strict=True):
         lower = g['rail_points_mm'] + 1e3 * joints[:, None] * g['rail_directions']
         upper = 1e3 * pose.transform(1e-3 * g['platform_joints_mm'])
@@ -106,7 +106,7 @@ def test_a_strut_square_to_its_rail_has_no_rates():
 
 def test_joint_rates_are_how_carriages_follow_the_pose(rails):
     kinematics, step = rails.kinematics, 1e-7
-    poses = sample(rails, 50, np.random.default_rng(3), 0.2)
+    poses = sample(rails, 50, np.random.default_rng(3))
     rates = kinematics.joint_rates(poses, kinematics.inverse(poses))
     for axis, twist in enumerate(np.eye(6) * step):
         ahead, behind = (kinematics.inverse(poses.moved(t)) for t in (twist, -twist))

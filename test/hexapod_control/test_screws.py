@@ -38,7 +38,7 @@ def screws():
 
 @pytest.fixture(scope='module')
 def poses(screws):
-    return sample(screws, 100, np.random.default_rng(1), 0.05)
+    return sample(screws, 100, np.random.default_rng(1))
 
 
 def without(kinematics, **changes):

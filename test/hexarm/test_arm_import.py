@@ -9,7 +9,7 @@ import pytest
 from arm_control.urdf_chain import arm_of
 from arm_control.urdf_file import read_urdf, with_right_angles
 from hexarm import machines
-from hexarm.arm_import import Wishes, machine_text
+from hexarm.arm_import import ImportOptions, machine_text
 from hexarm.cli.main import main
 from hexarm.machine_check import report_of
 from hexarm.simulation.arm_model import arm_links
@@ -110,9 +110,9 @@ def tool_of(text, base, tip, angles):
     return frame
 
 
-def imported(text, base=None, tip=None, wishes=Wishes()):  # noqa: B008 (frozen)
+def imported(text, base=None, tip=None, options=ImportOptions()):  # noqa: B008 (frozen)
     source = read_urdf(text)
-    return machine_text(arm_of(source, base, tip), source.name, 'arm.urdf', wishes).text
+    return machine_text(arm_of(source, base, tip), source.name, 'arm.urdf', options).text
 
 
 def saved(tmp_path, text, name='arm.yaml'):
@@ -212,7 +212,7 @@ def test_what_the_file_does_not_say_is_assumed_and_marked():
     assert made.count('# assumed: range, speed, acceleration') == 6
     assert 'home_deg' in made
     assert 'No dynamics: the file has no mass' in made
-    told = imported(plain(), wishes=Wishes([0, 20, 40, 0, 30, 0], 500.0))
+    told = imported(plain(), options=ImportOptions([0, 20, 40, 0, 30, 0], 500.0))
     assert 'home_deg: [0.0, 20.0, 40.0, 0.0, 30.0, 0.0]\n' in told
     assert 'acceleration_deg_s2: 500.0}\n' in told
 
@@ -223,6 +223,13 @@ def test_home_is_within_the_ranges_and_not_near_a_singular_posture(tmp_path):
         file = saved(tmp_path, imported(random_urdf(rng), tip='tip'), f'{k}.yaml')
         kinematics = machines.load(file).kinematics
         assert kinematics.sigma_min(kinematics.home, kinematics.rest) > 0.08
+
+
+def test_home_is_no_joint_stop(tmp_path):
+    text = plain().replace('lower="-2" upper="2.5"', 'lower="0" upper="3"')
+    kinematics = machines.load(saved(tmp_path, imported(text))).kinematics
+    stops = np.array([kinematics.limits.low, kinematics.limits.high])
+    assert np.abs(kinematics.rest - stops).min() > np.radians(9.0)
 
 
 @pytest.mark.parametrize('name', ['yes', '1.5', 'null', 'a-b', 'left/elbow'])
@@ -253,6 +260,8 @@ def test_of_several_tips_tool0_is_taken_and_without_one_all_are_named():
     ]
 
 
+AHEAD = ['--xyz', '0.15', '0', '0.4']
+PROPERTY = '<xacro:property xmlns:xacro="http://www.ros.org/wiki/xacro" name="width" value="0.2"/>'
 REFUSED = {
     'loop': (plain(joint('back', 'link_4', 'link_2', 'fixed')), 'below two joints, .*: a loop'),
     'circle': (
@@ -267,9 +276,15 @@ REFUSED = {
         plain().replace('effort="7"/>', 'effort="7"/><mimic joint="joint_1"/>', 1),
         "joint 'joint_0' mimics 'joint_1', an arm has a drive for each",
     ),
+    'mimic further out': (
+        plain()
+        .replace('effort="7"/>', 'effort="7"/><mimic joint="joint_1"/>', 4)
+        .replace('<mimic joint="joint_1"/>', '', 3),
+        "joint 'joint_3' mimics 'joint_1', an arm has a drive for each",
+    ),
     'seven': (
         plain(joint('jaw', 'link_7', 'left', 'prismatic'), links=['left'], count=7),
-        "to tip 'left'|joint 'jaw' is prismatic",
+        "to tip 'link_7': 7 axes",
     ),
     'seven axes': (
         plain(count=7),
@@ -318,12 +333,22 @@ REFUSED = {
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="x"/></robot>',
         'is xacro, needs plain URDF: run  xacro FILE',
     ),
+    'xacro property': (plain(links=[PROPERTY]).replace('"2.5"', '"${width}"'), 'is xacro, needs'),
+    'sliding wrist': (
+        plain(
+            joint('slide', 'link_4', 'end', 'prismatic'),
+            joint('last', 'end', 'hand'),
+            links=['end', 'hand'],
+            count=4,
+        ),
+        "joint 'slide' is prismatic, an arm has joints that turn",
+    ),
     'entities': ('<!DOCTYPE r [<!ENTITY a "aaaa">]><robot name="&a;"/>', 'has a document type'),
     'other': ('<sdf/>', "its root is 'sdf', needs <robot>"),
     'broken': ('<robot>', 'is not XML'),
     'huge': ('<robot>' + ' ' * 5_000_001 + '</robot>', 'at most 5000000 are read'),
     'links': (robot([f'l{i}' for i in range(2001)], []), '2001 links, at most 2000'),
-    'empty': ('<robot/>', 'the base is not clear'),
+    'empty': ('<robot/>', 'there is no link'),
 }
 
 
@@ -333,6 +358,32 @@ def test_what_is_no_arm_is_refused_by_name(fault):
     with pytest.raises(ConfigError, match=said) as caught:
         arm_of(read_urdf(text))
     assert len(str(caught.value)) < 1000
+
+
+def test_an_arm_of_endless_joints_has_no_margins_and_its_answers_are_json(tmp_path, capsys):
+    def strict(constant):
+        raise AssertionError(constant)
+
+    file = saved(tmp_path, imported(plain(kind='continuous')))
+    for words, limits in (
+        (['check', file], 'smallest_margins'),
+        (['reach', file, *AHEAD], 'limits'),
+    ):
+        assert main([*words, '--json']) == 0
+        assert json.loads(capsys.readouterr().out, parse_constant=strict)[limits] == []
+        assert main(words) == 0
+        assert 'inf' not in capsys.readouterr().out
+
+
+def test_a_xacro_property_that_nothing_uses_does_not_matter():
+    assert arm_of(read_urdf(plain(links=[PROPERTY]))).tip == 'link_6'
+
+
+def test_an_arm_ends_before_the_joint_of_a_gripper_that_its_other_fingers_mimic():
+    knuckle = joint('knuckle', 'link_6', 'left')
+    mimic = joint('f', 'link_6', 'right', rest='<mimic joint="knuckle"/>')
+    text = plain(knuckle, mimic, links=['left', 'right'])
+    assert arm_of(read_urdf(text)).tip == 'link_6'
 
 
 def test_an_arm_ends_at_what_carries_its_fingers():

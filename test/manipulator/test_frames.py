@@ -7,7 +7,8 @@ from manipulator.errors import InvalidInput, LimitViolated
 from manipulator.framed_machine import in_frames
 from manipulator.frames import Frames, FramesConfig
 from manipulator.planning.plan import MotionState
-from manipulator.planning.planner import Start, plan_to
+from manipulator.planning.planner import plan_to
+from manipulator.planning.start import Start
 from manipulator.pose import Pose
 
 MACHINE = load('robocake')

@@ -1,6 +1,6 @@
 import pytest
 
-from manipulator.formatting import counted, decimals, length, reason, told_apart
+from manipulator.formatting import counted, decimals, length, not_one_of, plain, reason, told_apart
 
 
 @pytest.mark.parametrize(
@@ -21,6 +21,7 @@ def test_lengths_are_reported_in_the_unit_that_fits(metres, said):
 
 
 def test_no_length_is_written_with_a_power_of_ten():
+    assert plain(60000.0, 2) == '60000'
     assert length(45264.3, 3) == '45300 m'
     assert length(1.234e-9, 3) == '0.00000123 mm'
 
@@ -39,7 +40,7 @@ def test_files_that_cannot_be_read_are_reported_without_error_numbers(tmp_path):
     (tmp_path / 'picture').write_bytes(b'a\xff')
     with pytest.raises(UnicodeDecodeError) as binary:
         (tmp_path / 'picture').read_text(encoding='utf-8')
-    assert reason(binary.value) == 'it is no text (byte 1)'
+    assert reason(binary.value) == 'it is no text in UTF-8 (byte 1)'
     assert reason(ValueError('not a number')) == 'not a number'
 
 
@@ -57,3 +58,11 @@ def test_small_numbers_get_the_decimals_that_show_them():
         4,
         4,
     ]
+
+
+def test_a_word_that_is_none_of_a_few_is_told_them_and_the_nearest():
+    known = {'free': 0, 'parallel': 1}
+    assert not_one_of('paralel', known) == (
+        "'paralel' is not one of free, parallel, did you mean 'parallel'?"
+    )
+    assert not_one_of(7, known) == '7 is not one of free, parallel'

@@ -37,12 +37,16 @@ class Commanded:
         rise = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
         return self.amplitude * rise * np.sin(2 * np.pi * self.frequency * np.asarray(times))
 
-    def stream(self, seconds, rate, late=0.0):
-        """Goals, each up to `late` periods later than it should be; its stamp is when it is."""
+    def stream(self, seconds, rate, late=0.0, is_even=False):
+        """Goals, each sent up to `late` periods later than it should be, which its stamp says.
+
+        is_even: it is nevertheless the pose of when it should have been sent.
+        """
         rng, count = np.random.default_rng(1), 0
         while self.world.now < self.begin + seconds:
             now = self.world.now - self.begin
-            self.world.send_goal(self.home.moved(self.sine(now) * np.eye(6)[self.axis]))
+            at = self.sine(count / rate if is_even else now)
+            self.world.send_goal(self.home.moved(at * np.eye(6)[self.axis]))
             count += 1
             due = (count + late * rng.uniform()) / rate
             self.world.run(max(due - now, 1e-3))
@@ -101,6 +105,41 @@ def test_a_stream_without_stamps_is_followed_as_smoothly_however_late_its_goals_
     assert commanded.distance(0.04) < 0.06 * 0.005
 
 
+@pytest.mark.parametrize('is_even', [False, True])
+def test_a_stream_stays_smooth_though_goals_are_lost_and_stamps_are_not_exact(world, is_even):
+    rng, link = np.random.default_rng(2), world.links['goals']
+    link.loses = lambda: rng.uniform() < 0.04
+    commanded = Commanded(world, 0, 0.005, 0.5)
+    commanded.stream(3.2, 60.0, 0.3, is_even)
+    assert np.abs(commanded.accelerations).max() < SMOOTH * 0.005 * np.pi**2
+    assert commanded.distance(0.04) < 0.06 * 0.005
+
+
+def test_the_play_of_measured_joints_is_taken_up_as_smoothly(make_world):
+    world = make_world('arm_6r_stepper', np.radians(2.0))
+    commanded = Commanded(world, 2, 0.03, 0.5)
+    commanded.stream(3.2, 60.0)
+    assert np.abs(commanded.accelerations).max() < SMOOTH * 0.03 * np.pi**2
+
+
+def test_a_circle_near_the_limits_is_followed_as_smoothly_from_its_beginning(make_world):
+    world, radius = make_world('arm_6r'), 0.028
+    commanded = Commanded(world, 0, 0.0, 0.5)
+
+    def offset(time):
+        share, angle = min(time, 1.0), np.pi * time
+        rise = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+        return radius * rise * np.array([np.sin(angle), 1.0 - np.cos(angle), 0, 0, 0, 0])
+
+    while world.now < commanded.begin + 2.5:
+        world.send_goal(commanded.home.moved(offset(world.now - commanded.begin)))
+        world.run(1 / 60)
+    rows = np.array([offset(k * DT)[:3] for k in range(250)])
+    ideal = np.linalg.norm(np.diff(rows, 2, axis=0), axis=1).max() / DT**2
+    changes = np.diff(commanded.twists[:, :3], axis=0) / DT
+    assert np.linalg.norm(changes, axis=1).max() < SMOOTH * ideal
+
+
 @pytest.mark.parametrize('name', ['robocake', 'arm_6r'])
 def test_a_stream_that_ends_in_motion_is_reached_within_the_limits(make_world, name):
     world = make_world(name)
@@ -125,3 +164,32 @@ def test_a_stream_that_is_too_fast_is_pursued_within_the_limits(world):
     assert np.linalg.norm(commanded.twists[:, :3], axis=1).max() <= 1.01 * motion.linear.speed
     assert np.linalg.norm(changes[:, :3], axis=1).max() <= 1.01 * motion.linear.acceleration
     assert np.abs(commanded.accelerations).max() > 0.5 * motion.linear.acceleration
+
+
+@pytest.mark.parametrize('name', ['robocake', 'ur5'])
+def test_a_stream_of_joint_goals_is_followed_as_smoothly(make_world, name):
+    world = make_world(name)
+    begin, rows, times = world.now, [], []
+    names, home = world.machine.kinematics.joint_names, world.joints
+    send = world.controller._setpoints.send
+
+    def keep(stamp, pose):
+        rows.append(world.controller.supervisor.executor.joints)
+        times.append(world.now - begin)
+        send(stamp, pose)
+
+    def offset(time):
+        share = np.clip(time, 0.0, 1.0)
+        return 0.05 * share**3 * (10.0 - 15.0 * share + 6.0 * share**2) * np.sin(np.pi * time)
+
+    world.controller._setpoints.send = keep
+    ways = np.array([1.0, 0.5, -0.5, 0.3, 0.6, -0.4])
+    while world.now < begin + 2.5:
+        joints = home + offset(world.now - begin) * ways
+        world.send_goal_joints(**dict(zip(names, joints, strict=True)))
+        world.run(1 / 60)
+    ideal = np.abs(np.diff(offset(np.arange(0.0, 2.5, DT)), 2)).max() / DT**2
+    changes = np.diff(np.array(rows), 2, axis=0) / DT**2
+    assert (np.abs(changes).max(axis=0) < SMOOTH * ideal * np.abs(ways)).all()
+    late = np.array(rows) - home - offset(np.array(times) - 0.1)[:, None] * ways
+    assert np.abs(late[60:]).max() < 0.1 * 0.05

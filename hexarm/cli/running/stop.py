@@ -72,8 +72,8 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     print(
         f'hexarm: STOP is sent, but not confirmed within {OBEYED_WITHIN:g} s: machine {state}'
-        f'{f": {reason}" if reason else ""}. The bridge repeats it until the board has obeyed; '
-        "switch off the servos' supply",
+        f'{f": {reason}" if reason else ""}. The bridge keeps it until it is cleared; if the '
+        "machine moves, switch off its drives' supply",
         file=sys.stderr,
     )
     return REFUSED

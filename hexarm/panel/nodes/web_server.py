@@ -38,9 +38,9 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from hexarm.panel import page_requests
-from hexarm.panel.joystick import Joystick, answer, parsed
+from hexarm.panel.joystick import Joystick
 from hexarm.panel.page_requests import Request as PageRequest
+from hexarm.panel.page_requests import answer, beat_of, request_of
 from manipulator.arrays import Array
 from manipulator.errors import InvalidInput, Refused
 from manipulator.formatting import shown
@@ -103,7 +103,7 @@ class JoystickSocket:
             self._joystick.stop()
 
     def _answer(self, page: int, text: str | bytes) -> str:
-        message = parsed(text)
+        message = beat_of(text)
         now = time.monotonic()
         with self._lock:
             if isinstance(message, int):
@@ -134,7 +134,7 @@ class ControlsSocket:
         try:
             await connection.send(self._machine)
             async for text in connection:
-                request = page_requests.parsed(text)
+                request = request_of(text)
                 if isinstance(request, PageRequest):
                     self._take(request)
                 elif self.texts[request]:

@@ -25,7 +25,7 @@ BUILT = Tolerances(5e-4, np.radians(1.0))
 @pytest.fixture(params=MACHINES, scope='module')
 def case(request):
     machine = load(request.param)
-    poses = sample(machine, 20, np.random.default_rng(3), machine.kinematics.characteristic_length)
+    poses = sample(machine, 20, np.random.default_rng(3))
     model = model_of(machine.kinematics, BUILT)
     errors = np.array([p.tolerance for p in model.parameters]) / 3
     values = errors * np.random.default_rng(4).standard_normal(len(errors))

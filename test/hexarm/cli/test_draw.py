@@ -1,6 +1,7 @@
 """`hexarm draw`: a machine at a pose, with what its measures are."""
 
 import json
+from itertools import combinations
 
 import pytest
 
@@ -25,11 +26,12 @@ def words(figure):
 @pytest.mark.parametrize(
     ('machine', 'measures'),
     [
-        ('robocake', {'R 96.67', 'R 76.15', '41.19', ' 17.5', ' 58'}),
-        ('stewart_6_6', {'R 100', 'R 50', '186.81', ' 190'}),
-        ('linear_rails', {'R 37.5', ' 150.4', '297.85'}),
-        ('ur5', {' 425', ' 392.3', '431.86'}),
+        ('robocake', {'R 96.67', 'R 76.15', '41.19', '17.5', '58'}),
+        ('stewart_6_6', {'R 100', 'R 50', '186.81', '190'}),
+        ('linear_rails', {'R 37.5', '150.4', '297.85'}),
+        ('ur5', {'425', '392.3', '431.86'}),
         ('stack_6_6', {'R 100', '568.42'}),
+        ('niryo_one', {'17.3', '7.3'}),
     ],
 )
 def test_picture_names_the_machines_measures(machine, measures, figures, tmp_path, capsys):
@@ -43,6 +45,8 @@ def test_picture_names_the_machines_measures(machine, measures, figures, tmp_pat
             x, y = dots.get_data()
             assert (x0 <= x.min() and x.max() <= x1) or dots.get_linewidth() < 1
             assert (y0 <= y.min() and y.max() <= y1) or dots.get_linewidth() < 1
+    boxes = [text.get_window_extent() for text in figures[0].axes[3].texts]
+    assert not any(a.overlaps(b) for a, b in combinations(boxes, 2))
     assert [path.name for path in tmp_path.iterdir()] == ['drawn.png']
 
 

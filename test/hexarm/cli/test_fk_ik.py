@@ -166,3 +166,11 @@ def test_near_selects_the_branch_and_the_turns(ask):
 def test_near_needs_a_number_for_each_joint(capsys):
     assert main(['ik', 'ur5', '--xyz', '0.4', '0', '0.4', '--near', '1', '2']) == 2
     assert '--near: 2 numbers, needs 6: joint_1, joint_2' in capsys.readouterr().err
+
+
+def test_an_arm_needs_no_search_and_reports_none(capsys):
+    assert main(['fk', 'ur5', *['0.5'] * 6]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split('  ')[0].split(' 0')[0] for line in lines[2:]] == ['singularity margin']
+    assert main(['fk', 'stewart_6_6', *LEGS]) == 0
+    assert 'iterations, residual' in capsys.readouterr().out

@@ -29,6 +29,17 @@ def test_help_is_a_sentence_and_an_example_that_is_understood(command, capsys):
     assert callable(parser_for(words).parse_args(words).run)
 
 
+INTERACTIVE = {'up', 'foxglove', 'new', 'calibrate'}
+"""They run, or ask; and what firmware-header prints is for a compiler."""
+
+
+@pytest.mark.parametrize('command', COMMANDS, ids=lambda command: command.name)
+def test_every_command_that_prints_data_prints_it_for_programs_too(command):
+    if command.name not in {*INTERACTIVE, 'firmware-header'}:
+        words = [*shlex.split(command.example), '--json']
+        assert parser_for(words).parse_args(words).json
+
+
 def test_no_module_of_a_subcommand_is_left_out_of_the_list():
     declared = {c.module.rpartition('.')[2] for c in COMMANDS}
     files = {p.stem for p in CLI.glob('*.py') if '\ndef add_parser(' in p.read_text()}

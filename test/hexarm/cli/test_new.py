@@ -12,6 +12,7 @@ from hexarm.cli.main import main
 from hexarm.machine_check import report_of
 from hexarm.machines import load
 from hexarm.new.questions import QUESTIONS, checked
+from hexarm.new.reading import SIZE, numbers
 from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError, InvalidInput
 
@@ -107,6 +108,48 @@ def test_reachys_head_comes_back_from_coordinates():
                                atol=1e-5)  # fmt: skip
 
 
+RAILS = {'kind': 'rail', 'stroke_mm': 100, 'cylinder_speed_mm_s': 100, 'joint_swing_deg': 40}
+
+
+def test_rails_come_back_from_coordinates():
+    expected, rails = shipped('linear_rails')
+    geometry = expected['geometry']
+    content, kinematics = made(
+        RAILS,
+        given_by='coordinates',
+        base_joints_mm=geometry['rail_points_mm'],
+        platform_joints_mm=geometry['platform_joints_mm'],
+        rod_length_mm=150.362,
+        rail_direction='up',
+    )
+    assert content['geometry']['home_height_mm'] == pytest.approx(297.847, abs=1e-3)
+    assert [j['centre_mm'] for j in content['servos']['joints']] == [50.0] * 6
+    assert content['limits']['rail_range_mm'] == [2.0, 98.0]
+    joints = kinematics.inverse(kinematics.home)
+    np.testing.assert_allclose(joints, rails.inverse(rails.home), atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ('directions', 'side'),
+    [
+        ({'rail_direction': 'up'}, 'behind'),
+        ({'rail_direction': 'down'}, 'ahead'),
+        ({'rail_direction': 'out'}, 'ahead'),
+        ({'rail_direction': 'in'}, 'behind'),
+        ({'rail_direction': 'own', 'rail_directions': [[0.3, 0, 1], [0, 0.3, 1]] * 3}, 'behind'),
+    ],
+)
+def test_carriages_are_in_the_middle_of_their_travel_at_home(directions, side):
+    circles = {f'base_{k}': STEWART[f'base_{k}'] for k in ('radius_mm', 'angles_deg')}
+    circles |= {f'platform_{k}': STEWART[f'platform_{k}'] for k in ('radius_mm', 'angles_deg')}
+    content, kinematics = made(
+        RAILS, given_by='circles', rod_length_mm=200, **circles, **directions
+    )
+    assert content['geometry']['carriages'] == side
+    joints = kinematics.inverse(kinematics.home)
+    assert joints.mean() == pytest.approx(0.05, abs=1e-5)
+
+
 def test_linear_platform_comes_back_from_radii_angles_and_cylinders():
     content, _ = made(STEWART)
     expected, _ = shipped('stewart_6_6')
@@ -156,7 +199,7 @@ def test_everything_that_is_wrong_is_named_at_once():
     assert str(refused.value).splitlines() == [
         'rod_length_mm: -3 is outside 0.001 … 1e+06',
         "servo: 'SG9' is not one of SG90, MG90S, MG996R, DS3218, DS3218-270, XL330, STS3215, "
-        'other, driver, did you mean SG90?',
+        "other, driver, did you mean 'SG90'?",
         "'rod_lenght_mm': unknown, did you mean 'rod_length_mm'?",
     ]
     with pytest.raises(InvalidInput, match='stroke_mm: not a measure of this kind of machine'):
@@ -202,13 +245,29 @@ def test_a_person_is_asked_again_until_all_is_understood():
     assert text == new.machine_text(checked({'description': 'mine', **LEVEL}))
     said = '\n'.join(told)
     for reason in (
-        "'cranck' is not one of crank, linear, arm, did you mean crank?",
+        "'cranck' is not one of crank, linear, rail, arm, did you mean 'crank'?",
         "'wide' is not a number",
         'an answer is needed',
         'These measures do not fit each other:\nrod_length_mm: 30 mm, but leg 1 has',
         "'rod' is not one of these",
     ):
         assert reason in said
+
+
+@pytest.mark.parametrize(
+    ('typed', 'reason'),
+    [
+        ('67,5', '2 numbers, needs 1 or 6 numbers; decimals have a point: 67.5'),
+        ('67, 5', '2 numbers, needs 1 or 6 numbers'),
+        ('6.57in', "'6.57in' is not a number: mm, ° and g are meant, without a unit"),
+        ('45.5 mm', "'mm' is not a number: mm, ° and g are meant, without a unit"),
+        ('wide', "'wide' is not a number"),
+    ],
+)
+def test_decimal_commas_and_units_are_explained(typed, reason):
+    with pytest.raises(InvalidInput) as error:
+        numbers((1, 6), SIZE)(typed)
+    assert str(error.value) == reason
 
 
 def test_a_table_is_asked_for_row_by_row():

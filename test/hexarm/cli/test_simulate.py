@@ -115,3 +115,18 @@ def test_servo_noise_moves_the_platform(capsys, law):
     moved = json.loads(capsys.readouterr().out)['noise_position_rms']
     assert (60e-6 if law == 'independent' else 2e-6) < moved
     assert moved < (160e-6 if law == 'independent' else 40e-6)
+
+
+def test_a_motion_that_is_too_fast_for_the_drives_is_reported(capsys):
+    assert main(['simulate', 'stewart_6_6', *QUICK]) == 0
+    assert 'too fast for the drives, try a lower --frequency' in capsys.readouterr().out
+    assert main(['simulate', 'stewart_6_6', *QUICK, '--frequency', '0.2']) == 0
+    assert 'too fast' not in capsys.readouterr().out
+
+
+def test_an_arm_has_a_tool_and_no_loops(capsys):
+    assert main(['simulate', 'arm_6r', *QUICK]) == 0
+    reported = capsys.readouterr().out
+    assert 'tool         at most ' in reported
+    assert 'loops' not in reported
+    assert 'platform' not in reported

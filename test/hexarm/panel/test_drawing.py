@@ -10,10 +10,12 @@ import pytest
 from hexarm.link_meshes import LinkMesh
 from hexarm.machines import load
 from hexarm.panel.body import Body
+from hexarm.panel.nearness import BOX_COLOUR, Nearness
 from hexarm.panel.pieces import bar, bars_between, hull, pieces, plate, sphere
 from hexarm.panel.room import GOOD, NARROW, NONE_LEFT, colour, shares
 from hexarm.panel.scene import Scene
 from hexarm.panel.view import Stance
+from manipulator.limits.clearance import Clearance
 from manipulator.limits.surroundings import BodiesConfig, BoxConfig, SurroundingsConfig
 from manipulator.rotation import from_quaternion
 
@@ -136,3 +138,32 @@ def test_the_page_draws_the_surroundings_where_they_are():
     assert not table.kwargs['wireframe']
     grid = server.scene.add_grid.call_args.kwargs
     assert grid['position'][2] * size == pytest.approx(-0.05)
+
+
+def test_parts_and_boxes_that_are_near_to_meet_are_marked():
+    plain = load('robocake')
+    kinematics, home = plain.kinematics, plain.kinematics.home
+    low = 1e3 * home.position[2] + 12.0
+    walls = SurroundingsConfig(
+        boxes=(
+            BoxConfig('lamp', corners_mm=((20.0, -500.0, low), (500.0, 500.0, low + 50.0))),
+            BoxConfig('roof', corners_mm=((-500.0, -500.0, 900.0), (500.0, 500.0, 950.0))),
+        )
+    )
+    machine = plain.among(walls, BodiesConfig(rod_diameter_mm=3.0))
+    limit = next(one for one in machine.constraints.limits if isinstance(one, Clearance))
+    scene, boxes = PaperScene(), {i: SimpleNamespace(color=BOX_COLOUR) for i in range(2)}
+    near = Nearness(scene, machine, 5.0, boxes)
+    at_home = limit.values(home, kinematics.inverse(home))
+    for rise in (0.0, 0.01, 0.0):
+        pose = home.moved([0.0, 0.0, rise, 0.0, 0.0, 0.0])
+        joints = kinematics.inverse(pose)
+        near.show(Stance(pose, joints), np.zeros(3))
+        is_near = limit.values(pose, joints) < 0.35 * np.minimum(at_home, 0.03)
+        sentences = ' '.join(np.array(limit.owners)[is_near])
+        sizes = scene.handles['/near'].batched_scales
+        marked = {n for n, size in zip(limit.names, sizes, strict=True) if size.any()}
+        assert marked == {name for name in limit.names if name in sentences}
+        assert marked == ({'the platform', 'rod 1', 'rod 2'} if rise else set())
+        assert (boxes[0].color != BOX_COLOUR) == bool(rise)
+        assert boxes[1].color == BOX_COLOUR

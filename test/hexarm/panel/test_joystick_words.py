@@ -7,21 +7,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hexarm.panel.joystick import answer, parsed
+from hexarm.panel.page_requests import answer, beat_of
 from manipulator.errors import InvalidInput
 
 STICK = [0.0, 0.5, -1.0, 0.0, 0.0, 0.0]
 
 
 def test_a_beat_and_a_release():
-    beat = parsed(json.dumps({'press': 3, 'tick': 1.5, 'stick': STICK}))
+    beat = beat_of(json.dumps({'press': 3, 'tick': 1.5, 'stick': STICK}))
     assert (beat.press, beat.tick, beat.stick.tolist()) == (3, 1.5, STICK)
-    assert parsed('{"press": 3, "released": true}') == 3
-    assert parsed(json.dumps({'press': 0, 'tick': None, 'stick': STICK})).tick is None
+    assert beat_of('{"press": 3, "released": true}') == 3
+    assert beat_of(json.dumps({'press': 0, 'tick': None, 'stick': STICK})).tick is None
 
 
 def test_a_stick_beyond_its_end_is_at_its_end():
-    beat = parsed(json.dumps({'press': 0, 'tick': None, 'stick': [9.0, -9.0, 0, 0, 0, 0]}))
+    beat = beat_of(json.dumps({'press': 0, 'tick': None, 'stick': [9.0, -9.0, 0, 0, 0, 0]}))
     assert beat.stick.tolist() == [1.0, -1.0, 0.0, 0.0, 0.0, 0.0]
 
 
@@ -45,7 +45,7 @@ def test_a_stick_beyond_its_end_is_at_its_end():
 )
 def test_anything_else_is_refused(text):
     with pytest.raises(InvalidInput):
-        parsed(text)
+        beat_of(text)
 
 
 WORDS = st.sampled_from(['press', 'tick', 'stick'])
@@ -56,7 +56,7 @@ JSON = st.recursive(LEAVES, lambda inner: st.lists(inner) | st.dictionaries(WORD
 @given(st.text(max_size=200) | JSON.map(json.dumps))
 def test_no_words_do_harm(text):
     with contextlib.suppress(InvalidInput):
-        parsed(text)
+        beat_of(text)
 
 
 def test_the_answer_is_what_the_page_reads():

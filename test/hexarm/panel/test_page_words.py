@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
-from hexarm.panel.page_requests import NEEDS, PLAIN, Request, parsed
+from hexarm.panel.page_requests import NEEDS, PLAIN, Request, request_of
 from hexarm.panel.page_state import CAN, STEPS, Controls, machine_text, nodes_text, state_text
 from hexarm.panel.view import NodeReport, Stance, View
 from manipulator.errors import InvalidInput
@@ -76,7 +76,7 @@ def test_the_tool_that_trajectory_reports_is_shown_and_before_that_the_files():
     assert state()['tool'] == ''
     report = NodeReport('trajectory', 0, 'running', {'tool': 'probe'}, 0.1)
     assert state(nodes=(report,))['tool'] == 'probe'
-    assert parsed('{"do": "tool", "name": ""}') == Request('tool')
+    assert request_of('{"do": "tool", "name": ""}') == Request('tool')
 
 
 def test_a_silent_node_is_an_error():
@@ -86,10 +86,10 @@ def test_a_silent_node_is_an_error():
 
 
 def test_requests_are_read():
-    assert parsed('{"want": "state"}') == 'state'
-    assert parsed('{"do": "stop"}') == Request('stop')
-    assert parsed('{"do": "goal", "axis": 2, "value": 0.04}') == Request('goal', 2, 0.04)
-    assert parsed('{"do": "save", "name": "up"}') == Request('save', name='up')
+    assert request_of('{"want": "state"}') == 'state'
+    assert request_of('{"do": "stop"}') == Request('stop')
+    assert request_of('{"do": "goal", "axis": 2, "value": 0.04}') == Request('goal', 2, 0.04)
+    assert request_of('{"do": "save", "name": "up"}') == Request('save', name='up')
 
 
 @pytest.mark.parametrize(
@@ -113,4 +113,4 @@ def test_requests_are_read():
 )
 def test_malformed_requests_are_refused(text):
     with pytest.raises(InvalidInput):
-        parsed(text)
+        request_of(text)

@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip('matplotlib')
 from matplotlib.colors import to_rgb
 
-from hexarm.pictures import style
+from hexarm.pictures import style, workspace
 from hexarm.pictures.leg_motion import defined
 from manipulator.errors import InvalidInput
 
@@ -82,3 +82,15 @@ def test_animation_runs_at_an_even_speed_and_repeats_without_a_pause():
     steps = np.diff(np.append(times[frames_of(times)], times[-1]))
     np.testing.assert_allclose(steps, 1e-3 * FRAME_MS, atol=2e-3)
     assert len(frames_of(np.arange(0.0, 60.0, 0.002))) == MOST_FRAMES
+
+
+def test_no_curve_joins_two_branches():
+    joints = np.array([[0.0, 0.1], [0.1, 0.2], [2.0, 0.3], [2.1, 0.4]])
+    gaps = np.isnan(workspace._with_gaps(joints)).all(axis=1)
+    assert gaps.tolist() == [False, True, True, False]
+
+
+def test_a_value_that_is_the_same_everywhere_has_a_scale_of_its_size():
+    even = 1.0 + 1e-14 * np.arange(10)
+    assert workspace._colour_limits(even) == pytest.approx((0.0, 2.0))
+    assert workspace._colour_limits(np.array([1.0, 2.0]))[0] == 1.0

@@ -94,7 +94,7 @@ def test_the_tool_of_a_stack_is_on_its_uppermost_platform():
 def test_a_machine_upside_down_carries_the_same_in_both_of_its_descriptions(name):
     """Home below the base and gravity down; or home above a base whose z points down."""
     machine, file = load(name), read(name)
-    poses = sample(machine, 5, np.random.default_rng(2), machine.kinematics.characteristic_length)
+    poses = sample(machine, 5, np.random.default_rng(2))
     hanging = upside_down(machine.kinematics)
     turned = Pose(poses.position @ HALF_TURN, HALF_TURN @ poses.rotation @ HALF_TURN)
     joints = machine.kinematics.inverse(poses)

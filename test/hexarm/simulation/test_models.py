@@ -28,7 +28,7 @@ def poses_of(machine, count):
         limits = machine.kinematics.limits
         joints = generator.uniform(limits.low, limits.high, (count, 6))
         return machine.kinematics.chain.forward(joints), joints
-    poses = sample(machine, count, generator, machine.kinematics.characteristic_length)
+    poses = sample(machine, count, generator)
     return poses, machine.kinematics.inverse(poses)
 
 

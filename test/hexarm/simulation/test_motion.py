@@ -126,11 +126,10 @@ def test_a_payload_that_stalls_reports_where(robocake):
     cycle = in_phase(k.home, PAPER_AMPLITUDE, 1.0)
     poses = cycle.at(np.linspace(0, 1, 50)).pose
     joints = k.inverse(poses)
-    names = k.joint_names
-    check_holds(static_load(k, dynamics_of(robocake.file)), drives, names, poses, joints)
+    check_holds(static_load(k, dynamics_of(robocake.file)), drives, k, poses, joints)
     heavy = static_load(k, dynamics_of(robocake.file, 4000.0))
-    with pytest.raises(Stalls, match=r'crank_\d stalls at x .* y .* z .*: needs 0\.\d+') as error:
-        check_holds(heavy, drives, names, poses, joints)
+    with pytest.raises(Stalls, match=r'crank_\d stalls at x .* z .*: needs 0\.\d+ N·m, ') as error:
+        check_holds(heavy, drives, k, poses, joints)
     worst = np.abs(heavy(error.value.pose, k.inverse(error.value.pose)))
     assert worst.argmax() + 1 == error.value.joint
     assert worst.max() > drives.effort[0]

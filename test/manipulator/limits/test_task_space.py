@@ -24,7 +24,8 @@ from manipulator.planning.goal import Goal, Motion
 from manipulator.planning.path import Tolerance
 from manipulator.planning.path_timing import PathRequest, plan_path
 from manipulator.planning.plan import MotionState
-from manipulator.planning.planner import Start, check_cycle, plan_goal
+from manipulator.planning.planner import check_cycle, plan_goal
+from manipulator.planning.start import Start
 from manipulator.planning.worker import Effort
 from manipulator.pose import Pose
 from manipulator.teleop.jog_modes import Free

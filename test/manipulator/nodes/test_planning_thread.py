@@ -74,6 +74,22 @@ def test_a_cancelled_task_ends_at_its_next_pose(worker):
         outcome(job)
 
 
+def test_closing_gives_up_the_task_that_runs(worker):
+    begun, closed = Event(), Event()
+
+    def task(effort):
+        begun.set()
+        assert closed.wait(LONG)
+        effort.spend(1)
+
+    job = worker.submit(task)
+    assert begun.wait(LONG)
+    worker.close()
+    closed.set()
+    with pytest.raises(Cancelled):
+        outcome(job)
+
+
 def test_more_tasks_than_may_wait_are_refused_and_later_ones_are_taken(worker):
     go_on = Event()
     jobs = [worker.submit(lambda effort: go_on.wait(LONG)) for _ in range(MOST_WAITING + 1)]

@@ -11,7 +11,8 @@ from manipulator.errors import Refused, Unreachable
 from manipulator.planning.goal import Goal, Motion
 from manipulator.planning.joint_move import plan_joint_move
 from manipulator.planning.plan import MotionState
-from manipulator.planning.planner import Start, compared, plan_goal
+from manipulator.planning.planner import compared, plan_goal
+from manipulator.planning.start import Start
 from manipulator.planning.worker import Effort
 from manipulator.pose import Pose
 from manipulator.setpoint_validator import SetpointValidator

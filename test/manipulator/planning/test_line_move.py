@@ -3,7 +3,11 @@ import pytest
 
 from hexarm.machines import load
 from manipulator import rotation as so3
-from manipulator.planning.point_to_point import plan_line_move
+from manipulator.errors import Refused
+from manipulator.motion_limits import Derivatives, JointDerivatives, MotionLimits
+from manipulator.planning.check import check_plan
+from manipulator.planning.plan import MotionState
+from manipulator.planning.point_to_point import plan_line_move, plan_move_in_motion
 from manipulator.pose import Pose
 
 LIMITS = load('robocake').motion
@@ -63,3 +67,29 @@ def test_slowdown_stretches_time_and_keeps_the_path():
 def test_goal_where_it_stands_is_a_move_within_a_tick():
     pose = random_pose(np.random.default_rng(7))
     assert plan_line_move(pose, pose, LIMITS).duration < 0.01
+
+
+def test_a_move_that_ruckig_fails_at_is_refused():
+    """At rest, but for rounding: from a stream of goals that ended."""
+    x, y = 0.009514767606886248, 2.171702954699028e-13
+    goal = Pose([x, y, 0.346090004968434], np.eye(3))
+    twist = [-1.734723475976807e-18, 1.3e-26, -2.168404344971009e-19, 0.0, 2.8e-17, -5.7e-48]
+    pull = [-5.551115123125783e-17, -8.3e-25, -6.938893903907228e-18, 0.0, -1.8e-15, 0.0]
+    limits = MotionLimits(
+        Derivatives(0.06, 0.42, 12.0), Derivatives(0.785, 5.5, 157.0), JointDerivatives.of(1, 1)
+    )
+    with pytest.raises(Refused, match='no jerk-limited move was found'):
+        plan_move_in_motion(MotionState(goal, np.array(twist), np.array(pull)), goal, limits)
+
+
+def test_the_acceleration_of_the_joints_where_a_plan_is_joined_counts():
+    machine, dt = load('robocake'), 0.01
+    home = machine.kinematics.home
+    joints = machine.kinematics.inverse(home)
+    plan = plan_line_move(home, home.moved([0.001, 0, 0, 0, 0, 0]), machine.motion.for_plans)
+    most = machine.motion.for_plans.joint.acceleration * dt**2
+    for share in (0.5, 2.0):
+        before = joints - share * most * np.eye(6)[2]
+        found = check_plan(plan, machine, joints, dt, before=before)
+        assert found.fits == (share < 1.0)
+    assert found.quantity == 'acceleration of crank_3'

@@ -36,7 +36,7 @@ def test_work_commands_move_along_work_axes(frame):
 
 
 def test_unknown_frames_are_refused_with_those_that_there_are():
-    with pytest.raises(Refused, match=r"'moon' is not one of .*'tool'"):
+    with pytest.raises(Refused, match="'moon' is not one of base, work, pivot, tool"):
         in_work_axes(COMMAND, 'moon', POSE, Frames())
 
 

@@ -1,9 +1,18 @@
+import pickle
+
 import numpy as np
+import pytest
 
 from hexarm.machines import load
 from manipulator import rotation as so3
+from manipulator.errors import Refused
 from manipulator.planning.plan import MotionState
-from manipulator.planning.point_to_point import coordinates, plan_move_in_motion, state_of
+from manipulator.planning.point_to_point import (
+    coordinates,
+    plan_line_move,
+    plan_move_in_motion,
+    state_of,
+)
 from manipulator.pose import Pose
 
 LIMITS = load('robocake').motion
@@ -42,6 +51,32 @@ def test_twist_and_acceleration_are_the_derivatives_of_the_pose():
         np.testing.assert_allclose(now.acceleration, numeric, atol=0.05)
 
 
+def test_a_start_faster_than_the_limits_is_braked_and_ends_at_the_goal():
+    rng = np.random.default_rng(6)
+    for _ in range(10):
+        start, goal = random_state(rng), random_pose(rng)
+        fast = MotionState(start.pose, 5.0 * start.twist, 5.0 * start.acceleration)
+        move = plan_move_in_motion(fast, goal, LIMITS)
+        states = move.at(np.linspace(0.0, move.duration, 20_001))
+        h = move.duration / 20_000
+        np.testing.assert_allclose(states.twist[0], fast.twist, atol=1e-9)
+        steps = states.pose[:-1].twist_to(states.pose[1:])
+        means = (states.twist[:-1] + states.twist[1:]) / 2
+        np.testing.assert_allclose(steps / h, means, atol=1e-4)
+        assert np.abs(goal.twist_to(states.pose[-1])).max() < 1e-8
+
+
+def test_a_plan_is_made_of_numbers_and_keeps_no_object_of_ruckig():
+    rng = np.random.default_rng(7)
+    state, goal = random_state(rng), random_pose(rng)
+    for move in (
+        plan_move_in_motion(state, goal, LIMITS),
+        plan_line_move(state.pose, goal, LIMITS),
+    ):
+        copy = pickle.loads(pickle.dumps(move))
+        np.testing.assert_array_equal(copy.at(0.1).twist, move.at(0.1).twist)
+
+
 def test_slowdown_stretches_time_and_keeps_the_path():
     rng = np.random.default_rng(3)
     for _ in range(10):
@@ -68,3 +103,14 @@ def test_coordinates_that_change_fast_make_the_state_that_differences_give():
         np.testing.assert_allclose(state.acceleration[1], change, atol=1e-6)
         one = MotionState(state.pose[1], state.twist[1], state.acceleration[1])
         np.testing.assert_allclose(coordinates(one, np.eye(3)), (x, v, a), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ('slowdown', 'reason'),
+    [(1e3, ': it would take too long'), (1e6, r' \(ruckig: error in step 1, dof')],
+)
+def test_a_move_that_is_too_slow_to_be_calculated_is_refused(slowdown, reason):
+    moving = MotionState(Pose.identity(), np.full(6, 0.05), np.zeros(6))
+    goal = Pose(np.array([0.01, 0.0, 0.0]), np.eye(3))
+    with pytest.raises(Refused, match=f'no jerk-limited move was found{reason}'):
+        plan_move_in_motion(moving, goal, load('ur5').motion, slowdown)

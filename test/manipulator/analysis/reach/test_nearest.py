@@ -39,7 +39,7 @@ def test_no_pose_found_by_random_search_is_nearer(platform):
     wanted = targets(platform, count, 2)
     generator = np.random.default_rng(3)
     length = platform.kinematics.characteristic_length
-    everywhere = sample(platform, 300, generator, length)
+    everywhere = sample(platform, 300, generator)
     for k in range(count):
         found = nearest_reachable(platform, wanted[k])
         limit = found.distance - TOLERANCE

@@ -107,3 +107,16 @@ def test_no_position_is_lost_as_larger_turns_are_allowed(name, request):
 def test_with_hardly_a_turn_the_volume_is_no_smaller_than_without(robocake):
     found = survey(robocake, 2000, 1e-6, lambda stage, share: None)
     assert found.some_orientation.value >= found.constant_orientation.value
+
+
+def test_the_longer_search_never_takes_away_what_the_shorter_one_found(robocake, monkeypatch):
+    straight = with_orientation(robocake, robocake.kinematics.home.rotation)
+    whole = SomeOrientation.steps
+
+    def unlucky(search, places):
+        return np.ones(len(places), bool) if search.steps == whole // 2 else straight(places)
+
+    monkeypatch.setattr(SomeOrientation, '__call__', unlucky)
+    found = survey(robocake, 2000, 0.3, lambda stage, share: None)
+    assert found.search_gain == 0.0
+    assert found.some_orientation.value > found.constant_orientation.value

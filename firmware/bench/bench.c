@@ -6,11 +6,21 @@
 #include <math.h>
 
 #include "arm_inverse.h"
+#include "kernel_step.h"
 #include "kinematics.h"
 #include "resolved_rate.h"
 #include "target.h"
 
-enum { NOTHING = 1, INVERSE = 2, ARM_STEP = 3, SINE = 4, ALGEBRAIC = 5, GEOMETRIC = 6, DONE = 0xFF };
+enum {
+    NOTHING = 1,
+    INVERSE = 2,
+    ARM_STEP = 3,
+    SINE = 4,
+    ALGEBRAIC = 5,
+    GEOMETRIC = 6,
+    KERNEL_STEP = 7,
+    DONE = 0xFF
+};
 
 #define MARK(what) (GPIOR0 = (what))
 
@@ -37,6 +47,22 @@ static void arm_step(float q)
     bool is_regular = resolved_rate_step(&arm, joints, velocity, 0.02f);
     MARK(ARM_STEP);
     anything = is_regular ? joints[5] : 0;
+}
+
+/* The same arm as any other, by its axes and points at zero angles. */
+static void any_arm_step(float q)
+{
+    static const struct chain CHAIN = {
+        .axis = {{0, 0, 1}, {-1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {-1, 0, 0}, {0, 0, 1}},
+        .point = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0.4f}, {0, 0, 0.8f}, {0, 0, 0.8f}, {0, 0, 0.8f}},
+        .tool = {{0, 0, 0.8f}, {1, 0, 0, 0, 1, 0, 0, 0, 1}},
+    };
+    const float twist[6] = {0.1f, -0.05f, 0.02f, 0, 0, 0};
+    float joints[6] = {q, 0.4f + q, 1.2f, 0.3f, 0.9f - q, 0.2f};
+    MARK(KERNEL_STEP);
+    kernel_step(&CHAIN, 0.4f, joints, twist, 0.02f);
+    MARK(KERNEL_STEP);
+    anything = joints[5];
 }
 
 static void arm_inverse(float x)
@@ -68,6 +94,7 @@ int main(void)
         anything = value;
         inverse(0.0003f * k, 0.004f * k);
         arm_step(0.02f * k);
+        any_arm_step(0.02f * k);
         arm_inverse(0.01f * k);
     }
     MARK(DONE);

@@ -1,0 +1,123 @@
+"""Moves of joints that begin in motion: along a stream of goals of joints, or to another goal.
+
+As with poses, a stream is joined by polynomials; then all joints go to rest at once, as quickly as
+limits allow.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from manipulator.arrays import Array
+from manipulator.errors import NoSolution, Refused
+from manipulator.machine import Machine
+from manipulator.motion_limits import MotionLimits
+from manipulator.planning.flowing import Attempt, Ends, Quintic, quintic_to
+from manipulator.planning.goal import Flow
+from manipulator.planning.joint_trajectory import JointCurvePlan
+from manipulator.planning.point_to_point import Cubics, quickest
+from manipulator.pose import Pose
+
+KNOTS = 16
+"""Poses along the move that are known beforehand: forward kinematics begin at the nearest."""
+
+TINY = 1e-9
+"""m or rad per rad or m of a joint that count as no motion."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointsInMotion:
+    """Joints over time: `early`, if there is any, then a trajectory to rest."""
+
+    early: Quintic | None
+    rest: Cubics
+
+    @property
+    def _span(self) -> float:
+        return 0.0 if self.early is None else self.early.span
+
+    @property
+    def duration(self) -> float:
+        """Seconds until rest."""
+        return self._span + self.rest.duration
+
+    def at(self, times: Array | float) -> Ends:
+        """Joints with two derivatives, (..., n), at each of the times (...)."""
+        flat = np.ravel(times)
+        parts: Sequence[Array] = self.rest.at(flat - self._span)
+        if self.early is not None:
+            is_early = (flat < self._span)[:, None]
+            both = zip(self.early.at(flat), parts, strict=True)
+            parts = [np.where(is_early, early, late) for early, late in both]
+        q, rates, pulls = (part.reshape(*np.shape(times), -1) for part in parts)
+        return q, rates, pulls
+
+
+@dataclass(frozen=True, eq=False)
+class JointMoveInMotion(JointCurvePlan):
+    """A plan of such joints."""
+
+    def where(self, time: float) -> str:
+        """See `Plan`."""
+        return f'at {100 * min(time / self.duration, 1.0):.0f} % of the time of the joint move'
+
+
+@dataclass(frozen=True, eq=False)
+class JointState:
+    """Joints (n,) in motion, with two derivatives, and their pose."""
+
+    pose: Pose
+    joints: Ends
+
+
+def plan_joint_move_in_motion(
+    machine: Machine, start: JointState, goal: Array, limits: MotionLimits, slowdown: float
+) -> JointMoveInMotion:
+    """To rest at joints `goal` (n,). Raises Refused where there is no such move."""
+    bounds = _bounds(machine, start, limits)
+    return _plan(
+        machine, start, JointsInMotion(None, _to_rest(start.joints, goal, bounds, slowdown))
+    )
+
+
+def plan_joint_stream(
+    machine: Machine, start: JointState, goal: Array, flow: Flow, time: float, how: Attempt
+) -> JointMoveInMotion | None:
+    """At that time, to joints `goal` (n,) with their flow; to rest if no other goal comes.
+
+    None where a joint would pass its jerk. Raises Refused where there is no move to rest.
+    """
+    bounds = _bounds(machine, start, machine.motion.for_plans)
+    early = quintic_to(start.joints, goal, flow, time, bounds[2], how.later)
+    if early is None:
+        return None
+    rest = _to_rest(early.end, goal, bounds, how.slowdown)
+    return _plan(machine, start, JointsInMotion(early, rest))
+
+
+def _to_rest(joints: Ends, goal: Array, bounds: Ends, slowdown: float) -> Cubics:
+    speed, acceleration, jerk = bounds
+    slower = speed / slowdown, acceleration / slowdown**2, jerk / slowdown**3
+    return quickest(joints, goal, slower)
+
+
+def _plan(machine: Machine, start: JointState, curve: JointsInMotion) -> JointMoveInMotion:
+    rows = curve.at(np.linspace(0.0, curve.duration, KNOTS))[0]
+    try:
+        knots = machine.kinematics.forward_along(rows, start.pose)
+    except NoSolution as error:
+        raise Refused(f'on the joint move: {error}') from error
+    return JointMoveInMotion(machine.kinematics, curve, knots)
+
+
+def _bounds(machine: Machine, start: JointState, limits: MotionLimits) -> Ends:
+    """Speed, acceleration and jerk of each joint (n,): if it alone moved the platform or tool."""
+    jacobian = machine.kinematics.jacobian(start.pose, start.joints[0])
+    shift = np.maximum(np.linalg.norm(jacobian[:3], axis=0), TINY)
+    turn = np.maximum(np.linalg.norm(jacobian[3:], axis=0), TINY)
+    linear, angular, joint = limits.linear, limits.angular, limits.joint
+    own = np.minimum(linear.speed / shift, angular.speed / turn)
+    pull = np.minimum(linear.acceleration / shift, angular.acceleration / turn)
+    jerk: Array = np.minimum(linear.jerk / shift, angular.jerk / turn)
+    return np.minimum(own, joint.speed), np.minimum(pull, joint.acceleration), jerk
