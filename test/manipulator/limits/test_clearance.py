@@ -249,6 +249,17 @@ def test_streamed_goals_lead_up_to_the_wall(name):
     assert -1e-9 <= room < 0.2 * walled_in.gap
 
 
+@pytest.mark.parametrize('name', AXES)
+def test_streamed_goals_behind_the_wall_lead_along_it(name):
+    walled_in = walled(name)
+    machine, start = walled_in.machine, start_of(walled_in.machine)
+    home, along = machine.kinematics.home, (walled_in.axis + 1) % 3
+    goal = walled_in.moved(3.0).moved(2.0 * walled_in.gap * np.eye(6)[along])
+    found = NearestGoal(machine).reached(Goal(goal), home, start.joints).pose
+    assert walled_in.room(found, machine.kinematics.inverse(found, start.joints)) >= -1e-9
+    assert abs(found.twist_to(goal)[along]) < 0.02 * walled_in.gap
+
+
 def test_rods_and_platform_meet_only_where_they_are_given_a_thickness():
     machine = machines.load('robocake')
     thin = machine.among(SurroundingsConfig(), BodiesConfig())
