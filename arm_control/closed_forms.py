@@ -112,15 +112,20 @@ def arm_numbers(
     length: float,
     low: Array,
     high: Array,
-    loops: tuple[int, ...] = (NO_LOOP,) * MOST_LOOPS,
+    general: Array | None = None,
 ) -> Array:
-    """An arm in the order of `struct arm`: its chain, the closed form that it has, or almost."""
+    """An arm in the order of `struct arm`: its chain, the closed form that it has, or almost.
+
+    general is what a method without closed form adds: loops, mirror, chain that is eliminated.
+    """
     closes = Closes.NO_FORM
     if form is not None:
         closes = Closes.CLOSED if form.chain is chain else Closes.ALMOST
     without = np.zeros(len(chain.numbers) + 4)
     numbers = without if form is None else form.numbers
-    return frozen(np.concatenate([chain.numbers, numbers, [closes, length], low, high, loops]))
+    none = np.zeros(MOST_LOOPS + 3 + len(chain.numbers))
+    rest = none if general is None else general
+    return frozen(np.concatenate([chain.numbers, numbers, [closes, length], low, high, rest]))
 
 
 def closed_form(chain: Chain) -> ClosedForm | None:

@@ -207,7 +207,7 @@ def jogging(machine_file: MachineFile) -> ResolvedRate:
     """The resolved-rate step of one file's arm, within its joint and motion limits."""
     kinematics = serial_arm(machine_file)
     limits = build(ArmLimits, machine_file.limits, 'limits')
-    motion = MotionLimits.from_config(machine_file.motion)
+    motion = MotionLimits.from_config(machine_file.motion, kinematics.joint_unit)
     own = kinematics.limits
     motion = replace(motion, joint=motion.joint.tightened(own.speed, own.acceleration))
     return ResolvedRate(kinematics, motion, limits.damping_onset)

@@ -32,13 +32,16 @@ class Numerical:
     low: Array
     high: Array
     loops: tuple[int, ...] = field(init=False)
+    general: Array = field(init=False, repr=False)
     numbers: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Prepares what the kernel is given."""
-        loops = best_loops(self.chain, self.length)
-        numbers = arm_numbers(self.chain, None, self.length, self.low, self.high, loops)
+        solved, loops = eliminated(self.chain, self.length)
+        general = np.array([*loops, *mirror(self.chain, self.length), *solved.numbers])
+        numbers = arm_numbers(self.chain, None, self.length, self.low, self.high, general)
         object.__setattr__(self, 'loops', loops)
+        object.__setattr__(self, 'general', general)
         object.__setattr__(self, 'numbers', numbers)
 
     @property
@@ -83,7 +86,7 @@ class AlmostClosed:
     def __post_init__(self) -> None:
         """Prepares what the kernel is given."""
         own = self.numerical
-        numbers = arm_numbers(own.chain, self.ideal, own.length, own.low, own.high, own.loops)
+        numbers = arm_numbers(own.chain, self.ideal, own.length, own.low, own.high, own.general)
         object.__setattr__(self, 'numbers', numbers)
 
     @property
@@ -129,35 +132,87 @@ TRIED = 48
 """Postures on which each loop of an elimination is tried."""
 LOOPS, CANDIDATES = 12, 48
 """See kernel/elimination.h and general.h."""
-ROUNDING, USEFUL = 1e-9, 0.03
-"""Radians from a posture at which a candidate is as good as exact, and at which a useful loop has
-its candidates, in the geometric mean."""
+ROUNDING, ACCURATE, USEFUL = 1e-9, 1e-6, 0.03
+"""Radians from a posture at which a candidate is as good as exact, and at which an accurate and a
+useful loop have their candidates, in the geometric mean."""
 
 
-def best_loops(chain: Chain, length: float) -> tuple[int, ...]:
+ASIDE = 1e-4
+"""Of an arm's length: how far axes are moved aside where no loop has a use."""
+
+
+def eliminated(chain: Chain, length: float) -> tuple[Chain, tuple[int, ...]]:
+    """The chain, or almost, and its loops.
+
+    Of some arms, as one with no offset but between axes 4 and 6, every determinant is 0. With its
+    axes a little aside it is not; from there the damped steps lead back.
+    """
+    loops = best_loops(chain, chain, length)
+    if loops[0] != NO_LOOP:
+        return chain, loops
+    moved = np.random.default_rng(0).uniform(-ASIDE, ASIDE, (JOINTS, 3)) * length
+    aside = Chain(chain.axes, chain.points + moved, chain.home)
+    return aside, best_loops(chain, aside, length)
+
+
+def best_loops(chain: Chain, solved: Chain, length: float) -> tuple[int, ...]:
     """The loops that have their candidates nearest, best first; NO_LOOP where none has a use.
 
-    Which determinant tells an arm's branches depends on which of its axes are parallel or meet.
-    The second loop solves for another joint than the first: branches that have almost the same
-    angle there, which hides them, have others here.
+    Which determinant tells an arm's branches depends on which of its axes are parallel or meet. Of
+    those that do, the one is best that is certain most often: where two branches always share
+    an angle, it never is. The second loop solves for another joint than the first: branches that
+    have almost the same angle there, which hides them, have others here.
     """
     joints = np.random.default_rng(0).uniform(-np.pi, np.pi, (TRIED, JOINTS))
-    poses, missed = chain.forward(joints), np.empty(LOOPS)
+    poses, missed, certain = chain.forward(joints), np.empty(LOOPS), np.empty(LOOPS)
     for loop in range(LOOPS):
         found, how = np.empty((TRIED, CANDIDATES, JOINTS)), np.array([length, loop])
-        _kernel.general_candidates(chain.numbers, how, poses.position, poses.rotation, found)
+        certain[loop] = _kernel.general_candidates(
+            solved.numbers, how, poses.position, poses.rotation, found
+        )
         apart = np.abs(np.exp(1j * found) - np.exp(1j * joints)[:, None]).max(axis=-1)
         nearest = np.nan_to_num(apart, nan=np.inf).min(axis=-1).clip(ROUNDING, 1.0)
         missed[loop] = np.exp(np.log(nearest).mean())
-    first, *others = (int(loop) for loop in np.argsort(missed))
-    others.sort(key=lambda loop: solved_joint(loop) == solved_joint(first))
-    useful = [loop for loop in (first, *others) if missed[loop] < USEFUL]
+    order = np.lexsort((missed, -certain, missed > ACCURATE))
+    useful = [int(loop) for loop in order if missed[loop] < USEFUL]
+    useful[1:] = sorted(useful[1:], key=lambda loop: solved_joint(loop) == solved_joint(useful[0]))
     return tuple([*useful, *[NO_LOOP] * MOST_LOOPS][:MOST_LOOPS])
 
 
 def solved_joint(loop: int) -> int:
     """The joint, 0 to 5, whose angle a loop's determinant tells."""
     return (loop + 2) % JOINTS if loop < JOINTS else JOINTS - 1 - (loop + 2) % JOINTS
+
+
+ALMOST_MIRRORED = 0.01
+"""Of the size of an arm, and radians: how far a branch's image may be from the pose."""
+
+
+def mirror(chain: Chain, length: float) -> tuple[float, float, float]:
+    """The first of four joints that mirror branches, and two sums of angles: `struct mirror`.
+
+    Without an offset at the shoulder or the elbow, half a turn of the first, and of the fourth, is
+    the mirror image of the two between, whose axes are parallel. NO_LOOP where there is none.
+    """
+    joints = np.random.default_rng(0).uniform(-np.pi, np.pi, (1, JOINTS))
+    for first in range(JOINTS - 3):
+        upright, hinge, elbow, forearm = chain.axes[first : first + 4]
+        arm = chain.points[first + 2] - chain.points[first + 1]
+        angles = _angle(hinge, arm, upright), _angle(elbow, forearm, arm)
+        sums = 2.0 * np.array(angles)
+        image = joints.copy()
+        image[0, [first, first + 3]] += np.pi
+        image[0, first + 1 : first + 3] = sums - joints[0, first + 1 : first + 3]
+        missed = chain.forward(image).twist_to(chain.forward(joints)) / ([length] * 3 + [1.0] * 3)
+        if np.abs(missed).max() < ALMOST_MIRRORED:
+            return float(first), *sums.tolist()
+    return NO_LOOP, 0.0, 0.0
+
+
+def _angle(axis: Array, start: Array, end: Array) -> float:
+    """By which a turn about the axis takes one direction to another, as seen along the axis."""
+    across = start - axis * (axis @ start)
+    return float(np.arctan2(np.cross(axis, across) @ end, across @ end))
 
 
 ALMOST_PARALLEL, ALMOST_MEETING = np.radians(5.0), 0.005

@@ -91,6 +91,8 @@ class _Tree:
 
     def root(self) -> str:
         """The base; ConfigError names the roots where there is not one."""
+        if not self.roots:
+            raise ConfigError(['there is no link'])
         if len(self.roots) != 1:
             raise ConfigError([f'the base is not clear, --base: {_listed(self.roots)}'])
         return self.roots[0]
@@ -152,7 +154,7 @@ class _Tree:
         fitting = [link for link in links if self._is_arm(base, link)]
         if fitting and axes < FEW:
             raise ConfigError([f'the tip is not clear, --tip: {_listed(fitting)}'])
-        if axes < FEW:
+        if axes < FEW or not after:
             end = max(links, key=lambda link: (self._axes(base, link), len(self.path(base, link))))
         else:
             is_arm = len(after) == 1 and self._carries_axes(after[0].child)

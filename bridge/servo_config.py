@@ -112,7 +112,11 @@ class ServosConfig:
         unit = 'mm' if is_linear else 'deg'
         speed = self.speed_mm_s if is_linear else self.speed_deg_s
         park = self.park_mm if is_linear else self.park_deg
-        problems = [] if speed is not None else [f'speed_{unit}_s: missing']
+        other = ('speed_deg_s', 'park_deg') if is_linear else ('speed_mm_s', 'park_mm')
+        given = [name for name in other if getattr(self, name) is not None]
+        problems = [f'{name}: the joints are in {unit}' for name in given]
+        if speed is None:
+            problems.append(f'speed_{unit}_s: missing')
         if park is None:
             problems.append(f'park_{unit}: missing')
         elif len(park) != len(self.joints):

@@ -4,7 +4,7 @@ import numpy as np
 
 from hexapod_control.rails import RailPlatform
 from hexapod_control.rotary import RotaryHexapod
-from manipulator.limits.wording import degrees_in_words, in_words
+from manipulator.limits.wording import degrees_in_words, in_words, millimetres_in_words
 from manipulator.machine import Machine
 
 OF_A_BEND = ('crank angle', 'crank joint tilt', 'platform joint swing', 'singularity margin')
@@ -40,9 +40,10 @@ def _other_side(machine: Machine, kinematics: RailPlatform) -> str:
     if not is_out.any() or not ((other >= low) & (other <= high))[is_out].all():
         return ''
     sides = kinematics.geometry.sides * np.where(is_out, -1.0, 1.0)
-    words = ', '.join('behind' if side > 0.0 else 'ahead' for side in sides)
-    places = ', '.join(f'{1e3 * place:.6g}' for place in other[is_out])
-    return f"; on their joints' other side they are at {places} mm: write carriages: [{words}]"
+    words = ['behind' if side > 0.0 else 'ahead' for side in sides]
+    write = words[0] if len(set(words)) == 1 else f'[{", ".join(words)}]'
+    places = millimetres_in_words(other[is_out])
+    return f"; on their joints' other side they are at {places}: write carriages: {write}"
 
 
 def _other_bend(machine: Machine, kinematics: RotaryHexapod, has_tangents: bool) -> str:

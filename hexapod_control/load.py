@@ -41,7 +41,7 @@ def platform(machine_file: MachineFile) -> Machine:
     if kind not in KINDS:
         raise ConfigError([f'kind: {not_one_of(kind, sorted(KINDS))}'])
     kinematics, constraints = KINDS[kind].build(machine_file)
-    motion = MotionLimits.from_config(machine_file.motion)
+    motion = MotionLimits.from_config(machine_file.motion, kinematics.joint_unit)
     return Machine(
         kinematics,
         constraints,

@@ -32,6 +32,8 @@ WELL = 0.6
 """Of the largest one, that of a posture that will do for home."""
 BENDS = tuple(math.radians(angle) for angle in (0, 30, -30, 60, -60, 90, -90))
 """Angles of joints 2 to 5 in postures that are tried as home."""
+OFF_STOPS, OFF_STOPS_SHARE = math.radians(10.0), 0.1
+"""How far home is from the ends of a joint's range: rad, but at most this part of the range."""
 LENGTH_SHARE, RADIUS_SHARE = 0.25, 0.06
 """Of all links together the characteristic length; of that a link's radius."""
 ROUNDING, ROUNDING_SHARE = 1e-15, 1e-12
@@ -236,12 +238,13 @@ def posture(chain: Chain, low: Array, high: Array, length: float) -> Array:
     """Joints (6,) in rad: of the postures tried, the nearest to zero far from singular ones.
 
     Of those whose tool and joints are above the base plane, where there are any; within low and
-    high (6,). length (m): what one radian counts.
+    high (6,), and not at their ends. length (m): what one radian counts.
     """
     ends = zip(low.tolist(), high.tolist(), strict=True)
     rest = np.array([0.0 if a <= 0.0 <= b else (a + b) / 2 for a, b in ends])
     bends = np.array([(0.0, *four, 0.0) for four in product(BENDS, repeat=4)])
-    postures = np.clip(rest + bends, low, high)
+    inside = np.minimum(OFF_STOPS, OFF_STOPS_SHARE * (high - low))
+    postures = np.clip(rest + bends, low + inside, high - inside)
     sigma = chain.sigma_min(postures, length)
     is_above = _lowest(chain, postures) >= min(0.0, float(chain.points[:, 2].min()))
     allowed = is_above if (sigma[is_above] >= ONSET).any() else np.ones_like(is_above)

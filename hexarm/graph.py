@@ -15,7 +15,7 @@ from pathlib import Path
 from bridge.fake.servo import SERVO
 from hexarm.board.build import chip_command
 from hexarm.machines import read
-from manipulator.errors import Refused
+from manipulator.errors import ManipulatorError, Refused
 
 PATIENCE = 5.0
 """Seconds a process has for its own clean end before it is killed."""
@@ -139,6 +139,17 @@ class Graph:
     def pids(self) -> dict[str, int]:
         """The process number of each node."""
         return {name: process.pid for name, process in self._processes.items()}
+
+
+class NodeDied(ManipulatorError):
+    """A node of the graph has ended by itself."""
+
+
+def check_alive(graph: Graph) -> None:
+    """Raises NodeDied when a process of the graph has ended."""
+    dead = graph.dead()
+    if dead is not None:
+        raise NodeDied(f'{dead}; stopping the others')
 
 
 def link_folder() -> 'tempfile.TemporaryDirectory[str]':

@@ -1,8 +1,9 @@
 """Everything that is wrong with a machine file: in each section, and between them."""
 
 import re
+import typing
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -14,12 +15,11 @@ from hexapod_control.home import home_problems
 from hexapod_control.stacks.load import StackConfig
 from hexarm.link_meshes import link_meshes
 from hexarm.machine_keys import BRIDGE, KINDS, sections_of
-from hexarm.machine_spelling import corrected
 from hexarm.machine_warnings import radians_for_degrees, warnings_of
 from hexarm.machines import check_is_machine, frames_of, loader, with_sections
 from hexarm.servo_check import contradictions
 from hexarm.simulation.dynamics_config import SCHEMAS
-from manipulator.config import build, forms_of, parse_yaml
+from manipulator.config import build, fitting_form, forms_of, parse_yaml, unknown_key
 from manipulator.errors import ConfigError, ManipulatorError
 from manipulator.formatting import shown
 from manipulator.frames import Frames
@@ -77,7 +77,7 @@ def report_of(content: Mapping[str, Any], folder: Path | None = None) -> Report:
     as both are good: home, names, units, ranges, speeds and the park position.
     """
     found = Findings()
-    corrected_keys = corrected(MachineFile, content, '', found.problems)
+    corrected_keys = _corrected(MachineFile, content, '', found.problems)
     try:
         check_is_machine(corrected_keys)
     except ConfigError as error:
@@ -124,7 +124,7 @@ def _as_meant(
     """
     kind = _kind(found, content)
     content = content | {
-        name: corrected(schema, content[name], name, found.problems)
+        name: _corrected(schema, content[name], name, found.problems)
         for name, schema in (sections_of(kind) if kind else BRIDGE).items()
         if name in content
     }
@@ -215,3 +215,31 @@ def _check_sections(found: Findings, geometry: object) -> None:
         if section.dynamics is not None and section.kind in SCHEMAS:
             where = f'geometry.sections[{i}].dynamics'
             found.of(partial(build, SCHEMAS[section.kind], section.dynamics, where))
+
+
+def _corrected(schema: Any, content: object, where: str, problems: list[str]) -> Any:
+    """The content with each misspelt key under its right name; `problems` gets a line for each.
+
+    A key whose right name is there as well, or that is like none, stays as it is. Of the check
+    alone: what drives a machine takes no key for another.
+    """
+    if isinstance(content, list):
+        kinds = [form for form in forms_of(schema) if typing.get_origin(form) is tuple]
+        inner = typing.get_args(kinds[0])[0] if kinds else None
+        return [_corrected(inner, v, f'{where}[{i}]', problems) for i, v in enumerate(content)]
+    forms = [form for form in forms_of(schema) if is_dataclass(form)]
+    form = fitting_form(forms, content) if forms and isinstance(content, Mapping) else None
+    if form is None or not isinstance(content, Mapping):
+        return content
+    hints, known = typing.get_type_hints(form), [f.name for f in fields(form)]
+    result: dict[Any, Any] = {}
+    for name, value in content.items():
+        right, problem = name, ''
+        if name not in known:
+            near, problem = unknown_key(where, name, known)
+            right = near if near and near not in content and near not in result else name
+        if right != name:
+            problems.append(problem)
+        place = f'{where}.{right}' if where else str(right)
+        result[right] = _corrected(hints.get(right), value, place, problems)
+    return result

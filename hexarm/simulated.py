@@ -8,8 +8,7 @@ from pathlib import Path
 import rclpy
 
 from hexarm import use_own_domain
-from hexarm.cli.running.up import check_alive
-from hexarm.graph import Graph, link_folder, machine_graph
+from hexarm.graph import Graph, check_alive, link_folder, machine_graph
 from hexarm.machines import family
 from hexarm.robot import Robot
 from hexarm.robot_values import FileName, checked_file

@@ -49,12 +49,45 @@ static int found_from(const struct arm *arm, const struct frame *pose, const rea
     real joints[JOINTS];
     for (int i = 0; i < JOINTS; i++)
         joints[i] = start[i];
-    if (count == MOST_BRANCHES || is_known(branches, count, start) || !(descend_joints(&arm->chain, pose, arm->length, steps, joints) < TOLERANCE)
+    if (count == MOST_BRANCHES || is_known(branches, count, start)
+        || !(descend_joints(&arm->chain, pose, arm->length, steps, joints) < TOLERANCE)
         || is_known(branches, count, joints))
         return count;
     for (int i = 0; i < JOINTS; i++)
         branches[count][i] = joints[i];
     return count + 1;
+}
+
+/* Branches come in pairs; of an arm that mirrors them in two pairs at once. */
+static int has_odd(const struct arm *arm, int count)
+{
+    return count % (arm->mirror.joint < 0 ? 2 : 4) != 0;
+}
+
+/* Of every branch its mirror image, too. */
+static int with_images(const struct arm *arm, const struct frame *pose,
+                       real branches[MOST_BRANCHES][JOINTS], int count)
+{
+    for (int k = 0, first = (int)arm->mirror.joint; first >= 0 && k < count; k++) {
+        real image[JOINTS];
+        for (int i = 0; i < JOINTS; i++)
+            image[i] = branches[k][i] + (i == first || i == first + 3 ? REAL_PI : 0);
+        for (int i = 0; i < 2; i++)
+            image[first + 1 + i] = arm->mirror.sum[i] - branches[k][first + 1 + i];
+        count = found_from(arm, pose, image, FEW_STEPS, branches, count);
+    }
+    return count;
+}
+
+static int with_folds(const struct arm *arm, const struct frame *pose,
+                      real branches[MOST_BRANCHES][JOINTS], int count)
+{
+    for (int k = 0; k < count; k++) {
+        real beyond[JOINTS];
+        beyond_fold(&arm->chain, arm->length, branches[k], beyond);
+        count = found_from(arm, pose, beyond, FEW_STEPS, branches, count);
+    }
+    return with_images(arm, pose, branches, count);
 }
 
 /* Start k of those that are spread over the ranges evenly: powers of the root of x^7 = x + 1. Of
@@ -86,58 +119,36 @@ static int from_spread_starts(const struct arm *arm, const struct frame *pose,
     return count;
 }
 
-/* Of the ideal arm, each branch of the pose, or of one a little aside where the pose lacks it: at
-   the edge of the reach the arm as built may have a branch which the ideal one has not. */
-static void ideal_branches(const struct arm *arm, const struct frame *pose,
-                           const real near[JOINTS], real branches[CLOSED_BRANCHES][JOINTS])
-{
-    static const real ASIDE[] = {REAL(0.96), REAL(1.04), REAL(0.9)};
-    const real *shoulder = arm->form.chain.point[1];
-    closed_branches(&arm->form, pose, near, branches);
-    for (int n = 0; n < 3; n++) {
-        struct frame aside = *pose;
-        real others[CLOSED_BRANCHES][JOINTS];
-        int lost = 0;
-        for (int k = 0; k < CLOSED_BRANCHES; k++)
-            lost += isnan(branches[k][0]) != 0;
-        if (lost == 0)
-            return;
-        for (int i = 0; i < 3; i++)
-            aside.position[i] = shoulder[i] + ASIDE[n] * (pose->position[i] - shoulder[i]);
-        closed_branches(&arm->form, &aside, near, others);
-        for (int k = 0; k < CLOSED_BRANCHES; k++)
-            for (int i = 0; isnan(branches[k][JOINTS - 1]) && i < JOINTS; i++)
-                branches[k][i] = others[k][i];
-    }
-}
-
 static int from_ideal(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
                       real branches[MOST_BRANCHES][JOINTS], int count)
 {
     real starts[CLOSED_BRANCHES][JOINTS];
-    ideal_branches(arm, pose, near, starts);
+    closed_branches(&arm->form, pose, near, starts);
     for (int k = 0; k < CLOSED_BRANCHES; k++)
         if (!isnan(starts[k][0]))
             count = found_from(arm, pose, starts[k], FEW_STEPS, branches, count);
     return count;
 }
 
-/* From one loop after another, until one is certain, or adds nothing to those before. Branches come
-   in pairs: of an odd number one is missed. */
+/* From one loop after another, until one is certain, or adds nothing to what was found otherwise. If
+   none is, two branches that almost meet may have been taken for none. */
 static int from_elimination(const struct arm *arm, const struct frame *pose,
                             real branches[MOST_BRANCHES][JOINTS], int count)
 {
     real candidates[MOST_CANDIDATES][JOINTS];
-    int is_complete = 0;
-    for (int n = 0; n < MOST_LOOPS && arm->loops[n] >= 0 && !(is_complete && count % 2 == 0); n++) {
-        int are_certain, before = count;
-        int known = general_candidates(&arm->chain, arm->length, (int)arm->loops[n], pose,
+    int are_certain = 0, has_others = (int)arm->closes == ALMOST_CLOSED, is_done = 0;
+    for (int n = 0; n < MOST_LOOPS && arm->loops[n] >= 0 && !is_done; n++) {
+        int before = count;
+        int known = general_candidates(&arm->solved, arm->length, (int)arm->loops[n], pose,
                                        candidates, &are_certain);
         for (int k = 0; k < known; k++)
             count = found_from(arm, pose, candidates[k], FEW_STEPS, branches, count);
-        is_complete = are_certain || (n > 0 && count == before);
+        count = with_images(arm, pose, branches, count);
+        is_done = (are_certain || ((n > 0 || has_others) && count == before))
+                  && !has_odd(arm, count);
     }
-    return count;
+    int is_sure = is_done && (are_certain || has_others);
+    return is_sure ? count : with_folds(arm, pose, branches, count);
 }
 
 static int from_anywhere(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
@@ -148,8 +159,8 @@ static int from_anywhere(const struct arm *arm, const struct frame *pose, const 
     int count = found_from(arm, pose, near, STEPS, branches, 0);
     if ((int)arm->closes == ALMOST_CLOSED)
         count = from_ideal(arm, pose, near, branches, count);
-    count = from_elimination(arm, pose, branches, count);
-    return count > 0 && count % 2 == 0 ? count : from_spread_starts(arm, pose, branches, count);
+    return arm->loops[0] < 0 ? from_spread_starts(arm, pose, branches, count)
+                             : from_elimination(arm, pose, branches, count);
 }
 
 int arm_branches(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
@@ -165,7 +176,7 @@ int arm_inverse(const struct arm *arm, const struct frame *pose, const real near
                 real joints[JOINTS])
 {
     real branches[MOST_BRANCHES][JOINTS];
-    if ((int)arm->closes != CLOSED && continue_nearby(&arm->chain, pose, near, joints)
+    if ((int)arm->closes != CLOSED && continue_nearby(&arm->chain, arm->length, pose, near, joints)
         && are_within(&arm->ranges, joints))
         return 1;
     int count = arm_branches(arm, pose, near, branches);
@@ -196,7 +207,7 @@ void arm_along(const struct arm *arm, const real (*positions)[3], const real (*r
                long count, const real near[JOINTS], real (*joints)[JOINTS])
 {
     real last[JOINTS], ahead[JOINTS], branches[MOST_BRANCHES][JOINTS];
-    int searches = 0;
+    int searches = 0, moves = 0;
     for (int i = 0; i < JOINTS; i++)
         last[i] = ahead[i] = near[i];
     for (long n = 0; n < count; n++) {
@@ -206,18 +217,20 @@ void arm_along(const struct arm *arm, const real (*positions)[3], const real (*r
         for (int i = 0; i < 3; i++)
             pose.position[i] = positions[n][i];
         int closes = (int)arm->closes != CLOSED && searches <= MOST_SEARCHES
-                     && continue_nearby(&arm->chain, &pose, ahead, joints[n]);
+                     && continue_nearby(&arm->chain, arm->length, &pose, ahead, joints[n]);
         if (!closes && ((int)arm->closes == CLOSED || searches++ < MOST_SEARCHES)) {
             int found = arm_branches(arm, &pose, last, branches);
             closes = continued(branches, found, ahead, joints[n]);
         }
         /* Where joints go on to at their speed: beside postures where two branches meet only the
-           motion tells them apart. */
+           motion tells them apart. What precedes the row, or a gap in it, may be far: no speed. */
         for (int i = 0; i < JOINTS; i++) {
             if (!closes)
                 joints[n][i] = (real)NAN;
-            ahead[i] = closes ? 2 * joints[n][i] - last[i] : last[i];
+            real step = closes && moves ? joints[n][i] - last[i] : 0;
             last[i] = closes ? joints[n][i] : last[i];
+            ahead[i] = last[i] + step;
         }
+        moves = closes;
     }
 }

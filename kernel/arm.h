@@ -9,6 +9,12 @@ enum { MOST_LOOPS = 4 };
 /* Which closed form an arm has. */
 enum { NO_FORM, ALMOST_CLOSED, CLOSED };
 
+/* Four joints, of which a branch may turn the first and the last by half a turn, if the two between
+   mirror their angles: each and its image have a sum. `joint` is the first, 0 to 2; -1: none. */
+struct mirror {
+    real joint, sum[2];
+};
+
 struct arm {
     struct chain chain;      /* as built */
     struct closed_form form; /* its own, or that of the arm that it almost is */
@@ -16,6 +22,8 @@ struct arm {
     real length;             /* divides metres beside radians */
     struct ranges ranges;
     real loops[MOST_LOOPS]; /* of `general_candidates`, the best first; -1: no more have a use */
+    struct mirror mirror;
+    struct chain solved; /* what is eliminated: the chain, or almost, where no loop has a use for it */
 };
 
 /* The branches of a pose, in the first rows; how many rows, some of which may be NaN. `near` gives

@@ -1,22 +1,10 @@
 /* What Python calls of the arms' mathematics. */
-#include <string.h>
-
 #include "arm.h"
 #include "general.h"
 #include "line_keeping.h"
 #include "matrix6.h"
 #include "python.h"
 #include "rate_scaling.h"
-
-static struct frame pose_of(real *const pose[2])
-{
-    struct frame frame;
-    memcpy(frame.position, pose[0], sizeof frame.position);
-    memcpy(frame.rotation, pose[1], sizeof frame.rotation);
-    return frame;
-}
-
-#define POSE(k) ((struct frame[1]){pose_of(a + (k))})
 
 static int are_finite(const real *numbers, int count)
 {
@@ -37,8 +25,7 @@ static Py_ssize_t each_chain_forward(real *const *a)
 {
     posture turned;
     chain_posture(AS(struct chain, 0), a[1], &turned);
-    memcpy(a[2], turned.tool.position, sizeof turned.tool.position);
-    memcpy(a[3], turned.tool.rotation, sizeof turned.tool.rotation);
+    put_pose(&turned.tool, a[2], a[3]);
     return !are_finite(turned.tool.position, 3);
 }
 

@@ -16,19 +16,14 @@ static real braking_ticks(const struct jog_bounds *bounds, const real twist[6])
     return ceil(fmax(fmax(linear, angular) / bounds->tick - ROUNDING, 1));
 }
 
-/* The platform's pose in the base frame, and its joints on the branch nearest to `near`. */
-static void put_joints(const struct jogged *machine, const struct braking_path *at,
-                       const real near[LEGS], real position[3], real rotation[9],
-                       real joints[LEGS])
+/* The platform's pose in the base frame. */
+static struct frame platform_at(const struct jog_frame *frame, const struct frame *pivot)
 {
-    const struct jog_frame *frame = machine->frame;
-    real of_pivot[3], arm[3];
-    product9(frame->rotation, at->rotation, rotation);
-    rotate3(frame->rotation, at->position, of_pivot);
-    rotate3(rotation, frame->pivot, arm);
-    for (int i = 0; i < 3; i++)
-        position[i] = frame->position[i] + of_pivot[i] - arm[i];
-    leg_inverse(&machine->platform->legs, position, rotation, near, joints);
+    real arm[3];
+    struct frame pose = composed(&frame->work, pivot);
+    rotate3(pose.rotation, frame->pivot, arm);
+    minus3(pose.position, arm, pose.position);
+    return pose;
 }
 
 /* The joint that is the furthest above a bound, if any: what it is, by its bound. */
@@ -66,15 +61,15 @@ struct braking_path braking_path(const struct jogged *machine, const struct jog_
     memcpy(joints, from->joints, sizeof joints);
     memcpy(rates, from->rates, sizeof rates);
     for (int tick = 0; tick <= ticks; tick++) {
-        struct braking_path at = {.obstacle = A_LIMIT};
-        real position[3], rotation[9], step[6];
+        struct braking_path at = {.obstacle = A_LIMIT, .pose = from->pose};
+        real step[6];
         gone += bounds->tick * (1 - tick / ticks);
-        memcpy(at.position, from->position, sizeof at.position);
-        memcpy(at.rotation, from->rotation, sizeof at.rotation);
         for (int k = 0; k < 6; k++)
             step[k] = gone * twist[k];
-        se3_move(step, at.position, at.rotation);
-        put_joints(machine, &at, from->joints, position, rotation, at.joints);
+        se3_move(step, &at.pose);
+        struct frame pose = platform_at(machine->frame, &at.pose);
+        leg_inverse(&machine->platform->legs, pose.position, pose.rotation, from->joints,
+                    at.joints);
         for (int i = 0; i < LEGS; i++) {
             real rate = (at.joints[i] - joints[i]) / bounds->tick;
             note(&speed, rate, bounds->joint_speed[i], i);
@@ -82,7 +77,8 @@ struct braking_path braking_path(const struct jogged *machine, const struct jog_
             joints[i] = at.joints[i];
             rates[i] = rate;
         }
-        if (!keeps_limits(machine->platform, machine->ranges, position, rotation, at.joints))
+        if (!keeps_limits(machine->platform, machine->ranges, pose.position, pose.rotation,
+                          at.joints))
             return at;
         if (tick == 0) {
             at.obstacle = NOTHING;

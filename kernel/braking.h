@@ -7,8 +7,8 @@ struct jogged {
     const struct platform *platform;
     const struct limit_ranges *ranges;
     const struct jog_frame {
-        real position[3], rotation[9]; /* of the work frame in the base frame */
-        real pivot[3];                 /* platform frame */
+        struct frame work; /* in the base frame */
+        real pivot[3];     /* platform frame */
     } *frame;
     const struct jog_bounds {
         real tick; /* s */
@@ -18,7 +18,8 @@ struct jogged {
 };
 
 struct jog_state {
-    const real *position, *rotation, *joints, *rates;
+    struct frame pose;
+    const real *joints, *rates;
 };
 
 /* What limits a braking path: the first of these. */
@@ -28,7 +29,8 @@ enum obstacle { NOTHING, A_LIMIT, A_SPEED, AN_ACCELERATION };
    that breaks a limit, are pose and joints; `joint` is the one that would be too fast. */
 struct braking_path {
     real obstacle, joint;
-    real position[3], rotation[9], joints[LEGS];
+    struct frame pose;
+    real joints[LEGS];
 };
 
 struct braking_path braking_path(const struct jogged *machine, const struct jog_state *from,

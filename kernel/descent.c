@@ -5,6 +5,7 @@
 #include "cholesky.h"
 #include "least_distance.h"
 #include "limit_model.h"
+#include "matrix6.h"
 
 #define SETTLED REAL(1e-7) /* a step that changes nothing, as part of the length */
 #define LEAST_CURVATURE REAL(0.2)
@@ -44,7 +45,7 @@ static int is_put_right(const struct descent *d, const struct model *model,
         put_margins(d, trial, margins);
         for (int i = 0; i < model->count; i++) {
             real room = margins[model->row[i]] / model->steepness[i] - d->clearance;
-            if (!(multipliers[i] > 0) || !is_finite(room))
+            if (!(multipliers[i] > 0) || !isfinite(room))
                 continue;
             memcpy(normals[count], model->normal[i], sizeof normals[0]);
             slack[count++] = room;
@@ -69,7 +70,7 @@ static int searched(const struct descent *d, const struct model *model, const re
                     const real multipliers[BOUNDS], struct frame *place)
 {
     const struct frame from = *place;
-    real best = length_of(model->goal) * (1 - REAL(1e-12)), share = 1;
+    real best = size6(model->goal) * (1 - REAL(1e-12)), share = 1;
     int is_found = 0;
     for (int i = 0; i < SHARES; i++, share /= 2) {
         real part[6], offset[6];
@@ -77,9 +78,9 @@ static int searched(const struct descent *d, const struct model *model, const re
             part[k] = share * step[k];
         struct frame trial = displaced(d, from, part);
         int is_inside = is_put_right(d, model, multipliers, &trial);
-        put_offset(d, &trial, d->target_position, d->target_rotation, offset);
-        if (is_inside && length_of(offset) < best) {
-            best = length_of(offset);
+        put_offset(d, &trial, &d->target, offset);
+        if (is_inside && size6(offset) < best) {
+            best = size6(offset);
             *place = trial;
             is_found = 1;
         } else if (is_found) {
@@ -102,14 +103,10 @@ static void put_slope(const struct model *model, const real weight_of[BOUNDS], r
 /* Powell's damped update, which stays positive: Nocedal & Wright, (18.14) to (18.16). */
 static void update(real curvature[6][6], const real step[6], real change[6])
 {
-    real along[6], before = 0, now = 0;
-    for (int i = 0; i < 6; i++) {
-        along[i] = 0;
-        for (int k = 0; k < 6; k++)
-            along[i] += curvature[i][k] * step[k];
-        before += step[i] * along[i];
-        now += step[i] * change[i];
-    }
+    real along[6];
+    for (int i = 0; i < 6; i++)
+        along[i] = dot6(curvature[i], step);
+    real before = dot6(step, along), now = dot6(step, change);
     if (now < LEAST_CURVATURE * before) {
         real share = (1 - LEAST_CURVATURE) * before / (before - now);
         for (int i = 0; i < 6; i++)
@@ -142,36 +139,31 @@ static void learn(real curvature[6][6], const struct model *here, const struct m
     update(curvature, taken, after);
 }
 
-void descend(const struct descent *descent, int most_steps, real position[3], real rotation[9])
+void descend(const struct descent *descent, int most_steps, struct frame *place)
 {
-    struct frame place;
     struct model models[2], *here = &models[0], *there = &models[1];
     real curvature[6][6], step[6], multipliers[BOUNDS], taken[6];
     int is_fresh = 1;
-    memcpy(place.position, position, sizeof place.position);
-    memcpy(place.rotation, rotation, sizeof place.rotation);
     reset(curvature);
-    put_model(descent, &place, here);
+    put_model(descent, place, here);
     for (int count = 0; count < most_steps; count++) {
-        const struct frame from = place;
+        const struct frame from = *place;
         if (!put_step(here, curvature, step, multipliers) ||
-            !searched(descent, here, step, multipliers, &place)) {
+            !searched(descent, here, step, multipliers, place)) {
             if (is_fresh)
                 break;
             reset(curvature);
             is_fresh = 1;
             continue;
         }
-        put_model(descent, &place, there);
-        put_offset(descent, &from, place.position, place.rotation, taken);
+        put_model(descent, place, there);
+        put_offset(descent, &from, place, taken);
         learn(curvature, here, there, multipliers, taken);
         struct model *last = here;
         here = there;
         there = last;
-        if (is_fresh && length_of(taken) < SETTLED * descent->platform->length)
+        if (is_fresh && size6(taken) < SETTLED * descent->platform->length)
             break;
         is_fresh = 0;
     }
-    memcpy(position, place.position, sizeof place.position);
-    memcpy(rotation, place.rotation, sizeof place.rotation);
 }

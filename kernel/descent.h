@@ -8,10 +8,10 @@ struct descent {
     const struct platform *platform;
     const real *low, *high; /* ranges of the limited values */
     const real *pivot;      /* platform frame, m */
-    const real *target_position, *target_rotation;
+    struct frame target;
     real clearance; /* how far inside every limit it stays, in m, to first order */
 };
 
 /* Sequential quadratic programming, with the Lagrangian's curvature learnt by BFGS: from a pose
    that keeps all limits to ones nearer the target, until no step brings it nearer. */
-void descend(const struct descent *descent, int most_steps, real position[3], real rotation[9]);
+void descend(const struct descent *descent, int most_steps, struct frame *place);

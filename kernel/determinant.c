@@ -78,11 +78,12 @@ void trigonometry(real angle, real at[3])
     at[2] = real_sin(angle);
 }
 
-/* The determinant over q3 is a sum of sines and cosines of up to 8 q3: so many samples tell it. */
+/* The determinant over q3 is a sum of sines and cosines of up to 8 q3. Of 9 q3 it has nothing but
+   the errors of the values. */
 void determinant_series(six_equations six, struct series *series)
 {
-    for (int k = 0; k <= DEGREE; k++)
-        series->cosines[k] = series->sines[k] = 0;
+    enum { SAMPLES = ROOTS + 3 };
+    real cosines[DEGREE + 2] = {0}, sines[DEGREE + 2] = {0};
     for (int n = 0; n < SAMPLES; n++) {
         real at[3], matrix[SIZE][SIZE];
         int order[SIZE];
@@ -90,12 +91,17 @@ void determinant_series(six_equations six, struct series *series)
         twelve(six, at, matrix);
         real value = factors(matrix, order) / SAMPLES;
         struct turn turn = {1, 0}, step = {at[1], at[2]};
-        for (int k = 0; k <= DEGREE; k++) {
-            series->cosines[k] += (k ? 2 : 1) * value * turn.cosine;
-            series->sines[k] += 2 * value * turn.sine;
+        for (int k = 0; k <= DEGREE + 1; k++) {
+            cosines[k] += (k ? 2 : 1) * value * turn.cosine;
+            sines[k] += 2 * value * turn.sine;
             turn = turn_on(turn, step);
         }
     }
+    for (int k = 0; k <= DEGREE; k++) {
+        series->cosines[k] = cosines[k];
+        series->sines[k] = sines[k];
+    }
+    series->error = real_fabs(cosines[DEGREE + 1]) + real_fabs(sines[DEGREE + 1]);
 }
 
 /* Newton's method on "the matrix is singular": with M v = 0 wanted, M u = M' v gives the step

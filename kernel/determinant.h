@@ -8,7 +8,7 @@ enum { SIZE = 12 };
 /* 1, cos and sin. */
 void trigonometry(real angle, real at[3]);
 
-/* The determinant over q3, from its values at 17 angles. */
+/* The determinant over q3, from its values at 19 angles. */
 void determinant_series(six_equations six, struct series *series);
 
 /* Newton's method on "M is singular", by less than a part of the room to the next root; v are the

@@ -11,14 +11,14 @@ struct frame displaced(const struct descent *d, struct frame from, const real st
     real twist[6];
     for (int k = 0; k < 6; k++)
         twist[k] = k < 3 ? step[k] : step[k] / d->platform->length;
-    se3_move(twist, from.position, from.rotation);
+    se3_move(twist, &from);
     return from;
 }
 
-void put_offset(const struct descent *d, const struct frame *from, const real position[3],
-                const real rotation[9], real offset[6])
+void put_offset(const struct descent *d, const struct frame *from, const struct frame *to,
+                real offset[6])
 {
-    se3_twist(from->position, from->rotation, position, rotation, offset);
+    se3_twist(from, to, offset);
     for (int k = 3; k < 6; k++)
         offset[k] *= d->platform->length;
 }
@@ -41,10 +41,10 @@ void put_margins(const struct descent *d, const struct frame *place, real margin
 static real slope(real behind, real here, real ahead, real *steeper)
 {
     real up = ahead - here, down = here - behind;
-    up = is_finite(up) ? up : down;
-    down = is_finite(down) ? down : up;
+    up = isfinite(up) ? up : down;
+    down = isfinite(down) ? down : up;
     *steeper = fmax(real_fabs(up), real_fabs(down));
-    return is_finite(up) ? (up + down) / 2 : 0;
+    return isfinite(up) ? (up + down) / 2 : 0;
 }
 
 void put_model(const struct descent *d, const struct frame *place, struct model *model)
@@ -63,10 +63,10 @@ void put_model(const struct descent *d, const struct frame *place, struct model 
         real normal[6], steepness = 0, steeper;
         for (int k = 0; k < 6; k++) {
             normal[k] = slope(sides[k][0][i], here[i], sides[k][1][i], &steeper) / size;
-            steepness += is_finite(steeper) ? steeper * steeper / (size * size) : 0;
+            steepness += isfinite(steeper) ? steeper * steeper / (size * size) : 0;
         }
         steepness = real_sqrt(steepness);
-        if (!is_finite(here[i]) || !(steepness > 0))
+        if (!isfinite(here[i]) || !(steepness > 0))
             continue;
         for (int k = 0; k < 6; k++)
             model->normal[model->count][k] = normal[k] / steepness;
@@ -74,5 +74,5 @@ void put_model(const struct descent *d, const struct frame *place, struct model 
         model->steepness[model->count] = steepness;
         model->row[model->count++] = i;
     }
-    put_offset(d, place, d->target_position, d->target_rotation, model->goal);
+    put_offset(d, place, &d->target, model->goal);
 }

@@ -16,24 +16,11 @@ struct model {
 struct frame displaced(const struct descent *d, struct frame from, const real step[6]);
 
 /* The step (6) from a place to a pose, in metres. */
-void put_offset(const struct descent *d, const struct frame *from, const real position[3],
-                const real rotation[9], real offset[6]);
+void put_offset(const struct descent *d, const struct frame *from, const struct frame *to,
+                real offset[6]);
 
 /* How far inside the ranges values are, from below, then from above; NaN where there is none. */
 void put_margins(const struct descent *d, const struct frame *place, real margins[BOUNDS]);
 
 /* By differences in all six directions, to one side where the other has no value. */
 void put_model(const struct descent *d, const struct frame *place, struct model *model);
-
-static inline int is_finite(real x)
-{
-    return real_fabs(x) < INFINITY;
-}
-
-static inline real length_of(const real v[6])
-{
-    real square = 0;
-    for (int k = 0; k < 6; k++)
-        square += v[k] * v[k];
-    return real_sqrt(square);
-}

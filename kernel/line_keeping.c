@@ -100,8 +100,8 @@ static void rates_of(const struct decomposed *at, const real parts[6], int may_l
 /* The way back to the line, as a twist. */
 static void pull(const real off_line[6], const real twist[6], real back[6])
 {
-    real off = real_sqrt(dot6(off_line, off_line));
-    real most = MOST_PULL * real_sqrt(dot6(twist, twist));
+    real off = size6(off_line);
+    real most = MOST_PULL * size6(twist);
     real gain = off * PULL > most ? most / off : PULL;
     for (int k = 0; k < 6; k++)
         back[k] = gain * off_line[k];
@@ -117,7 +117,7 @@ void line_rates(const struct decomposed *at, real onset, const real twist[6], co
     if (off_line) {
         pull(off_line, twist, back);
         times6(back, at->svd.left, back_parts);
-        real size = real_sqrt(dot6(twist, twist));
+        real size = size6(twist);
         for (int k = 0; k < 6; k++) {
             /* The pull never turns a lost direction around: the way back must stay open. */
             if (!(sigma[k] < onset && back_parts[k] * parts[k] < 0))

@@ -74,6 +74,11 @@ void damped6(real matrix[6][6], real damping, const real right[6], real solution
     divide_by_transposed(6, 6, normal[0], solution);
 }
 
+real size6(const real a[6])
+{
+    return real_sqrt(dot6(a, a));
+}
+
 static void rotate6(real cosine, real sine, real a[6], real b[6])
 {
     for (int k = 0; k < 6; k++) {
@@ -157,7 +162,7 @@ int keeps_singular_value(real matrix[6][6], real minimum)
 static void sort_rows(real columns[6][6], real sigma[6], real right[6][6])
 {
     for (int i = 0; i < 6; i++)
-        sigma[i] = real_sqrt(dot6(columns[i], columns[i]));
+        sigma[i] = size6(columns[i]);
     for (int i = 1; i < 6; i++)
         for (int j = i; j > 0 && sigma[j] > sigma[j - 1]; j--) {
             swap(&sigma[j], &sigma[j - 1]);

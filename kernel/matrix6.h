@@ -11,6 +11,7 @@ real eliminate6(real matrix[6][6], real b[6]);
 void damped6(real matrix[6][6], real damping, const real right[6], real solution[6]);
 
 real dot6(const real a[6], const real b[6]);
+real size6(const real a[6]);
 
 /* The smallest singular value. The matrix is destroyed. NaN for NaN. */
 real smallest_singular_value(real matrix[6][6]);

@@ -11,16 +11,16 @@
 enum { MOST_ITERATIONS = 30 };
 
 /* J, not scaled, and by how much each rod must grow. */
-static void linearised(const struct newton_problem *problem, const real position[3],
-                       const real rotation[9], real jacobian[6][6], real error[LEGS])
+static void linearised(const struct newton_problem *problem, const struct frame *pose,
+                       real jacobian[6][6], real error[LEGS])
 {
     real columns[6][LEGS];
-    struct rods rods = rods_of(problem->base, problem->end, position, rotation);
+    struct rods rods = rods_of(problem->base, problem->end, pose->position, pose->rotation);
     real extra[LEGS] = {0};
     leg_columns(&rods, 1, columns);
     if (problem->screws) {
-        screw_lengths(problem->screws, &rods, rotation, extra);
-        add_screw_columns(problem->screws, &rods, rotation, 1, columns);
+        screw_lengths(problem->screws, &rods, pose->rotation, extra);
+        add_screw_columns(problem->screws, &rods, pose->rotation, 1, columns);
     }
     for (int i = 0; i < LEGS; i++) {
         error[i] = problem->length[i] - extra[i] - rods.length[i];
@@ -54,12 +54,12 @@ static enum newton_end judged(const struct newton_rules *rules, real side, real 
 }
 
 struct newton_report newton(const struct newton_problem *problem, const struct newton_rules *rules,
-                            real position[3], real rotation[9])
+                            struct frame *pose)
 {
     struct newton_report report = {.end = NOT_FOUND};
     real side = rules->side, jacobian[6][6], step[6];
     for (int k = 0; k <= MOST_ITERATIONS; k++) {
-        linearised(problem, position, rotation, jacobian, step);
+        linearised(problem, pose, jacobian, step);
         real square = 0;
         report.residual = 0;
         for (int i = 0; i < LEGS; i++) {
@@ -78,7 +78,7 @@ struct newton_report newton(const struct newton_problem *problem, const struct n
             return report;
         }
         side = side == side ? side : determinant;
-        se3_move(step, position, rotation);
+        se3_move(step, pose);
     }
     return report;
 }

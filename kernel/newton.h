@@ -1,6 +1,7 @@
 /* From the lengths of six rods to the platform's pose: docs/kinematics.md, 3. */
 #pragma once
 #include "screws.h"
+#include "vector.h"
 
 /* Rods between base points (base frame) and platform joints (platform frame). */
 struct newton_problem {
@@ -30,4 +31,4 @@ struct newton_report {
 
 /* Newton's method on SE(3), (3.2), from the pose that it is given, which becomes the last one. */
 struct newton_report newton(const struct newton_problem *problem, const struct newton_rules *rules,
-                            real position[3], real rotation[9]);
+                            struct frame *pose);

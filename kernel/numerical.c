@@ -11,11 +11,11 @@
 #define ARRIVED REAL(1e-11)
 /* A start whose error is still more than this part of what it was ten steps ago is given up. */
 #define STALLED REAL(0.9)
-enum { NEARBY_STEPS = 4, LOOK_BACK = 10 };
+enum { NEARBY_STEPS = 4, DAMPED_STEPS = 12, LOOK_BACK = 10 };
 
 void twist_to_pose(const struct frame *here, const struct frame *pose, real twist[6])
 {
-    se3_twist(here->position, here->rotation, pose->position, pose->rotation, twist);
+    se3_twist(here, pose, twist);
 }
 
 static real largest(const real a[JOINTS], const real b[JOINTS])
@@ -27,8 +27,16 @@ static real largest(const real a[JOINTS], const real b[JOINTS])
     return most;
 }
 
-int continue_nearby(const struct chain *chain, const struct frame *pose, const real near[JOINTS],
-                    real joints[JOINTS])
+static real square_distance(const real a[JOINTS], const real b[JOINTS])
+{
+    real sum = 0;
+    for (int i = 0; i < JOINTS; i++)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sum;
+}
+
+static int newton_nearby(const struct chain *chain, const struct frame *pose,
+                         const real near[JOINTS], real joints[JOINTS])
 {
     static const real NOTHING[6] = {0};
     for (int i = 0; i < JOINTS; i++)
@@ -78,4 +86,53 @@ real descend_joints(const struct chain *chain, const struct frame *pose, real le
         for (int i = 0; i < JOINTS; i++)
             joints[i] += change[i];
     }
+}
+
+static void scaled_jacobian(const struct chain *chain, real length, const real joints[JOINTS],
+                            real jacobian[6][JOINTS])
+{
+    posture here;
+    chain_posture(chain, joints, &here);
+    chain_jacobian(&here, jacobian);
+    scale_jacobian(length, jacobian);
+}
+
+/* Along the lost direction the error is sigma t + c t^2/2: zero here, and again at -2 sigma/c. */
+void beyond_fold(const struct chain *chain, real length, const real joints[JOINTS],
+                 real beyond[JOINTS])
+{
+    const real h = REAL(1e-3);
+    struct svd6 parts;
+    real jacobian[6][JOINTS], curve = 0;
+    scaled_jacobian(chain, length, joints, jacobian);
+    svd6(jacobian, &parts);
+    for (int side = -1; side <= 1; side += 2) {
+        for (int i = 0; i < JOINTS; i++)
+            beyond[i] = joints[i] + (real)side * h * parts.right[5][i];
+        scaled_jacobian(chain, length, beyond, jacobian);
+        for (int i = 0; i < 6; i++)
+            curve += parts.left[i][5] * dot6(jacobian[i], parts.right[5]) * (real)side / (2 * h);
+    }
+    real along = -2 * parts.sigma[5] / curve;
+    for (int i = 0; i < JOINTS; i++)
+        beyond[i] = joints[i] + along * parts.right[5][i];
+}
+
+int continue_nearby(const struct chain *chain, real length, const struct frame *pose,
+                    const real near[JOINTS], real joints[JOINTS])
+{
+    real other[JOINTS];
+    if (newton_nearby(chain, pose, near, joints))
+        return 1;
+    for (int i = 0; i < JOINTS; i++)
+        joints[i] = near[i];
+    if (!(descend_joints(chain, pose, length, DAMPED_STEPS, joints) < ARRIVED)
+        || !(largest(joints, near) <= BESIDE))
+        return 0;
+    beyond_fold(chain, length, joints, other);
+    int is_nearer = descend_joints(chain, pose, length, DAMPED_STEPS, other) < ARRIVED
+                    && square_distance(other, near) < square_distance(joints, near);
+    for (int i = 0; is_nearer && i < JOINTS; i++)
+        joints[i] = other[i];
+    return 1;
 }

@@ -5,10 +5,10 @@
 #include "rods.h"
 
 static int is_bent_as_at_home(const struct platform *platform, real base[3][LEGS],
-                              const real joints[LEGS], const real position[3],
-                              const real rotation[9])
+                              const real joints[LEGS], const struct frame *pose)
 {
-    struct rods rods = rods_of(base, platform->legs.shape.end, position, rotation);
+    struct rods rods = rods_of(base, platform->legs.shape.end, pose->position,
+                               pose->rotation);
     real gains[LEGS];
     leg_gains(&platform->legs, joints, rods.unit, gains);
     int is_bent = 1;
@@ -19,16 +19,16 @@ static int is_bent_as_at_home(const struct platform *platform, real base[3][LEGS
 
 struct newton_report platform_forward(const struct platform *platform,
                                       const struct newton_rules *rules, const real joints[LEGS],
-                                      real position[3], real rotation[9])
+                                      struct frame *pose)
 {
     struct newton_problem problem;
     leg_points(&platform->legs, joints, problem.base);
     leg_lengths(&platform->legs, joints, problem.length);
     problem.screws = platform->legs.screws.lead != 0 ? &platform->legs.screws : NULL;
     memcpy(problem.end, platform->legs.shape.end, sizeof problem.end);
-    struct newton_report report = newton(&problem, rules, position, rotation);
+    struct newton_report report = newton(&problem, rules, pose);
     if (report.end == FOUND && rules->side == rules->side &&
-        !is_bent_as_at_home(platform, problem.base, joints, position, rotation))
+        !is_bent_as_at_home(platform, problem.base, joints, pose))
         report.end = BENT;
     return report;
 }

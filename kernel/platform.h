@@ -15,4 +15,4 @@ struct platform {
    leg that is bent the other way than at home is refused, too: 3.3, case 5. */
 struct newton_report platform_forward(const struct platform *platform,
                                       const struct newton_rules *rules, const real joints[LEGS],
-                                      real position[3], real rotation[9]);
+                                      struct frame *pose);

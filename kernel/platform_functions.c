@@ -1,7 +1,5 @@
 /* What Python calls of the platforms' mathematics. Points and directions come as Python has them,
    leg by leg. */
-#include <string.h>
-
 #include "braking.h"
 #include "capsules.h"
 #include "descent.h"
@@ -27,12 +25,6 @@ static void by_leg(real columns[][LEGS], real *points, int axes)
     for (int i = 0; i < LEGS; i++)
         for (int k = 0; k < axes; k++)
             points[axes * i + k] = columns[k][i];
-}
-
-static void copy_pose(real *const start[2], real *const there[2])
-{
-    memcpy(there[0], start[0], 3 * sizeof(real));
-    memcpy(there[1], start[1], 9 * sizeof(real));
 }
 
 SUM(leg_inverse, leg_inverse(AS(struct legs, 0), a[1], a[2], a[3], a[4]))
@@ -95,16 +87,18 @@ static Py_ssize_t each_forward_by_lengths(real *const *a)
     by_axis(a[0], problem.end, 3);
     by_axis(a[2], problem.base, 3);
     memcpy(problem.length, a[3], sizeof problem.length);
-    copy_pose(a + 4, a + 6);
-    *AS(struct newton_report, 8) = newton(&problem, AS(struct newton_rules, 1), a[6], a[7]);
+    struct frame pose = pose_of(a + 4);
+    *AS(struct newton_report, 8) = newton(&problem, AS(struct newton_rules, 1), &pose);
+    put_pose(&pose, a[6], a[7]);
     return 0;
 }
 
 static Py_ssize_t each_platform_forward(real *const *a)
 {
-    copy_pose(a + 3, a + 5);
-    *AS(struct newton_report, 7) = platform_forward(
-        AS(struct platform, 0), AS(struct newton_rules, 1), a[2], a[5], a[6]);
+    struct frame pose = pose_of(a + 3);
+    *AS(struct newton_report, 7) =
+        platform_forward(AS(struct platform, 0), AS(struct newton_rules, 1), a[2], &pose);
+    put_pose(&pose, a[5], a[6]);
     return 0;
 }
 
@@ -115,7 +109,8 @@ DO(limited_values, limited_values(AS(struct platform, 0), a[1], a[2], a[3], a[4]
 static Py_ssize_t all_stack_sections(real *const *a, Py_ssize_t items)
 {
     for (Py_ssize_t i = 0; i < items; i++) {
-        struct frame end, sections[MOST_SECTIONS];
+        real *const at[2] = {a[2] + 3 * i, a[3] + 9 * i};
+        struct frame end = pose_of(at), sections[MOST_SECTIONS];
         real *free = a[4] + 6 * MOST_SECTIONS * i;
         a[7][i] = 0;
         if (i > 0 && *a[1] != 0) {
@@ -124,13 +119,10 @@ static Py_ssize_t all_stack_sections(real *const *a, Py_ssize_t items)
             for (int k = 0; k < 6 * MOST_SECTIONS; k++)
                 free[k] = free[k - 6 * MOST_SECTIONS];
         }
-        memcpy(end.position, a[2] + 3 * i, sizeof end.position);
-        memcpy(end.rotation, a[3] + 9 * i, sizeof end.rotation);
         a[7][i] = stack_sections(AS(struct stack, 0), &end, free, sections);
-        for (int k = 0; k < (int)AS(struct stack, 0)->count; k++) {
-            memcpy(a[5] + 3 * (MOST_SECTIONS * i + k), sections[k].position, 3 * sizeof(real));
-            memcpy(a[6] + 9 * (MOST_SECTIONS * i + k), sections[k].rotation, 9 * sizeof(real));
-        }
+        for (int k = 0; k < (int)AS(struct stack, 0)->count; k++)
+            put_pose(sections + k, a[5] + 3 * (MOST_SECTIONS * i + k),
+                     a[6] + 9 * (MOST_SECTIONS * i + k));
     }
     return 0;
 }
@@ -160,15 +152,16 @@ static Py_ssize_t each_rotation_of(real *const *a)
 /* In sum how many poses are not finite. */
 static Py_ssize_t each_moved(real *const *a)
 {
-    real *position = a[3], *rotation = a[4], sum = 0;
-    copy_pose(a, a + 3);
-    se3_move(a[2], position, rotation);
+    real sum = 0;
+    struct frame pose = pose_of(a);
+    se3_move(a[2], &pose);
+    put_pose(&pose, a[3], a[4]);
     for (int k = 0; k < 3; k++)
-        sum += real_fabs(position[k]) + real_fabs(rotation[4 * k]);
+        sum += real_fabs(pose.position[k]) + real_fabs(pose.rotation[4 * k]);
     return !(sum < INFINITY);
 }
 
-DO(twist_between, se3_twist(a[0], a[1], a[2], a[3], a[4]))
+DO(twist_between, se3_twist(POSE(0), POSE(2), a[4]))
 
 static Py_ssize_t all_least_distance(real *const *a, Py_ssize_t items)
 {
@@ -178,9 +171,11 @@ static Py_ssize_t all_least_distance(real *const *a, Py_ssize_t items)
 /* Platform, lowest and highest values, pivot; clearance and most steps; target; start; end. */
 static Py_ssize_t each_descended(real *const *a)
 {
-    const struct descent descent = {AS(struct platform, 0), a[1], a[2], a[3], a[5], a[6], a[4][0]};
-    copy_pose(a + 7, a + 9);
-    descend(&descent, (int)a[4][1], a[9], a[10]);
+    const struct descent descent = {
+        AS(struct platform, 0), a[1], a[2], a[3], pose_of(a + 5), a[4][0]};
+    struct frame pose = pose_of(a + 7);
+    descend(&descent, (int)a[4][1], &pose);
+    put_pose(&pose, a[9], a[10]);
     return 0;
 }
 
@@ -190,7 +185,7 @@ static Py_ssize_t all_first_free_path(real *const *a, Py_ssize_t items)
 {
     const struct jogged machine = {AS(struct platform, 0), AS(struct limit_ranges, 1),
                                    AS(struct jog_frame, 2), AS(struct jog_bounds, 3)};
-    const struct jog_state from = {a[4], a[5], a[6], a[7]};
+    const struct jog_state from = {pose_of(a + 4), a[6], a[7]};
     struct braking_path *paths = AS(struct braking_path, 9);
     memset(paths, 0, (size_t)items * sizeof *paths);
     Py_ssize_t i = 0;

@@ -12,7 +12,7 @@ static complex_number reciprocal(complex_number z)
 }
 
 /* z^8 times the series, for exp(i q3) = z: a polynomial of degree 16. */
-static void polynomial_of(const struct series *series, complex_number polynomial[SAMPLES])
+static void polynomial_of(const struct series *series, complex_number polynomial[ROOTS + 1])
 {
     polynomial[DEGREE] = (complex_number){series->cosines[0], 0};
     for (int k = 1; k <= DEGREE; k++) {
@@ -22,11 +22,11 @@ static void polynomial_of(const struct series *series, complex_number polynomial
 }
 
 /* Newton's step p/p' at z. */
-static complex_number newton_step(const complex_number polynomial[SAMPLES], complex_number z,
+static complex_number newton_step(const complex_number polynomial[ROOTS + 1], complex_number z,
                                   complex_number *derivative)
 {
-    complex_number value = polynomial[SAMPLES - 1], slope = {0, 0};
-    for (int k = SAMPLES - 2; k >= 0; k--) {
+    complex_number value = polynomial[ROOTS], slope = {0, 0};
+    for (int k = ROOTS - 1; k >= 0; k--) {
         slope = turn_on(slope, z);
         slope.cosine += value.cosine;
         slope.sine += value.sine;
@@ -43,19 +43,16 @@ static real size_of(complex_number z)
     return real_sqrt(z.cosine * z.cosine + z.sine * z.sine);
 }
 
-/* How far rounding of the polynomial may have moved a root. */
-static real blur(const complex_number polynomial[SAMPLES], complex_number root)
+/* How far the errors of the coefficients may have moved a root. */
+static real blur(const complex_number polynomial[ROOTS + 1], real error, complex_number root)
 {
     complex_number slope;
-    real sum = 0;
     newton_step(polynomial, root, &slope);
-    for (int k = 0; k < SAMPLES; k++)
-        sum += size_of(polynomial[k]);
-    return 10 * REAL_EPSILON * sum / size_of(slope);
+    return error / size_of(slope);
 }
 
 /* All roots at once (Aberth 1973): Newton's steps, each kept away from the other roots. */
-static void all_roots(const complex_number polynomial[SAMPLES], complex_number roots[ROOTS])
+static void all_roots(const complex_number polynomial[ROOTS + 1], complex_number roots[ROOTS])
 {
     enum { MOST_STEPS = 30 };
     const real arrived = REAL(1e-10);
@@ -96,23 +93,28 @@ static real distance(complex_number a, complex_number b)
 int series_roots(const struct series *series, real angles[ROOTS], real rooms[ROOTS],
                  int *are_certain)
 {
-    const real certain = REAL(1e-4);
+    const real certain = REAL(1e-4), aside = REAL(0.1);
     const real nearly = REAL(0.05), rounding = REAL(1e-4);
-    complex_number polynomial[SAMPLES], roots[ROOTS];
+    complex_number polynomial[ROOTS + 1], roots[ROOTS];
     int count = 0;
     polynomial_of(series, polynomial);
+    real error = (ROOTS + 1) * series->error;
+    for (int k = 0; k <= ROOTS; k++)
+        error += 10 * REAL_EPSILON * size_of(polynomial[k]);
     all_roots(polynomial, roots);
     *are_certain = 1;
     for (int k = 0; k < ROOTS; k++) {
-        real size = size_of(roots[k]);
+        real size = size_of(roots[k]), moved = blur(polynomial, error, roots[k]);
         /* Roots beside the circle are pairs z, 1/z*: one is enough. */
-        if (!(size > 1 - nearly && size < 1 + rounding))
+        if (!(size > 1 - nearly && size < 1 + rounding)) {
+            *are_certain &= moved < aside * real_fabs(1 - size);
             continue;
+        }
         rooms[count] = 1;
         for (int j = 0; j < ROOTS; j++)
             if (j != k && distance(roots[j], roots[k]) < rooms[count])
                 rooms[count] = distance(roots[j], roots[k]);
-        *are_certain &= blur(polynomial, roots[k]) < certain * rooms[count];
+        *are_certain &= moved < certain * rooms[count];
         angles[count++] = turn_angle(roots[k]);
     }
     return count;

@@ -5,8 +5,10 @@
    all others must fit it. What does not fit never reaches the mathematics. Tables are in
    platform_functions.c and arm_functions.c. */
 #pragma once
+#include <string.h>
+
 #include "python_abi.h"
-#include "real.h"
+#include "vector.h"
 
 enum { MOST_ARRAYS = 12 };
 
@@ -56,6 +58,23 @@ struct function {
 /* An array that holds structs, or rows of n numbers. */
 #define AS(type, k) ((type *)a[k])
 #define ROWS(n, k) ((real(*)[n])a[k])
+
+/* A pose of two arrays, its position and its rotation. */
+#define POSE(k) ((struct frame[1]){pose_of(a + (k))})
+
+static inline struct frame pose_of(real *const pose[2])
+{
+    struct frame frame;
+    memcpy(frame.position, pose[0], sizeof frame.position);
+    memcpy(frame.rotation, pose[1], sizeof frame.rotation);
+    return frame;
+}
+
+static inline void put_pose(const struct frame *pose, real position[3], real rotation[9])
+{
+    memcpy(position, pose->position, sizeof pose->position);
+    memcpy(rotation, pose->rotation, sizeof pose->rotation);
+}
 
 /* Each ends with a row without a name. */
 extern struct function PLATFORM_FUNCTIONS[], ARM_FUNCTIONS[];

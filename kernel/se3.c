@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#include "vector.h"
-
 /* Below, in rad, sin(x) / x is 1 to the last digit. */
 #define SMALL_ANGLE REAL(1e-6)
 
@@ -95,22 +93,20 @@ void rotation_log(const real rotation[9], real w[3])
         w[i] = scale * q[i];
 }
 
-void se3_move(const real twist[6], real position[3], real rotation[9])
+void se3_move(const real twist[6], struct frame *pose)
 {
     real turn[9], before[9];
     rotation_exp(twist + 3, turn);
-    memcpy(before, rotation, sizeof before);
-    product9(turn, before, rotation);
+    memcpy(before, pose->rotation, sizeof before);
+    product9(turn, before, pose->rotation);
     for (int i = 0; i < 3; i++)
-        position[i] += twist[i];
+        pose->position[i] += twist[i];
 }
 
-void se3_twist(const real from_position[3], const real from_rotation[9],
-                   const real to_position[3], const real to_rotation[9], real twist[6])
+void se3_twist(const struct frame *from, const struct frame *to, real twist[6])
 {
     real turn[9];
-    for (int i = 0; i < 3; i++)
-        twist[i] = to_position[i] - from_position[i];
-    product9_back(to_rotation, from_rotation, turn);
+    minus3(to->position, from->position, twist);
+    product9_back(to->rotation, from->rotation, turn);
     rotation_log(turn, twist + 3);
 }

@@ -1,14 +1,7 @@
 /* Displacements: docs/kinematics.md, 3.1. A twist is v, then the rotation vector, both base axes.
    */
 #pragma once
-#include "real.h"
-
-/* What maps coordinates of one frame to another: the frame's origin, and the rotation, row by row.
-   */
-struct frame {
-    real position[3];
-    real rotation[9];
-};
+#include "vector.h"
 
 /* a b: from b's frame, through a's. */
 struct frame composed(const struct frame *a, const struct frame *b);
@@ -28,8 +21,7 @@ void rotation_of(const real q[4], real rotation[9]);
 void rotation_log(const real rotation[9], real w[3]);
 
 /* p + v and exp(w) R, (3.2): origin and orientation advance each on its own. */
-void se3_move(const real twist[6], real position[3], real rotation[9]);
+void se3_move(const real twist[6], struct frame *pose);
 
 /* The twist that moves one pose to another. */
-void se3_twist(const real from_position[3], const real from_rotation[9],
-                   const real to_position[3], const real to_rotation[9], real twist[6]);
+void se3_twist(const struct frame *from, const struct frame *to, real twist[6]);

@@ -49,7 +49,7 @@ struct stack_placed stack_placed(const struct stack *stack, const struct frame *
         for (int k = 0; k < 6; k++)
             twist[k] = free[6 * i + k] * section->range[k];
         p.sections[i] = section->home;
-        se3_move(twist, p.sections[i].position, p.sections[i].rotation);
+        se3_move(twist, &p.sections[i]);
         struct frame top = composed(&p.sections[i], &section->after);
         p.bases[i + 1] = composed(&p.bases[i], &top);
     }
@@ -65,8 +65,7 @@ static void put_last(const struct stack *stack, const struct stack_placed *p, re
 {
     int last = (int)stack->count - 1;
     const struct stack_section *section = &stack->sections[last];
-    const struct frame *home = &section->home, *at = &p->sections[last];
-    se3_twist(home->position, home->rotation, at->position, at->rotation, away);
+    se3_twist(&section->home, &p->sections[last], away);
     for (int k = 0; k < 6; k++)
         away[k] /= section->range[k];
 }

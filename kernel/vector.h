@@ -2,6 +2,13 @@
 #pragma once
 #include "real.h"
 
+/* What maps coordinates of one frame to another: the frame's origin, and the rotation, row by row.
+   */
+struct frame {
+    real position[3];
+    real rotation[9];
+};
+
 static inline real dot3(const real a[3], const real b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -119,6 +119,10 @@ def _convert(expected: Any, value: object, where: str, problems: list[str]) -> A
         kinds = [a for a in arguments if a is not type(None)]
         if isinstance(value, Mapping) and all(map(dataclasses.is_dataclass, kinds)):
             return _convert_form(kinds, value, where, problems)
+        counts = [len(typing.get_args(k)) for k in kinds if typing.get_origin(k) is tuple]
+        if isinstance(value, list) and len(counts) > 1 and len(value) not in counts:
+            problems.append(_wrong_count(where, value, ' or '.join(map(str, counts))))
+            return ()
         return _convert(_fitting(kinds, value), value, where, problems)
     if origin is typing.Literal:
         if value not in arguments:
@@ -154,7 +158,17 @@ def _convert_form(
             f'{where}: has the keys of no form or of two, needs one of {", ".join(firsts)}'
         )
         return None
-    return _convert_section(form, value, where, problems)
+    own, *others = ([f.name for f in dataclasses.fields(one)] for one in (form, *forms))
+    foreign = {
+        name: names[0] for names in others for name in names if name in value and name not in own
+    }
+    problems += [
+        f'{_join(where, name)}: does not go with {own[0]}'
+        + (f', but with {first}' if first != name else '')
+        for name, first in foreign.items()
+    ]
+    rest = {name: entry for name, entry in value.items() if name not in foreign}
+    return _convert_section(form, rest, where, problems)
 
 
 def fitting_form(forms: list[Any], value: Mapping[Any, Any]) -> Any:
@@ -206,13 +220,16 @@ def _convert_list(arguments: Any, value: object, where: str, problems: list[str]
     if arguments[-1] is Ellipsis:
         arguments = (arguments[0],) * len(value)
     if len(value) != len(arguments):
-        entries = counted(len(value), 'entry', 'entries')
-        problems.append(f'{where}: has {entries}, needs {len(arguments)}')
+        problems.append(_wrong_count(where, value, str(len(arguments))))
         return ()
     return tuple(
         _convert(kind, entry, f'{where}[{i}]', problems)
         for i, (kind, entry) in enumerate(zip(arguments, value, strict=True))
     )
+
+
+def _wrong_count(where: str, value: list[Any], needed: str) -> str:
+    return f'{where}: has {counted(len(value), "entry", "entries")}, needs {needed}'
 
 
 def _convert_scalar(expected: Any, value: object, where: str, problems: list[str]) -> Any:

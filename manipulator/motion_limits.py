@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from manipulator.arrays import Array, frozen
 from manipulator.config import RATE, quantity
+from manipulator.errors import ConfigError
 
 BRAKING_SHARE = 0.3
 """The part of each acceleration limit that plans leave for braking along their path."""
@@ -117,10 +118,15 @@ class MotionLimits:
         return BRAKING_SHARE * min(ratios)
 
     @classmethod
-    def from_config(cls, config: MotionConfig) -> 'MotionLimits':
-        """SI units; a machine's joints are rotary or linear, never both."""
+    def from_config(cls, config: MotionConfig, joint_unit: str) -> 'MotionLimits':
+        """SI units; joint_unit, 'rad' or 'm', is that of all joints of the machine.
+
+        Raises ConfigError for limits of joints in the other unit.
+        """
         degree, millimetre = math.radians(1), 1e-3
-        if config.joint_speed_mm_s is not None:
+        is_linear = joint_unit == 'm'
+        _check_unit(config, is_linear)
+        if is_linear:
             joint = JointDerivatives.of(
                 _scaled(config.joint_speed_mm_s, millimetre),
                 _scaled(config.joint_acceleration_mm_s2, millimetre),
@@ -143,6 +149,17 @@ class MotionLimits:
             ),
             joint,
         )
+
+
+def _check_unit(config: MotionConfig, is_linear: bool) -> None:
+    other, own = ('deg', 'mm') if is_linear else ('mm', 'deg')
+    problems = [
+        f'motion.{name.format(other)}: the joints are in {own}, needs {name.format(own)}'
+        for name in ('joint_speed_{}_s', 'joint_acceleration_{}_s2')
+        if getattr(config, name.format(other)) is not None
+    ]
+    if problems:
+        raise ConfigError(problems)
 
 
 def _scaled(limit: float | SixNumbers | None, unit: float) -> Array:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -104,7 +104,8 @@ def _stack(config: StackConfig, limits: StackLimitsConfig, machine_file: Machine
     kinematics = StackKinematics(
         Stack(sections, transforms), limits.characteristic_length_mm * 1e-3
     )
-    motion = MotionLimits.from_config(machine_file.motion)
+    motion = MotionLimits.from_config(machine_file.motion, kinematics.joint_unit)
+    _check_motion(motion, kinematics)
     return Machine(
         kinematics,
         constraints_of(kinematics),
@@ -139,12 +140,38 @@ def _check_units(sections: tuple[Machine, ...]) -> None:
             )
 
 
+def _check_motion(motion: MotionLimits, kinematics: StackKinematics) -> None:
+    """Raises ConfigError for limits of six joints alone."""
+    unit, count = 'mm' if kinematics.joint_unit == 'm' else 'deg', len(kinematics.joint_names)
+    limits = {
+        f'joint_speed_{unit}_s': motion.joint.speed,
+        f'joint_acceleration_{unit}_s2': motion.joint.acceleration,
+    }
+    problems = [
+        f'motion.{name}: has {limit.size} entries, a stack of {count} joints needs one number'
+        for name, limit in limits.items()
+        if limit.shape
+    ]
+    if problems:
+        raise ConfigError(problems)
+
+
 def _sections(config: StackConfig, machine_file: MachineFile) -> tuple[Machine, ...]:
-    """Each section as a machine; those that are described alike are one."""
+    """Each section as a machine; those that are described alike are one.
+
+    Limits of the joints' speed are the stack's, and in the unit of all joints.
+    """
     made: list[tuple[MachineFile, Machine]] = []
     sections, problems = [], []
+    motion = replace(
+        machine_file.motion,
+        joint_speed_deg_s=None,
+        joint_acceleration_deg_s2=None,
+        joint_speed_mm_s=None,
+        joint_acceleration_mm_s2=None,
+    )
     for i, section in enumerate(config.sections):
-        file = _machine_file(section, machine_file)
+        file = _machine_file(section, replace(machine_file, motion=motion))
         machine = next((m for other, m in made if other == file), None)
         if machine is None:
             try:

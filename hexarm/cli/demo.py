@@ -14,13 +14,13 @@ import numpy as np
 
 from hexarm import use_own_domain
 from hexarm.cli.answers import picture_file
-from hexarm.cli.running.up import Interrupted, StopSignal, check_alive
 from hexarm.cli.statuses import INTERRUPTED
 from hexarm.demo.report import Curve, Observation, Result, measure
-from hexarm.graph import Executable, Graph, link_folder, machine_graph
+from hexarm.graph import Executable, Graph, check_alive, link_folder, machine_graph
 from hexarm.machines import load
 from hexarm.panel_process import offered_panel
 from manipulator.errors import Refused, Stopped, TimedOut
+from manipulator.nodes.stop_signal import Interrupted, StopSignal
 from manipulator.pose import Pose
 from manipulator.states import MotionMode
 

@@ -101,7 +101,8 @@ def _in_words(found: Reach, units: Units) -> Lines:
     for reading in found.limits[: max(SHOWN, len(found.broken))]:
         factor, unit = units.factor(reading.unit), units.name(reading.unit)
         name = ': '.join(filter(None, (reading.owner, reading.quantity)))
-        span = f'{_bound(factor * reading.low)} … {_bound(factor * reading.high)} {unit}'
+        ends = (_bound(factor * reading.low), '…', _bound(factor * reading.high), unit)
+        span = ' '.join(filter(None, ends))
         value, margin = (units.number(v, reading.unit) for v in (reading.value, reading.margin))
         values = f'{value:>10}   {span:<22} {margin:>10}'
         lines.append(f'{name:<30} {values}  {_distance(reading.distance, units):>11}')

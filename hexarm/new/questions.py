@@ -45,6 +45,10 @@ class Question:
         """Whether what was answered so far makes it a question."""
         return all(answers.get(key) in values for key, values in self.when.items())
 
+    def may_be_asked(self, answers: Answers) -> bool:
+        """Whether it may become one by what is not answered yet."""
+        return all(answers.get(key, values[0]) in values for key, values in self.when.items())
+
 
 KINDS = {
     'crank': 'six servos with horns and rods under a platform',
@@ -207,7 +211,8 @@ def checked(given: Mapping[str, Any]) -> dict[str, Any]:
         value = given.get(question.key, question.default)
         try:
             if value is None:
-                raise InvalidInput(f'missing: {question.text}')
+                choices = f' {", ".join(question.choices)}' if question.choices else ''
+                raise InvalidInput(f'missing: {question.text}{choices}')
             answers[question.key] = question.parse(value)
         except InvalidInput as error:
             problems.append(f'{question.key}: {error}')
@@ -216,7 +221,7 @@ def checked(given: Mapping[str, Any]) -> dict[str, Any]:
         if key not in known:
             near = nearest(str(key), sorted(known))
             problems.append(f'{shown(key)}: unknown{did_you_mean(near)}')
-        elif key not in answers and not any(p.startswith(f'{key}:') for p in problems):
+        elif not any(q.may_be_asked(answers) for q in QUESTIONS if q.key == key):
             problems.append(f'{key}: not a measure of this kind of machine')
     if problems:
         raise InvalidInput('\n'.join(problems))

@@ -1,6 +1,7 @@
 """How `hexarm new` reads an answer, typed or from a YAML file; InvalidInput says why not."""
 
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -64,6 +65,10 @@ def height(value: Any) -> float | str:
     return float(_numbers(value, (1,), PLACE)[0])
 
 
+UNIT = re.compile(r'[-+]?[\d.]*(mm|cm|m|in|inch|inches|"|°|deg|rad|g|kg|N)')
+"""What people write behind a number, or next to it."""
+
+
 def words(value: Any) -> str:
     """A text on one line."""
     return ' '.join(''.join(c if c.isprintable() else ' ' for c in str(value)).split())
@@ -77,7 +82,11 @@ def _numbers(value: Any, counts: tuple[int, ...], bounds: tuple[float, float]) -
     found = [_number(part) for part in parts]
     if len(found) not in counts:
         some = 'one number' if counts == (1,) else f'{" or ".join(map(str, counts))} numbers'
-        raise InvalidInput(f'{len(found)} numbers, needs {some}' if found else f'needs {some}')
+        comma = re.search(r'\d+,\d+', value) if isinstance(value, str) else None
+        hint = f'; decimals have a point: {comma[0].replace(",", ".")}' if comma else ''
+        raise InvalidInput(
+            f'{len(found)} numbers, needs {some}{hint}' if found else f'needs {some}'
+        )
     for each in found:
         if not bounds[0] <= each <= bounds[1]:
             raise InvalidInput(f'{each:g} is outside {bounds[0]:g} … {bounds[1]:g}')
@@ -90,7 +99,9 @@ def _number(part: Any) -> float:
             raise ValueError
         value = float(part)
     except (TypeError, ValueError):
-        raise InvalidInput(f'{shown(part)} is not a number') from None
+        has_unit = isinstance(part, str) and UNIT.fullmatch(part)
+        hint = ': mm, ° and g are meant, without a unit' if has_unit else ''
+        raise InvalidInput(f'{shown(part)} is not a number{hint}') from None
     if not math.isfinite(value):
         raise InvalidInput(f'{shown(part)} is not a number')
     return value

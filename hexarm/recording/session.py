@@ -20,10 +20,10 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
-from hexarm.cli.running.up import Interrupted
 from hexarm.recording.log_parser import UnknownType
 from hexarm.recording.sink import Sink, Topic
 from hexarm.recording.topics import TopicSelection, missing_topics
+from manipulator.nodes.stop_signal import Interrupted
 
 DEPTH = 500
 """Messages that may wait: half a second of the fastest topic on a busy computer."""

@@ -72,7 +72,9 @@ def drives_of(dynamics: Dynamics, machine_file: MachineFile) -> Drives:
             return turning(drives, servo_speeds(servos, len(drives)))
         limits = build(ArmLimits, machine_file.limits, 'limits').joint_limits()
         return turning(drives, limits.speed)
-    fastest = np.broadcast_to(MotionLimits.from_config(machine_file.motion).joint.speed, LEGS)
+    unit = 'rad' if isinstance(dynamics, RotaryDynamicsConfig) else 'm'
+    motion = MotionLimits.from_config(machine_file.motion, unit)
+    fastest = np.broadcast_to(motion.joint.speed, LEGS)
     if isinstance(dynamics, RotaryDynamicsConfig):
         speeds = servo_speeds(servos, LEGS) if has_servos else fastest
         return turning((dynamics.drive,) * LEGS, speeds)

@@ -84,11 +84,13 @@ def readings(machine: Machine, pose: Pose, near: Array | None = None) -> tuple[L
 
 
 def smallest_margins(machine: Machine, count: int = 3) -> tuple[LimitReading, ...]:
-    """Of home: the nearest reading of each limited quantity, of the `count` nearest ones."""
-    nearest: dict[str, LimitReading] = {}
+    """Of home: the smallest of each limited quantity, of the `count` nearest quantities."""
+    smallest: dict[str, LimitReading] = {}
     for reading in readings(machine, machine.kinematics.home):
-        nearest.setdefault(reading.quantity, reading)
-    return tuple(nearest.values())[:count]
+        known = smallest.setdefault(reading.quantity, reading)
+        if reading.margin < known.margin:
+            smallest[reading.quantity] = reading
+    return tuple(smallest.values())[:count]
 
 
 def explained(machine: Machine, pose: Pose, near: Array | None = None) -> str:

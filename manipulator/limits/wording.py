@@ -1,6 +1,7 @@
 """Violated limits in the words and units of a machine file, alike ones together."""
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -11,24 +12,32 @@ from manipulator.limits.limit import Violation
 UNITS = {'rad': (math.degrees(1.0), '°'), 'm': (1e3, ' mm')}
 """Of machine files: how many are one of ours, and their name."""
 DECIMALS = 5
+MEETING = re.compile(r'(.*?) (\d+) ((?:meets|leaves) .*)')
+"""A sentence of `Limit.owners` about one of several parts."""
 
 
 def in_words(violations: Iterable[Violation]) -> list[str]:
     """One text for each limit, as 'crank angle -173.8° on all legs, outside [-90, 90]°'."""
-    alike: dict[tuple[str, float, float], list[Violation]] = {}
-    others = []
+    alike: dict[tuple[object, ...], list[Violation]] = {}
+    meetings: dict[tuple[object, ...], list[Violation]] = {}
     for violation in violations:
         if violation.quantity:
             key = violation.quantity, violation.low, violation.high
             alike.setdefault(key, []).append(violation)
         else:
-            others.append(str(violation))
-    return [*map(_of_one_limit, alike.values()), *others]
+            part, _, what = _meeting(violation)
+            meetings.setdefault((part, what), []).append(violation)
+    return [*map(_of_one_limit, alike.values()), *map(_of_meetings, meetings.values())]
 
 
 def degrees_in_words(angles: Array) -> str:
     """Angles in radians as degrees: '0°', or '0.1°, 0.2°' where they differ."""
     return _listed(np.degrees(angles), '°', 4)
+
+
+def millimetres_in_words(lengths: Array) -> str:
+    """Lengths in metres likewise: '50 mm', or '50 mm, 60 mm'."""
+    return _listed(1e3 * lengths, ' mm', 4)
 
 
 def _of_one_limit(some: Sequence[Violation]) -> str:
@@ -43,6 +52,23 @@ def _of_one_limit(some: Sequence[Violation]) -> str:
     values = _listed(np.array([v.value for v in some]) * factor, unit, digits)
     owners = _owners([v.owner for v in some])
     return f'{some[0].quantity} {values}{owners}, {span}{unit}'
+
+
+def _meeting(violation: Violation) -> tuple[str, str, str]:
+    """As 'rod', '3', 'meets the floor'; a part without a number is whole."""
+    found = MEETING.fullmatch(violation.owner)
+    return (found[1], found[2], found[3]) if found else (violation.owner, '', '')
+
+
+def _of_meetings(some: Sequence[Violation]) -> str:
+    """As 'rods 1, 2 meet the floor by 4 mm', by as much as the worst of them."""
+    if len(some) == 1:
+        return str(some[0])
+    part, _, what = _meeting(some[0])
+    verb, _, rest = what.partition(' ')
+    numbers = ', '.join(_meeting(violation)[1] for violation in some)
+    most = 1e3 * max(violation.excess for violation in some)
+    return f'{part}s {numbers} {verb[:-1]} {rest} by {most:.3g} mm'
 
 
 def _owners(owners: Sequence[str]) -> str:

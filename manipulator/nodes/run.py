@@ -8,7 +8,6 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from types import FrameType
 
 import rclpy
 from rclpy.exceptions import ParameterException
@@ -18,6 +17,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 from manipulator.errors import ManipulatorError
+from manipulator.nodes.stop_signal import StopSignal
 from manipulator.requirements import missing
 
 GOODBYE = 3.0
@@ -34,13 +34,13 @@ def run_nodes(makers: Makers, describe: Callable[[str], str] | None = None) -> i
     rclpy's own signal handlers would invalidate the context before the last message is out, so
     ours only set a flag.
     """
-    stop = _StopRequest()
+    stop = StopSignal((signal.SIGINT, signal.SIGTERM))
     rclpy.init(args=sys.argv, signal_handler_options=SignalHandlerOptions.NO)
     try:
         with on_executor(makers) as (nodes, executor):
             if describe is not None:
                 nodes[0].get_logger().info(describe(nodes[0].get_parameter('machine').value))
-            while not stop.is_requested:
+            while not stop.is_set:
                 executor.spin_once(timeout_sec=0.1)
     except (ManipulatorError, ParameterException, ModuleNotFoundError) as error:
         reason = missing(error) if isinstance(error, ModuleNotFoundError) else str(error)
@@ -130,15 +130,3 @@ def leaving_within(seconds: float) -> Iterator[None]:
         faulthandler.dump_traceback_later(seconds, exit=True, file=nowhere)
         yield
         faulthandler.cancel_dump_traceback_later()
-
-
-class _StopRequest:
-    """Set by SIGINT and SIGTERM."""
-
-    def __init__(self) -> None:
-        self.is_requested = False
-        signal.signal(signal.SIGINT, self._set)
-        signal.signal(signal.SIGTERM, self._set)
-
-    def _set(self, number: int, frame: FrameType | None) -> None:
-        self.is_requested = True

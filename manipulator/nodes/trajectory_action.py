@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
+import numpy as np
 from builtin_interfaces.msg import Duration, Time
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.node import Node
@@ -24,10 +25,13 @@ from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.states import MotionResult
 from manipulator.trajectory.controller import MotionController
 from manipulator.trajectory.motion_status import REPLACED, MotionStatus
-from manipulator.trajectory.trajectory_tolerances import TrajectoryTolerances
+from manipulator.trajectory.trajectory_tolerances import JointTolerance, TrajectoryTolerances
 
 FEEDBACK_PERIOD = 0.05
 """Seconds, as joint_trajectory_controller's action_monitor_rate of 20 Hz."""
+
+SPEED_PERIOD = 0.1
+"""Seconds over which a joint's speed at the end is measured: several reports."""
 
 
 class _Server(ActionServer):
@@ -44,7 +48,8 @@ class _Active:
     """A goal from its acceptance to its result; times are monotonic, in seconds.
 
     plan: once it moves. left: s of the plan's time that were left at the last tick. is_reached:
-    motion_status has reported its end, at the time ended_at.
+    motion_status has reported its end, at the time ended_at. measured: a time after the end, and
+    the joints at it; speed: theirs since then.
     """
 
     handle: Any
@@ -55,6 +60,18 @@ class _Active:
     is_reached: bool = False
     ended_at: float = math.inf
     feedback_at: float = -math.inf
+    measured: tuple[float, Array] | None = None
+    speed: Array | None = None
+
+    def measure(self, actual: Array, now: float) -> Array:
+        """The joints' speeds (n,) at rest, by their last reports; NaN until there are two."""
+        if self.speed is None:
+            self.measured, self.speed = (now, actual), np.full(len(actual), np.nan)
+        elif self.measured is not None and now - self.measured[0] >= SPEED_PERIOD:
+            before, joints = self.measured
+            self.speed = np.abs(actual - joints) / (now - before)
+            self.measured = now, actual
+        return self.speed
 
 
 class TrajectoryAction:
@@ -128,10 +145,11 @@ class TrajectoryAction:
     def _judge(self, active: _Active, plan: JointTrajectory, actual: Array, now: float) -> None:
         """The result of a trajectory that is over, once its goal tolerances are kept."""
         active.ended_at = min(active.ended_at, now)
-        violation = active.tolerances.goal_violation(plan.joints_at(plan.duration), actual)
+        desired, speed = plan.joints_at(plan.duration), active.measure(actual, now)
+        violation = active.tolerances.goal_violation(desired, actual, speed)
         if not violation:
             self._finish('SUCCESSFUL', '')
-        elif now - active.ended_at > active.tolerances.goal_time:
+        elif now - active.ended_at > active.tolerances.goal_time and np.isfinite(speed).all():
             self._finish('GOAL_TOLERANCE_VIOLATED', violation)
 
     def _feedback(self, desired: tuple[Array, Array, Array], actual: Array, time: float) -> Any:
@@ -198,7 +216,7 @@ def tolerances_of(goal: Any, machine: Machine) -> TrajectoryTolerances:
     if goal.multi_dof_trajectory.points or goal.multi_dof_trajectory.joint_names:
         raise InvalidInput('multi_dof_trajectory is not supported')
     path, at_goal = (
-        [(one.name, one.position) for one in given]
+        [JointTolerance(one.name, one.position, one.velocity, one.acceleration) for one in given]
         for given in (goal.path_tolerance, goal.goal_tolerance)
     )
     wait = goal.goal_time_tolerance

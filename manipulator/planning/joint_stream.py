@@ -28,10 +28,9 @@ TINY = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class JointsInMotion:
-    """Joints over time: `early`, if there is any, then `resting` seconds to rest."""
+    """Joints over time: `early`, if there is any, then a trajectory to rest."""
 
     early: Quintic | None
-    resting: float
     rest: Cubics
 
     @property
@@ -41,12 +40,12 @@ class JointsInMotion:
     @property
     def duration(self) -> float:
         """Seconds until rest."""
-        return self._span + self.resting
+        return self._span + self.rest.duration
 
     def at(self, times: Array | float) -> Ends:
         """Joints with two derivatives, (..., n), at each of the times (...)."""
         flat = np.ravel(times)
-        parts: Sequence[Array] = self.rest.at(np.clip(flat - self._span, 0.0, self.resting))
+        parts: Sequence[Array] = self.rest.at(flat - self._span)
         if self.early is not None:
             is_early = (flat < self._span)[:, None]
             both = zip(self.early.at(flat), parts, strict=True)
@@ -78,7 +77,7 @@ def plan_joint_move_in_motion(
     """To rest at joints `goal` (n,). Raises Refused where there is no such move."""
     bounds = _bounds(machine, start, limits)
     return _plan(
-        machine, start, JointsInMotion(None, *_to_rest(start.joints, goal, bounds, slowdown))
+        machine, start, JointsInMotion(None, _to_rest(start.joints, goal, bounds, slowdown))
     )
 
 
@@ -94,10 +93,10 @@ def plan_joint_stream(
     if early is None:
         return None
     rest = _to_rest(early.end, goal, bounds, how.slowdown)
-    return _plan(machine, start, JointsInMotion(early, *rest))
+    return _plan(machine, start, JointsInMotion(early, rest))
 
 
-def _to_rest(joints: Ends, goal: Array, bounds: Ends, slowdown: float) -> tuple[float, Cubics]:
+def _to_rest(joints: Ends, goal: Array, bounds: Ends, slowdown: float) -> Cubics:
     speed, acceleration, jerk = bounds
     slower = speed / slowdown, acceleration / slowdown**2, jerk / slowdown**3
     return quickest(joints, goal, slower)

@@ -31,6 +31,7 @@ class Cubics:
     velocity, acceleration and jerk there, `states` (4, d, k).
     """
 
+    duration: float
     begins: Array
     states: Array
 
@@ -45,11 +46,14 @@ class Cubics:
             for name in ('p', 'v', 'a')
         ]
         jerks = [[*one.brake.j, *one.j, 0.0] for one in profiles]
-        return Cubics(frozen(begins), frozen([*states, jerks]))
+        return Cubics(float(trajectory.duration), frozen(begins), frozen([*states, jerks]))
 
     def at(self, times: Array | float) -> tuple[Array, Array, Array]:
-        """Positions, velocities and accelerations (..., d) at the times (...) from 0 on."""
-        t = np.asarray(times)[..., None]
+        """Positions, velocities and accelerations (..., d) at the times (...).
+
+        Those of the ends before and after.
+        """
+        t = np.clip(times, 0.0, self.duration)[..., None]
         phase = (self.begins <= t[..., None]).sum(axis=-1) - 1
         each = np.arange(len(self.begins))
         t = t - self.begins[each, phase]
@@ -61,12 +65,16 @@ class Cubics:
 class Profile:
     """A trajectory of one coordinate, from 0 to 1."""
 
-    duration: float
     cubics: Cubics
+
+    @property
+    def duration(self) -> float:
+        """Seconds from 0 to 1."""
+        return self.cubics.duration
 
     def at(self, times: Array | float) -> tuple[Array, Array, Array]:
         """s, ṡ and s̈ at each of the times (...), those of the ends before and after."""
-        s, rate, pull = self.cubics.at(np.clip(times, 0.0, self.duration))
+        s, rate, pull = self.cubics.at(times)
         return np.clip(s[..., 0], 0.0, 1.0), rate[..., 0], pull[..., 0]
 
 
@@ -77,20 +85,22 @@ def profile_within(bounds: Sequence[float], slowdown: float = 1.0) -> Profile:
     names = ('velocity', 'acceleration', 'jerk')
     for power, (name, bound) in enumerate(zip(names, bounds, strict=True), start=1):
         setattr(request, f'max_{name}', [min(bound, FASTEST) / slowdown**power])
-    trajectory = _calculated(request, 1)
-    return Profile(float(trajectory.duration), Cubics.of(trajectory))
+    return Profile(_calculated(request, 1))
 
 
-def _calculated(request: ruckig.InputParameter, coordinates: int) -> ruckig.Trajectory:
+def _calculated(request: ruckig.InputParameter, coordinates: int) -> Cubics:
     """The trajectory of so many coordinates; Refused where ruckig finds none, or fails."""
     trajectory = ruckig.Trajectory(coordinates)
     try:
         result = ruckig.Ruckig(coordinates).calculate(request, trajectory)
+    except ValueError as error:  # of a result without a name in Python: -101, of the duration
+        raise Refused('no jerk-limited move was found: it would take too long') from error
     except ruckig.RuckigError as error:
-        raise Refused('no jerk-limited move was found (ruckig failed)') from error
+        text = ' '.join(str(error).split()).removeprefix('[ruckig] ').partition(' input:')[0]
+        raise Refused(f'no jerk-limited move was found (ruckig: {text})') from error
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
         raise Refused(f'no jerk-limited move was found ({result.name})')
-    return trajectory
+    return Cubics.of(trajectory)
 
 
 def coordinates(state: MotionState, reference: Array) -> tuple[Array, Array, Array]:
@@ -178,8 +188,12 @@ class MoveInMotion(PosePlan):
     """A trajectory in the coordinates about the goal's orientation."""
 
     goal: Pose
-    duration: float
     cubics: Cubics
+
+    @property
+    def duration(self) -> float:
+        """Seconds until rest at the goal."""
+        return self.cubics.duration
 
     @property
     def checked_duration(self) -> float:
@@ -188,7 +202,7 @@ class MoveInMotion(PosePlan):
 
     def at(self, times: Array | float) -> MotionState:
         """Position, velocity and acceleration of the coordinates, turned into a state."""
-        x, v, a = self.cubics.at(np.clip(times, 0.0, self.duration))
+        x, v, a = self.cubics.at(times)
         return state_of(x, v, a, self.goal.rotation)
 
     def where(self, time: float) -> str:
@@ -212,13 +226,11 @@ def plan_move_in_motion(
     ]
     bounds[0] = np.minimum(bounds[0], limits.axis_speeds / slowdown)
     target = np.concatenate([goal.position, np.zeros(3)])
-    return MoveInMotion(goal, *quickest(coordinates(start, goal.rotation), target, bounds))
+    return MoveInMotion(goal, quickest(coordinates(start, goal.rotation), target, bounds))
 
 
-def quickest(
-    start: tuple[Array, Array, Array], target: Array, bounds: Sequence[Array]
-) -> tuple[float, Cubics]:
-    """From coordinates with two derivatives, each (n,), to rest at a target: seconds, and how.
+def quickest(start: tuple[Array, Array, Array], target: Array, bounds: Sequence[Array]) -> Cubics:
+    """The move from coordinates with two derivatives, each (n,), to rest at a target.
 
     bounds: of speed, acceleration and jerk, (n,) each. Raises Refused where there is none.
     """
@@ -228,5 +240,4 @@ def quickest(
     request.target_position = target.tolist()
     for name, most in zip(('velocity', 'acceleration', 'jerk'), bounds, strict=True):
         setattr(request, f'max_{name}', np.minimum(most, FASTEST).tolist())
-    trajectory = _calculated(request, len(target))
-    return float(trajectory.duration), Cubics.of(trajectory)
+    return _calculated(request, len(target))

@@ -14,10 +14,11 @@ from hexarm.machines import load
 from sampling import enough
 
 OFFSETS = {
-    'wrist axes pass each other by 10 mm': (4, 'a_mm', 10.0),
-    'axis 5 passes axis 4 by 60 mm': (3, 'a_mm', 60.0),
-    'wrist 100 mm long between axes 4 and 6': (4, 'd_mm', 100.0),
-    'forearm twisted by 20 degrees': (1, 'alpha_deg', 20.0),
+    'wrist axes pass each other by 10 mm': [(4, 'a_mm', 10.0)],
+    'axis 5 passes axis 4 by 60 mm': [(3, 'a_mm', 60.0)],
+    'wrist 100 mm long between axes 4 and 6': [(4, 'd_mm', 100.0)],
+    'no offset but between axes 4 and 6': [(2, 'a_mm', 0.0), (2, 'd_mm', 0.0), (4, 'd_mm', 150.0)],
+    'forearm twisted by 20 degrees': [(1, 'alpha_deg', 20.0)],
 }
 
 
@@ -26,15 +27,19 @@ def arm(request, machine_file):
     """A PUMA that was built otherwise."""
     file = machine_file('puma560')
     if request.param in OFFSETS:
-        row, key, value = OFFSETS[request.param]
-        rows = [dict(r) for r in file.geometry['dh']]
-        rows[row][key] = value
-        return serial_arm(replace(file, geometry={**file.geometry, 'dh': rows}))
+        return built(file, OFFSETS[request.param])
     puma, rng = serial_arm(file), np.random.default_rng(7)
     axes = puma.chain.axes + rng.uniform(-0.2, 0.2, (6, 3))
     axes /= np.linalg.norm(axes, axis=1, keepdims=True)
     chain = Chain(axes, puma.chain.points, puma.chain.home)
     return SerialArm(chain, puma.limits, puma.characteristic_length, puma.rest)
+
+
+def built(file, changes):
+    rows = [dict(row) for row in file.geometry['dh']]
+    for row, key, value in changes:
+        rows[row][key] = value
+    return serial_arm(replace(file, geometry={**file.geometry, 'dh': rows}))
 
 
 def some_joints(count):
@@ -77,6 +82,27 @@ def test_the_branch_nearest_to_given_joints_is_taken(arm):
     regular = arm.sigma_min(arm.home, joints) > 0.1
     assert regular.sum() > 40
     assert np.abs(found - joints)[regular].max() < 1e-7
+
+
+def test_branches_of_an_arm_without_shoulder_and_elbow_offset_have_mirror_images(machine_file):
+    arm = built(machine_file('puma560'), OFFSETS['no offset but between axes 4 and 6'])
+    poses = arm.chain.forward(some_joints(200))
+    for branches in arm.method.branches(poses, np.zeros(6)):
+        found = branches[np.isfinite(branches[:, 0])]
+        images = np.pi * np.array([1, 1, -1, 1, 0, 0]) + found * [1, -1, -1, 1, 1, 1]
+        assert apart(images[:, None], found).min(axis=1).max() < 1e-5
+
+
+def test_beside_a_fold_the_nearest_branch_is_taken():
+    arm = load('xarm6').kinematics
+    rng = np.random.default_rng(11)
+    near = rng.uniform(arm.limits.low + 0.1, arm.limits.high - 0.1, (10_000, 6))
+    poses = arm.chain.forward(near + rng.uniform(-0.01, 0.01, near.shape))
+    folds = np.argsort(arm.sigma_min(poses, near))[:1000]
+    near, poses = near[folds], poses[folds]
+    off = arm.method.branches(poses, near) - near[:, None]
+    least = np.nanmin(np.linalg.norm((off + np.pi) % (2 * np.pi) - np.pi, axis=-1), axis=1)
+    assert (np.linalg.norm(arm.inverse(poses, near) - near, axis=1) < least + 1e-6).all()
 
 
 def test_a_place_beyond_all_links_has_no_branch(arm):

@@ -52,6 +52,18 @@ def test_inverse_stays_with_the_joints_it_is_near_to(arm):
     assert np.abs(found - joints)[regular].max() < 1e-7
 
 
+def test_a_row_of_poses_stays_on_a_branch_however_far_the_joints_before_it_are(arm):
+    joints = within_range(arm, 200, 6)
+    away = np.random.default_rng(7).uniform(-0.5, 0.5, (200, 6))
+    poses = arm.chain.forward(joints)
+    for position, rotation, near in zip(
+        poses.position, poses.rotation, joints + away, strict=True
+    ):
+        row = Pose(np.tile(position, (3, 1)), np.tile(rotation, (3, 1, 1)))
+        found = arm.inverse_along(row, near)
+        assert np.abs(found - found[0]).max() < 1e-7
+
+
 @settings(deadline=None, max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.sets(st.integers(0, 5)))
 def test_singular_postures_are_inverted_exactly_too(arm, seed, zeroed):

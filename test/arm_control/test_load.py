@@ -59,8 +59,8 @@ def test_a_geometry_of_no_form_or_two_is_refused(machine_file):
     dh = machine_file('ur5').geometry['dh']
     neither, both = {'home_deg': [0.0] * 6}, {**file.geometry, 'dh': dh}
     for geometry, said in (
-        (neither, r"one of \['L1_mm', 'dh', 'modified_dh', 'screws'\]"),
-        (both, 'dh: unknown'),
+        (neither, r'one of L1_mm, dh, modified_dh, screws'),
+        (both, 'dh: does not go with L1_mm'),
     ):
         with pytest.raises(ConfigError, match=said):
             arm(replace(file, geometry=geometry))

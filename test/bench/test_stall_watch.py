@@ -3,9 +3,12 @@
 import signal
 import time
 
+import pytest
+
 from bench.stall_watch import StallWatch
 
 
+@pytest.mark.processes
 def test_a_core_that_was_away_is_reported_and_only_since_then():
     with StallWatch() as watch:
         time.sleep(1.0)  # it starts

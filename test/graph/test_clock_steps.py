@@ -10,8 +10,7 @@ import pytest
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import JointState
 
-from hexarm.cli.running.up import check_alive
-from hexarm.graph import Graph, machine_graph
+from hexarm.graph import Graph, check_alive, machine_graph
 from manipulator.nodes.qos import COMMAND, MEASUREMENT
 from patient_user import PatientUser
 

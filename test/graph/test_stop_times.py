@@ -3,6 +3,7 @@
 Judged on the frames and on the pulses that they become; how soon, bench/stop_times.py measures.
 """
 
+import contextlib
 import signal
 import time
 
@@ -11,6 +12,7 @@ import pytest
 from std_msgs.msg import Bool
 
 from bridge.protocol import Setpoint, Stop
+from manipulator.errors import TimedOut
 from manipulator.nodes.qos import EVERY_WORD
 from rig import Rig
 
@@ -18,6 +20,8 @@ pytestmark = pytest.mark.graph
 
 PROCESSES = ('serial_bridge', 'ik', 'pose', 'trajectory')
 PATIENCE = 60.0
+TRIES, SOON = 10, 10.0
+"""After how many seconds a machine that was lost meanwhile is enabled again."""
 QUIET = 2
 """Counts by which a pulse may change when a process comes back: roundings, not motion."""
 
@@ -42,8 +46,11 @@ def circling(module_rig):
 
 def make_ready(rig):
     """Enabled and standing; asked for as a user would, where a stall had the board forgotten."""
-    rig.enable()
-    rig.user.wait('goals', lambda: rig.user.motion('mode') == 'hold', PATIENCE)
+    for _ in range(TRIES):
+        rig.enable()
+        with contextlib.suppress(TimedOut):
+            return rig.user.wait('goals', lambda: rig.user.motion('mode') == 'hold', SOON)
+    raise TimedOut(f'not ready in {TRIES} tries: {rig.user.summary}')
 
 
 def check_that_it_drives_again(rig):

@@ -5,8 +5,7 @@ import pytest
 import yaml
 from sensor_msgs.msg import JointState
 
-from hexarm.cli.running.up import check_alive
-from hexarm.graph import Graph, machine_graph
+from hexarm.graph import Graph, check_alive, machine_graph
 from hexarm.machines import load, read
 from manipulator.nodes.messages import joints_of
 from manipulator.nodes.qos import COMMAND

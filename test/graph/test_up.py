@@ -57,7 +57,7 @@ def test_up_enables_serves_its_panel_and_parks_on_ctrl_c(hexarm, processes_left)
     assert '<title>' in page_of(address)
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()
-    assert process.wait(60) == 0
+    assert process.wait(60) == 0, rest
     assert 'park' in rest
     assert 'Traceback' not in rest
     machine = f'machine robocake: {ROBOCAKE} (rotary hexapod; RoboCake, crank'

@@ -22,8 +22,7 @@ from bridge.framing import FrameReader
 from bridge.protocol import Setpoint
 from bridge.servo_config import BoardConfig
 from hexarm import machines
-from hexarm.cli.running.up import check_alive
-from hexarm.graph import Graph, machine_graph
+from hexarm.graph import Graph, check_alive, machine_graph
 from manipulator.pose import Pose
 
 sys.path.insert(0, str(Path(__file__).parents[1] / 'support'))

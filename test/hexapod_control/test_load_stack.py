@@ -10,7 +10,7 @@ from hexapod_control.stacks.load import stack
 from hexarm.machine_check import report_of
 from hexarm.machines import content_of
 from manipulator.config import build, parse_yaml
-from manipulator.errors import Refused
+from manipulator.errors import ConfigError, Refused
 from manipulator.machine import MachineFile
 from manipulator.planning.joint_move import plan_joint_move
 from manipulator.pose import Pose
@@ -95,6 +95,13 @@ def test_the_transform_to_the_next_section_turns_it():
 )  # fmt: skip
 def test_what_does_not_fit_is_named_with_its_section(change, problem):
     assert any(problem in found for found in problems_of(change)), problems_of(change)
+
+
+def test_speeds_of_six_joints_alone_are_named():
+    content = copy.deepcopy(CONTENT)
+    content['motion']['joint_speed_mm_s'] = [20.0] * 6
+    with pytest.raises(ConfigError, match='joint_speed_mm_s: has 6 entries, a stack of 18 joints'):
+        stack(build(MachineFile, content))
 
 
 def test_a_park_position_that_is_not_the_rules_is_named():

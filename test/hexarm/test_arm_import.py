@@ -225,6 +225,13 @@ def test_home_is_within_the_ranges_and_not_near_a_singular_posture(tmp_path):
         assert kinematics.sigma_min(kinematics.home, kinematics.rest) > 0.08
 
 
+def test_home_is_no_joint_stop(tmp_path):
+    text = plain().replace('lower="-2" upper="2.5"', 'lower="0" upper="3"')
+    kinematics = machines.load(saved(tmp_path, imported(text))).kinematics
+    stops = np.array([kinematics.limits.low, kinematics.limits.high])
+    assert np.abs(kinematics.rest - stops).min() > np.radians(9.0)
+
+
 @pytest.mark.parametrize('name', ['yes', '1.5', 'null', 'a-b', 'left/elbow'])
 def test_names_that_yaml_would_take_for_something_else_stay_names(tmp_path, name):
     file = saved(tmp_path, imported(plain().replace('"joint_2"', f'"{name}"')))
@@ -253,7 +260,7 @@ def test_of_several_tips_tool0_is_taken_and_without_one_all_are_named():
     ]
 
 
-AHEAD = ['--xyz', '0.2', '0', '0.5']
+AHEAD = ['--xyz', '0.15', '0', '0.4']
 PROPERTY = '<xacro:property xmlns:xacro="http://www.ros.org/wiki/xacro" name="width" value="0.2"/>'
 REFUSED = {
     'loop': (plain(joint('back', 'link_4', 'link_2', 'fixed')), 'below two joints, .*: a loop'),
@@ -268,6 +275,12 @@ REFUSED = {
     'mimic': (
         plain().replace('effort="7"/>', 'effort="7"/><mimic joint="joint_1"/>', 1),
         "joint 'joint_0' mimics 'joint_1', an arm has a drive for each",
+    ),
+    'mimic further out': (
+        plain()
+        .replace('effort="7"/>', 'effort="7"/><mimic joint="joint_1"/>', 4)
+        .replace('<mimic joint="joint_1"/>', '', 3),
+        "joint 'joint_3' mimics 'joint_1', an arm has a drive for each",
     ),
     'seven': (
         plain(joint('jaw', 'link_7', 'left', 'prismatic'), links=['left'], count=7),
@@ -335,7 +348,7 @@ REFUSED = {
     'broken': ('<robot>', 'is not XML'),
     'huge': ('<robot>' + ' ' * 5_000_001 + '</robot>', 'at most 5000000 are read'),
     'links': (robot([f'l{i}' for i in range(2001)], []), '2001 links, at most 2000'),
-    'empty': ('<robot/>', 'the base is not clear'),
+    'empty': ('<robot/>', 'there is no link'),
 }
 
 

@@ -149,6 +149,7 @@ def test_the_text_of_a_refusal_is_its_reason():
     assert pursued.text == 'leg 5: rod too short'
 
 
+@pytest.mark.processes
 def test_a_client_that_cannot_leave_the_graph_does_not_keep_its_process():
     """Fast DDS now and then waits for itself, with the interpreter's lock."""
     program = (

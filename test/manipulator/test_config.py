@@ -118,6 +118,34 @@ def test_a_section_of_several_forms_is_of_that_with_most_of_its_keys():
         build(Shape, {'geometry': {'points_mm': [1.0], 'hieght_mm': 2.0}})
 
 
+def test_a_key_of_another_form_is_told_what_it_goes_with():
+    @dataclass(frozen=True)
+    class Tilted(Points):
+        tilt_deg: float
+
+    @dataclass(frozen=True)
+    class Shapes:
+        geometry: Circle | Tilted
+
+    mixed = {'points_mm': [1.0], 'height_mm': 2.0, 'tilt_deg': 1.0, 'radius_mm': 3.0, 'colour': 1}
+    with pytest.raises(ConfigError) as caught:
+        build(Shapes, {'geometry': mixed})
+    assert caught.value.problems == (
+        'geometry.radius_mm: does not go with points_mm',
+        'geometry.colour: unknown key',
+    )
+
+
+def test_a_list_that_may_have_two_lengths_is_told_both():
+    @dataclass(frozen=True)
+    class Ranges:
+        ends: tuple[float, float] | tuple[float, float, float]
+
+    assert build(Ranges, {'ends': [1.0, 2.0, 3.0]}).ends == (1.0, 2.0, 3.0)
+    with pytest.raises(ConfigError, match='ends: has 4 entries, needs 2 or 3'):
+        build(Ranges, {'ends': [1.0] * 4})
+
+
 def test_value_inside_a_list_is_named_by_its_place():
     (found,) = problems(GOOD.replace('210', '720'))
     assert found.startswith('range_deg[1]: 720 outside')

@@ -3,9 +3,9 @@
 import argparse
 import math
 
-from hexarm.cli.running.up import StopSignal
 from hexarm.namespaces import NoMachine, namespace_of
 from hexarm.recording.topics import TopicSelection, nothing_recorded
+from manipulator.nodes.stop_signal import StopSignal
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from hexarm.cli.answers import Answer, answering
-from hexarm.cli.running.up import Interrupted, StopSignal
 from hexarm.namespaces import namespace_of, no_machine_in
 from manipulator.nodes.devices.terminal import Terminal
+from manipulator.nodes.stop_signal import Interrupted, StopSignal
 
 if TYPE_CHECKING:
     from rich.console import Group

@@ -9,11 +9,11 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
-from hexarm.cli.running.up import StopSignal
 from hexarm.namespaces import namespace_of
 from hexarm.recording.topics import TopicSelection, missing_topics, nothing_recorded
 from manipulator.errors import ManipulatorError
 from manipulator.formatting import counted
+from manipulator.nodes.stop_signal import StopSignal
 
 if TYPE_CHECKING:
     from hexarm.recording.bag import Bag

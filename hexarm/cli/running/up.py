@@ -4,18 +4,19 @@ import argparse
 import contextlib
 import glob
 import os
-import signal
-import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bridge.fake.servo import PLANTS, SERVO
+from hexarm.cli.running.leaving import leave
 from hexarm.graph import (
     Executable,
     Graph,
+    NodeDied,
     board_process,
+    check_alive,
     check_topic,
     link_folder,
     node_processes,
@@ -25,21 +26,15 @@ from hexarm.graph import (
 from hexarm.machines import described, family, load, read
 from hexarm.namespaces import NAMESPACE
 from hexarm.panel_process import panel_process, panel_words
-from manipulator.errors import ManipulatorError, Refused, TimedOut
-from manipulator.states import UNKNOWN, MachineState, MotionMode
+from manipulator.errors import Refused
+from manipulator.nodes.stop_signal import Interrupted, StopSignal
+from manipulator.states import MachineState
 
 if TYPE_CHECKING:
     from hexarm.client import Client
 
 SETTLES = 1.0
 """Seconds within which an earlier STOP is sent to the board, and obeyed."""
-SERVOS_OFF = (
-    UNKNOWN,
-    MachineState.DISCONNECTED,
-    MachineState.BOOTING,
-    MachineState.DISARMED,
-)
-AT_REST = (MotionMode.HOLD, MotionMode.DISABLED)
 MACHINES = {'hexapod': 'robocake', 'arm': 'arm_6r'}
 BOARDS = ('fake', 'simavr')
 """In place of a port."""
@@ -50,14 +45,6 @@ PORT = (
     "states, or 'fake'"
 )
 SHORT = ', '.join(f'{kind} is short for {name}' for kind, name in MACHINES.items())
-
-
-class NodeDied(ManipulatorError):
-    """A node of the graph has ended by itself."""
-
-
-class Interrupted(ManipulatorError):
-    """Ctrl-C, or a signal to end the process."""
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -194,30 +181,6 @@ def check_port(port: str, machine: str, plant: str) -> None:
         raise Refused(f'port {port} is not permitted: add yourself to the group dialout')
 
 
-class StopSignal:
-    """SIGINT and SIGTERM as a flag, and as an exception at the next `check`."""
-
-    def __init__(self) -> None:
-        self.is_set = False
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, self._set)
-
-    def check(self) -> None:
-        """Raises Interrupted after a signal."""
-        if self.is_set:
-            raise Interrupted('interrupted')
-
-    def _set(self, number: int, frame: object) -> None:
-        self.is_set = True
-
-
-def check_alive(graph: Graph) -> None:
-    """Raises NodeDied when a process of the graph has ended."""
-    dead = graph.dead()
-    if dead is not None:
-        raise NodeDied(f'{dead}; stopping the others')
-
-
 def enable(client: 'Client', namespace: str) -> None:
     """Energises the servos; a machine that is stopped waits until it is cleared."""
     space = namespace.strip('/')
@@ -238,68 +201,6 @@ def enable(client: 'Client', namespace: str) -> None:
         )
         while client.machine_state.message == MachineState.STOPPED:
             client.spin(0.2)
-
-
-def leave(client: 'Client', stop: StopSignal, machine: str) -> None:
-    """Parks; a machine whose driver keeps the joints where they are is left there."""
-    if read(machine).driver == 'topic':
-        with contextlib.suppress(ManipulatorError):
-            client.trigger('trajectory/stop')
-            client.wait('rest', lambda: client.motion('mode') in AT_REST, SETTLES)
-        client.disable()
-        print('no more joint commands: the driver keeps the joints where they are', flush=True)
-    else:
-        park(client, stop)
-
-
-def park(client: 'Client', stop: StopSignal) -> None:
-    """Goes to park and switches the servos off; where it cannot, the user confirms the release.
-
-    In a terminal the answer is another Ctrl-C. Without one the servos stay on: what the board then
-    does is set by `on_link_loss` of the machine file.
-    """
-    if client.machine_state.message in SERVOS_OFF:
-        return
-    try:
-        _go_to_park(client)
-    except Interrupted:
-        print('not parked: interrupted again', flush=True)
-    except ManipulatorError as error:
-        print(f'not parked: {error}', flush=True)
-        if not _may_let_go(client, stop):
-            return
-    stop.is_set = False
-    try:
-        client.disable()
-    except ManipulatorError as error:
-        print(f'the servos are still on: {error}')
-
-
-def _go_to_park(client: 'Client') -> None:
-    """Raises Refused, Stopped or TimedOut where it does not get there."""
-    if client.machine_state.message != MachineState.ENABLED:
-        raise Refused(f'the machine is {client.machine_state.message}')
-    print('parking; Ctrl-C again switches the servos off where they are', flush=True)
-    with contextlib.suppress(TimedOut):
-        client.wait(
-            'the pose', lambda: client.motion('mode') not in ('', MotionMode.DISABLED), 1.0
-        )
-    client.park()
-
-
-def _may_let_go(client: 'Client', stop: StopSignal) -> bool:
-    """Whether a user at a terminal confirms that the servos may be switched off here."""
-    if not sys.stdin.isatty():
-        print('the servos stay on: the board acts as set by on_link_loss', flush=True)
-        return False
-    print('The servos hold. Ctrl-C switches them off here: an arm may fall.', flush=True)
-    stop.is_set = False
-    try:
-        while client.machine_state.message not in SERVOS_OFF:
-            client.spin(0.2)
-    except Interrupted:
-        return True
-    return False
 
 
 def _watch(client: 'Client') -> None:

@@ -38,7 +38,7 @@ const LOST = { state: 'none', reason: '', notice: '', motion: '', can: [],
 
 setInterval(() => {
   const now = Date.now();
-  if (askedAt && now - askedAt > SILENT_MS) { show(LOST); return; }
+  if (askedAt && now - askedAt > SILENT_MS) { show(LOST); askedAt = 0; }   // asks again: a question may be lost
   if (!askedAt && machine && send({ want: 'state' })) askedAt = now;
   if (tab === 'nodes' && now - nodesAt > 1000 && send({ want: 'nodes' })) nodesAt = now;
 }, POLL_MS);

@@ -9,8 +9,7 @@ from geometry_msgs.msg import TwistStamped
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
-from hexarm.cli.running.up import check_alive
-from hexarm.graph import Graph, machine_graph
+from hexarm.graph import Graph, check_alive, machine_graph
 from hexarm.machines import load
 from manipulator.nodes.messages import joints_of, seconds
 from manipulator.nodes.qos import COMMAND, MEASUREMENT

@@ -164,10 +164,10 @@ class Actions:
         self.arm.wait('result', future.done)
         return future.result().status, future.result().result
 
-    def tolerance(self, name, position):
+    def tolerance(self, name, position, velocity=0.0):
         from control_msgs.msg import JointTolerance  # noqa: PLC0415
 
-        return [JointTolerance(name=name, position=position)]
+        return [JointTolerance(name=name, position=position, velocity=velocity)]
 
 
 @pytest.fixture
@@ -233,7 +233,11 @@ def test_what_ends_an_action_is_told_by_its_code(arm, actions):
         assert (bad[0], bad[1].error_code) == (ABORTED, code.INVALID_GOAL)
         assert 'positions of joint_6 is nan' in bad[1].error_string
         assert first.status == EXECUTING
-        second = actions.send(trajectory((4.0, [0.1, 0.0])))
+        slow = actions.tolerance('joint_1', 0.05, 0.01)
+        blind = actions.result(actions.send(trajectory((4.0, [0.1, 0.0])), path_tolerance=slow))
+        assert (blind[0], blind[1].error_code) == (ABORTED, code.INVALID_GOAL)
+        assert 'velocity in path_tolerance of joint_1 is 0.01' in blind[1].error_string
+        second = actions.send(trajectory((4.0, [0.1, 0.0])), goal_tolerance=slow)
         replaced = actions.result(first)
         assert (replaced[0], replaced[1].error_code) == (ABORTED, code.INVALID_GOAL)
         assert replaced[1].error_string == 'replaced by a newer trajectory'

@@ -2,8 +2,7 @@
 
 import pytest
 
-from hexarm.cli.running.up import check_alive
-from hexarm.graph import Graph, machine_graph
+from hexarm.graph import Graph, check_alive, machine_graph
 from patient_user import PatientUser
 
 

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 from std_msgs.msg import Float64
 
-from hexarm.cli.running.up import check_alive
-from hexarm.graph import Graph, machine_graph
+from hexarm.graph import Graph, check_alive, machine_graph
 from hexarm.panel_process import panel_process
 from manipulator.nodes.qos import LATCHED
 from patient_user import PatientUser

@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from hexarm.cli.running.up import check_alive
-from hexarm.graph import Graph, machine_graph
+from hexarm.graph import Graph, check_alive, machine_graph
 from hexarm.panel_process import panel_address, panel_process
 from manipulator.pose import Pose
 from patient_user import PatientUser

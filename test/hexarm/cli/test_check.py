@@ -522,6 +522,24 @@ def test_horns_as_hobbyists_enter_them_are_told_what_to_write():
     assert report_of(bent_the_other_way(naive)).problems == ()
 
 
+def test_keys_of_joints_in_the_other_unit_are_named():
+    """Read as metres, 10° a second would be 0.17 m/s."""
+    mixed = changed(
+        STEWART,
+        ('  joint_speed_mm_s:', '  joint_speed_deg_s: 10.0\n  joint_speed_mm_s:'),
+        ('  park_mm:', '  speed_deg_s: 60.0\n  park_mm:'),
+    )
+    assert sorted(problems_of(mixed)) == [
+        'motion.joint_speed_deg_s: the joints are in mm, needs joint_speed_mm_s',
+        'servos: speed_deg_s: the joints are in mm',
+    ]
+
+
+def test_parts_that_meet_the_same_thing_at_home_are_one_line():
+    floor = changed(STEWART, ('servos:\n', 'surroundings: {floor_mm: 150}\nservos:\n'))
+    assert problems_of(floor) == ['home: rods 1, 2, 3, 4, 5, 6 meet the floor by 145 mm']
+
+
 def test_some_horns_entered_the_other_way_are_named():
     naive = bent_the_other_way(parse_yaml(BY_COORDINATES), (1, 4))
     (problem,) = report_of(naive).problems

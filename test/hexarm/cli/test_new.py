@@ -12,6 +12,7 @@ from hexarm.cli.main import main
 from hexarm.machine_check import report_of
 from hexarm.machines import load
 from hexarm.new.questions import QUESTIONS, checked
+from hexarm.new.reading import SIZE, numbers
 from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError, InvalidInput
 
@@ -251,6 +252,22 @@ def test_a_person_is_asked_again_until_all_is_understood():
         "'rod' is not one of these",
     ):
         assert reason in said
+
+
+@pytest.mark.parametrize(
+    ('typed', 'reason'),
+    [
+        ('67,5', '2 numbers, needs 1 or 6 numbers; decimals have a point: 67.5'),
+        ('67, 5', '2 numbers, needs 1 or 6 numbers'),
+        ('6.57in', "'6.57in' is not a number: mm, ° and g are meant, without a unit"),
+        ('45.5 mm', "'mm' is not a number: mm, ° and g are meant, without a unit"),
+        ('wide', "'wide' is not a number"),
+    ],
+)
+def test_decimal_commas_and_units_are_explained(typed, reason):
+    with pytest.raises(InvalidInput) as error:
+        numbers((1, 6), SIZE)(typed)
+    assert str(error.value) == reason
 
 
 def test_a_table_is_asked_for_row_by_row():

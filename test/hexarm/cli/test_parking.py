@@ -6,8 +6,10 @@ import pytest
 
 pytest.importorskip('rclpy')
 
-from hexarm.cli.running.up import Interrupted, enable, park
+from hexarm.cli.running.leaving import park
+from hexarm.cli.running.up import enable
 from manipulator.errors import Refused, Stopped
+from manipulator.nodes.stop_signal import Interrupted
 
 
 class User:

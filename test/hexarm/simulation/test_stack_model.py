@@ -15,10 +15,11 @@ TWIST = (0.02, -0.01, 0.03, 0.1, -0.1, 0.2)
 
 
 def content(name, tool):
-    """Two sections of a shipped machine, with a tool on the upper one."""
+    """Two sections of a shipped machine, with its motion and a tool on the upper one."""
     path = machines.find('stack_6_6')
     below = {'machine': name, 'next': {'xyz_mm': [0.0, 0.0, 10.0], 'rpy_deg': [0.0, 0.0, 20.0]}}
     raw = machines.content_of(path)
+    raw['motion'] = machines.content_of(machines.find(name))['motion']
     raw['geometry'] = {'sections': [below, {'machine': name, 'next': tool}]}
     return machines.with_sections(raw, path.parent)
 

@@ -175,7 +175,7 @@ def test_jogs_brake_before_the_wall_and_lead_back(name, frames):
     jogger, home = driven.make_jogger(driven), driven.kinematics.home
     motion = JogMotion.at_rest(home, driven.kinematics.inverse(home))
     most = driven.motion.linear.acceleration * DT * 1.1
-    for _ in range(200):
+    for _ in range(120):
         before, motion = motion, jogger.step(motion, to_wall, DT)
         room = walled_in.room(frames.platform(motion.pose), motion.joints)
         assert room >= -1e-9

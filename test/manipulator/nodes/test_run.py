@@ -4,6 +4,8 @@ import subprocess
 import sys
 import textwrap
 
+import pytest
+
 NODE = textwrap.dedent(
     """
     import ctypes
@@ -27,6 +29,7 @@ NODE = textwrap.dedent(
 )
 
 
+@pytest.mark.processes
 def test_a_node_is_not_collected_and_ends_though_it_cannot_leave_the_graph(monkeypatch):
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'OFF')
     process = subprocess.Popen([sys.executable, '-c', NODE], stdout=subprocess.PIPE, text=True)
@@ -72,26 +75,3 @@ def test_nodes_in_a_thread_report_when_an_error_has_ended_them(monkeypatch):
     assert done.returncode == 0
     assert done.stdout == 'ended\nclosed\n'
     assert 'ValueError: a fault of ours' in done.stderr
-
-
-LEAK = textwrap.dedent(
-    """
-    import ctypes
-    import sys
-    import ruckig
-    from manipulator.nodes.run import context
-
-    with context([]):
-        ctypes.pythonapi.Py_IncRef(ctypes.py_object(ruckig.Trajectory(6)))
-    print('the reason', file=sys.stderr)
-    sys.exit(3)
-    """
-)
-
-
-def test_nothing_is_printed_about_plans_that_outlive_the_interpreter(monkeypatch):
-    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'OFF')
-    done = subprocess.run(
-        [sys.executable, '-c', LEAK], stderr=subprocess.PIPE, text=True, check=False
-    )
-    assert (done.stderr, done.returncode) == ('the reason\n', 3)

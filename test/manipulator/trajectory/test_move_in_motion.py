@@ -1,9 +1,11 @@
 import pickle
 
 import numpy as np
+import pytest
 
 from hexarm.machines import load
 from manipulator import rotation as so3
+from manipulator.errors import Refused
 from manipulator.planning.plan import MotionState
 from manipulator.planning.point_to_point import (
     coordinates,
@@ -101,3 +103,14 @@ def test_coordinates_that_change_fast_make_the_state_that_differences_give():
         np.testing.assert_allclose(state.acceleration[1], change, atol=1e-6)
         one = MotionState(state.pose[1], state.twist[1], state.acceleration[1])
         np.testing.assert_allclose(coordinates(one, np.eye(3)), (x, v, a), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ('slowdown', 'reason'),
+    [(1e3, ': it would take too long'), (1e6, r' \(ruckig: error in step 1, dof')],
+)
+def test_a_move_that_is_too_slow_to_be_calculated_is_refused(slowdown, reason):
+    moving = MotionState(Pose.identity(), np.full(6, 0.05), np.zeros(6))
+    goal = Pose(np.array([0.01, 0.0, 0.0]), np.eye(3))
+    with pytest.raises(Refused, match=f'no jerk-limited move was found{reason}'):
+        plan_move_in_motion(moving, goal, load('ur5').motion, slowdown)

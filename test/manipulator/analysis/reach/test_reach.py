@@ -4,7 +4,7 @@ import pytest
 from hexapod_control.workspace import sample
 from manipulator import rotation as so3
 from manipulator.analysis.free_paths import is_connected, is_free
-from manipulator.analysis.reach import reach
+from manipulator.analysis.reach import reach, smallest_margins
 from manipulator.analysis.readings import displaced, distance
 from manipulator.pose import Pose
 
@@ -39,6 +39,14 @@ def test_a_leg_that_does_not_close_reports_by_how_much_its_rod_is_too_short(robo
     assert worst.value == pytest.approx(shortest - g.rod_lengths[leg], abs=1e-8)
     assert worst.margin == -worst.value
     assert f'leg {leg + 1}: rod too short by' in found.reason
+
+
+def test_margins_of_home_are_the_smallest_of_their_quantity(machine):
+    margins = {}
+    for limit in reach(machine, machine.kinematics.home).limits:
+        margins[limit.quantity] = min(limit.margin, margins.get(limit.quantity, np.inf))
+    for limit in smallest_margins(machine):
+        assert limit.margin == margins[limit.quantity]
 
 
 def test_values_that_do_not_exist_are_left_out(robocake):
