@@ -172,7 +172,7 @@ def check_axes(geometry: Mapping[str, Any], limits: Mapping[str, Any]) -> None:
 
 
 def other_axes(count: int) -> str:
-    """What is said of an arm with `count` axes, which are not six."""
+    """The part of an error about an arm with `count` axes, which are not six."""
     there = counted(count, 'axis', 'axes')
     return f'{there}, arms with 6 are supported; 5 and 7 are planned'
 

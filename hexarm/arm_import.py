@@ -42,7 +42,7 @@ GEARS = 1e7
 
 
 @dataclass(frozen=True)
-class Wishes:
+class ImportOptions:
     """What a URDF does not say, and its user may: home (6,) in degrees, acceleration in deg/s²."""
 
     home_deg: Sequence[float] | None = None
@@ -61,7 +61,7 @@ def machine_text(
     arm: UrdfArm,
     name: str,
     source: str,
-    wishes: Wishes,
+    options: ImportOptions,
     meshes: Sequence[str] = (),
     notes: Sequence[str] = (),
 ) -> Imported:
@@ -73,9 +73,9 @@ def machine_text(
     length = LENGTH_SHARE * reach_of(arm.chain)
     sections = (
         _head(arm, name, source),
-        [*_geometry(arm, length, wishes), *_meshes(meshes, notes)],
-        _limits(arm, length, wishes),
-        _motion(arm, wishes),
+        [*_geometry(arm, length, options), *_meshes(meshes, notes)],
+        _limits(arm, length, options),
+        _motion(arm, options),
         _dynamics(arm, length),
     )
     text = '\n'.join('\n'.join(lines) + '\n' for lines in sections)
@@ -95,7 +95,7 @@ def _head(arm: UrdfArm, name: str, source: str) -> Iterator[str]:
     yield 'driver: topic                      # other software moves the joints: docs/your-arm.md'
 
 
-def _geometry(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
+def _geometry(arm: UrdfArm, length: float, options: ImportOptions) -> Iterator[str]:
     chain = arm.chain
     yield 'geometry:'
     yield '  screws:                          # axes and points on them, in base axes at zero'
@@ -104,8 +104,8 @@ def _geometry(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
     yield f'  tool_position_mm: {_list(1e3 * chain.home.position)}'
     rpy = to_rpy(chain.home.rotation, EXACTLY)
     yield f'  tool_rpy_deg: {_list(np.degrees(rpy))}'
-    if wishes.home_deg is not None:
-        yield f'  home_deg: {_list(wishes.home_deg)}'
+    if options.home_deg is not None:
+        yield f'  home_deg: {_list(options.home_deg)}'
         return
     exact, (low, high) = np.degrees(home_of(arm, length)), np.degrees(_ends(arm))
     rounded = np.round(exact, 3)
@@ -120,16 +120,16 @@ def _meshes(files: Sequence[str], notes: Sequence[str]) -> Iterator[str]:
     yield from (f'  # {_plain(note)}' for note in notes)
 
 
-def _limits(arm: UrdfArm, length: float, wishes: Wishes) -> Iterator[str]:
+def _limits(arm: UrdfArm, length: float, options: ImportOptions) -> Iterator[str]:
     yield 'limits:'
     yield f'  characteristic_length_mm: {1e3 * length:.0f}.0  # assumed: a quarter of all links'
     yield f'  damping_onset: {ONSET}              # assumed'
     yield '  joints:'
     for joint in arm.joints:
-        yield _joint(joint, wishes)
+        yield _joint(joint, options)
 
 
-def _joint(joint: UrdfJoint, wishes: Wishes) -> str:
+def _joint(joint: UrdfJoint, options: ImportOptions) -> str:
     travel, notes = range_deg(joint), list[str]()
     words = [f'name: {_scalar(joint.name)}']
     if travel is None:
@@ -139,15 +139,15 @@ def _joint(joint: UrdfJoint, wishes: Wishes) -> str:
         notes += [] if _has_range(joint) else ['range']
     speed = speed_deg_s(joint)
     notes += [] if _is_credible(joint.velocity, CREDIBLE_SPEED, True) else ['speed']
-    acceleration = wishes.acceleration_deg_s2 or _ramped(speed)
-    notes += [] if wishes.acceleration_deg_s2 else ['acceleration']
+    acceleration = options.acceleration_deg_s2 or _ramped(speed)
+    notes += [] if options.acceleration_deg_s2 else ['acceleration']
     words += [f'speed_deg_s: {_number(speed)}', f'acceleration_deg_s2: {_number(acceleration)}']
     return f'    - {{{", ".join(words)}}}' + (f'  # assumed: {", ".join(notes)}' if notes else '')
 
 
-def _motion(arm: UrdfArm, wishes: Wishes) -> Iterator[str]:
+def _motion(arm: UrdfArm, options: ImportOptions) -> Iterator[str]:
     fastest = max(speed_deg_s(joint) for joint in arm.joints)
-    acceleration = wishes.acceleration_deg_s2 or _ramped(fastest)
+    acceleration = options.acceleration_deg_s2 or _ramped(fastest)
     yield 'motion:                            # assumed, all of the tool'
     yield '  linear_speed_mm_s: 250.0         # the speed that ISO 10218 allows beside people'
     yield '  linear_acceleration_mm_s2: 1500.0'

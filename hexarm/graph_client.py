@@ -25,7 +25,7 @@ from manipulator.states import UNKNOWN
 MOST_REQUESTS, ANSWERED_WITHIN = 4, 4.0
 FOUND_WITHIN = 8.0
 """Seconds in which the bridge of a running machine publishes its state."""
-LOOKS = 0.7
+GRAPH_FOUND_WITHIN = 0.7
 """Seconds in which a graph that runs already is found: at most 0.46 s in 64 tries."""
 NODES = ('trajectory', 'ik', 'pose', 'serial_bridge')
 """Nodes of which a namespace has one; a fake board may be there for `--port` to name."""
@@ -145,9 +145,10 @@ class GraphClient:
     def refuse_second(self) -> None:
         """Raises Refused where a graph runs in this namespace: both would receive every call.
 
-        It takes LOOKS from when this node joined the graph: what is done in between costs nothing.
+        It takes GRAPH_FOUND_WITHIN from when this node joined the graph: what is done meanwhile
+        costs nothing.
         """
-        self.spin(self._joined_at + LOOKS - time.monotonic())
+        self.spin(self._joined_at + GRAPH_FOUND_WITHIN - time.monotonic())
         found = self.node.get_node_names_and_namespaces()
         if any(name in NODES and space == self.node.get_namespace() for name, space in found):
             raise Refused(

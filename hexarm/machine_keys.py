@@ -232,8 +232,8 @@ def _object(schema: Any) -> dict[str, Any]:
 
 
 def _description(key: Key) -> str:
-    told = (key.unit, key.field.metadata['meaning'], key.range and f'({key.range})')
-    return ' '.join(filter(None, told))
+    parts = (key.unit, key.field.metadata['meaning'], key.range and f'({key.range})')
+    return ' '.join(filter(None, parts))
 
 
 def page(text: str) -> str:

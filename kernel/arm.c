@@ -130,8 +130,8 @@ static int from_ideal(const struct arm *arm, const struct frame *pose, const rea
     return count;
 }
 
-/* From one loop after another, until one is certain, or adds nothing to what was found otherwise. If
-   none is, two branches that almost meet may have been taken for none. */
+/* From one loop after another, until one is certain, or adds nothing to what was found otherwise.
+   If none is, two branches that almost meet may have been taken for none. */
 static int from_elimination(const struct arm *arm, const struct frame *pose,
                             real branches[MOST_BRANCHES][JOINTS], int count)
 {

@@ -29,7 +29,7 @@ T = TypeVar('T')
 
 @dataclass(frozen=True)
 class MachineFile:
-    """The sections of a machine file; each room checks its own against its own schema.
+    """The sections of a machine file; each package checks its own against its own schema.
 
     geometry and limits belong to the kind of machine, servos, link and simulation to the bridge,
     dynamics to hexarm/simulation/. driver: what moves the joints, a board on a serial line

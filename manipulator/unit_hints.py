@@ -59,10 +59,10 @@ def out_of_proportion(geometry: Any, limits: Any) -> list[str]:
     as they like.
     """
     lengths = [*_lengths('geometry', geometry), *_lengths('limits', limits)]
-    told = [value for _, value, is_size in lengths if is_size]
-    if not told:
+    sizes = [value for _, value, is_size in lengths if is_size]
+    if not sizes:
         return []
-    size = float(np.median(told))
+    size = float(np.median(sizes))
     if not SIZES_MM[0] <= size <= SIZES_MM[1]:
         return [f'geometry: its lengths are about {size:.3g} mm: is it in another unit?']
     return [

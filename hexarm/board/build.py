@@ -29,7 +29,7 @@ class Sizes:
 
 
 class CannotBuild(ManipulatorError):
-    """A tool is missing, or the compiler said no."""
+    """A tool is missing, or the compiler failed."""
 
 
 def missing_tools() -> list[str]:

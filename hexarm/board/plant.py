@@ -55,7 +55,7 @@ def _with_plant(
 
 
 class Timed:
-    """A plant that says every ten simulated seconds how much faster than the clock it is."""
+    """A plant that prints every ten simulated seconds how much faster than the clock it is."""
 
     def __init__(self, inner: Plant, tell: Callable[[str], object]) -> None:
         self._inner = inner

@@ -8,7 +8,7 @@ from pathlib import Path
 from arm_control.closed_forms import closed_form
 from arm_control.urdf_chain import arm_of
 from arm_control.urdf_file import MAX_CHARACTERS, read_urdf, with_right_angles
-from hexarm.arm_import import Wishes, machine_text
+from hexarm.arm_import import ImportOptions, machine_text
 from hexarm.cli.answers import Answer, answering, with_negatives
 from hexarm.mesh_import import ImportedMeshes, Packages, imported_meshes, packages_of
 from manipulator.errors import ConfigError, InvalidInput
@@ -62,14 +62,14 @@ def answer(arguments: argparse.Namespace) -> Answer:
         named = (replace(joint, name=arguments.prefix + joint.name) for joint in arm.joints)
         arm = replace(arm, joints=tuple(named))
         exact = arm_of(with_right_angles(robot), arm.base, arm.tip)
-        wishes = Wishes(arguments.home, arguments.acceleration)
+        options = ImportOptions(arguments.home, arguments.acceleration)
         stem = re.sub(r'\W+', '_', robot.name or source.stem).strip('_') or 'arm'
         output: Path = arguments.output or Path(f'{stem}.yaml')
         folder = output.with_name(f'{output.stem}_meshes')
         meshes = imported_meshes(arm.visuals, packages.file)
         names = meshes.names(folder.name)
         imported = machine_text(
-            arm, robot.name or source.stem, source.name, wishes, names, meshes.faults
+            arm, robot.name or source.stem, source.name, options, names, meshes.faults
         )
     except ConfigError as error:
         raise ConfigError(error.problems, str(source)) from error

@@ -128,7 +128,7 @@ def _of_urdf(source: Path, tip: str) -> str:
         robot = read_urdf(urdf_text(source))
         arm = arm_of(robot, None, None if tip == 'auto' else tip)
         name = robot.name or source.stem
-        return arm_import.machine_text(arm, name, source.name, arm_import.Wishes()).text
+        return arm_import.machine_text(arm, name, source.name, arm_import.ImportOptions()).text
     except ConfigError as error:
         raise ConfigError(error.problems, str(source)) from error
 
@@ -262,7 +262,7 @@ def _listed() -> str:
     for question in QUESTIONS:
         if question.key not in {key for key, _ in rows}:
             usual = question.default
-            told = question.text if usual in (None, '') else f'{question.text} [{_typed(usual)}]'
+            text = question.text if usual in (None, '') else f'{question.text} [{_typed(usual)}]'
             some = f': {", ".join(question.choices)}' if question.choices else ''
-            rows.append((question.key, f'{told}{some}'))
+            rows.append((question.key, f'{text}{some}'))
     return '\n'.join(f'  {key:<24} {text}' for key, text in rows)

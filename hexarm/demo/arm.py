@@ -75,7 +75,7 @@ class ScriptedPad:
 MACHINE = 'arm_6r_stepper'
 SIGHT = 0.3
 """Metres from the tool to the point that it looks at."""
-SETTLED = 0.4
+REST = 0.4
 
 
 def teleop() -> Executable:
@@ -98,7 +98,7 @@ def arm_tour(client: 'Client', machine: Machine, echo: 'Callable[[str], None]') 
         for push in pushes:
             pad.drive(**push)
         phases.append(Phase(name, begin, time.time()))
-        pad.rest(SETTLED)
+        pad.rest(REST)
 
     echo('a goal 0.35 m away; before it arrives the stick pulls the arm back')
     client.publish_goal(kinematics.home.moved([-0.35, 0.0, 0.0, 0.0, 0.0, 0.0]))

@@ -97,10 +97,10 @@ def _limits(m: Measures, machine: Machine, scale: float) -> Iterator[str]:
 
 
 def _geometry(m: Measures, height: float, legs: Array) -> Iterator[str]:
-    told = f'legs of {legs.min():.1f} … {legs.max():.1f} mm' if np.ptp(legs) > 0.1 else (
+    comment = f'legs of {legs.min():.1f} … {legs.max():.1f} mm' if np.ptp(legs) > 0.1 else (
         f'all legs {legs.mean():.1f} mm')  # fmt: skip
     yield from _joints(m)
-    yield line(f'  home_height_mm: {num(height)}', told)
+    yield line(f'  home_height_mm: {num(height)}', comment)
 
 
 def _joints(m: Measures) -> Iterator[str]:

@@ -31,7 +31,7 @@ def requirements(times: dict[str, float]) -> Iterator[Finding]:
     """The paper's two controllers, one by one."""
     step, sine = times['step_time'], times['sine_time']
     rest = step - SINES * sine
-    told = (
+    rows = (
         ('step_c167', 'one step of the method', '< 20 ms on a C167', 20.0, step, 'ms',
          f'{SINES * sine:.2f} ms for {SINES} sines, {rest:.2f} ms for the rest (paper: 12 and 8)'),
         ('step_mf167', 'the same', '≤ 1 ms with the MF167 coprocessor', 1.0, step, 'ms',
@@ -40,7 +40,7 @@ def requirements(times: dict[str, float]) -> Iterator[Finding]:
         ('sine_mf167', 'the same', '0.7 µs with the MF167', 0.7e-3, sine, 'ms',
          'an 8-bit controller without a coprocessor'),
     )  # fmt: skip
-    for key, topic, text, limit, time, unit, reason in told:
+    for key, topic, text, limit, time, unit, reason in rows:
         claim = Claim(text, (limit,), side='at most', is_requirement=True)
         shown = f'{time:.2f} ms on an {CHIP}'
         yield Finding(key, ARM, topic, claim, shown, (time,), unit, 0.02 * time, reason)

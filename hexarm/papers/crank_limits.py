@@ -120,12 +120,12 @@ def together(searches: Searches) -> Iterator[Finding]:
 
 def largest(searches: Searches) -> Iterator[Finding]:
     """The most of each, the paper's other two kept, if the servo gives its torque in kg·cm."""
-    told = (
+    rows = (
         ('payload', '150 g', 150.0, 1e3, 'g', 0),
         ('speed', '50 mm/s', 50.0, 1e3, 'mm/s', 0),
         ('acceleration', '0.3 g', 0.3, 1 / G, 'g', 1),
     )
-    for name, text, paper, factor, unit, digits in told:
+    for name, text, paper, factor, unit, digits in rows:
         found = [
             factor * min(along(s, PAPER, name, True) for s in searches.of(torque * KG_CM))
             for torque in SERVO

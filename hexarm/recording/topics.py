@@ -20,7 +20,7 @@ COMMANDS = frozenset(
 )
 """What users publish, and the machine's nodes only receive."""
 
-SETTLED = 5.0
+ALL_FOUND_AFTER = 5.0
 """Seconds after which a publisher has found all its subscribers."""
 
 GOALS, CAREFUL = ('goal_pose', 'goal_path', 'goal_joints'), frozenset(('hexarm', 'panel'))
@@ -31,7 +31,7 @@ GOALS, CAREFUL = ('goal_pose', 'goal_path', 'goal_joints'), frozenset(('hexarm',
 class TopicSelection:
     """The topics of `namespace`, or only `names` (relative ones are the namespace's).
 
-    A command is joined only once its publisher has been there for SETTLED. Many a script
+    A command is joined only once its publisher has been there for ALL_FOUND_AFTER. Many a script
     publishes once, for the first subscriber; a recorder that subscribed before would sometimes be
     taken for the machine, and the goal, or the stop, would reach no other node. With
     `with_commands`, for a requested name, and for GOALS of CAREFUL nodes, it is joined at once.
@@ -66,8 +66,8 @@ class TopicSelection:
         if not publishers:
             self._since.pop(topic, None)
             return False
-        is_settled = now - self._since.setdefault(topic, now) >= SETTLED
-        return is_settled or (name in GOALS and CAREFUL.issuperset(publishers))
+        has_found_all = now - self._since.setdefault(topic, now) >= ALL_FOUND_AFTER
+        return has_found_all or (name in GOALS and CAREFUL.issuperset(publishers))
 
 
 NEAREST = 3

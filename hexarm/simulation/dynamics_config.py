@@ -210,7 +210,7 @@ class RailDynamicsConfig(PlatformDynamicsConfig):
 
 @dataclass(frozen=True)
 class LinkConfig:
-    """A link and the drive that turns it: a round rod from its joint to the next, unless told.
+    """A link and the drive that turns it: a round rod from its joint to the next, unless given.
 
     centre_mm, inertia_g_mm2 (moments about the centre) and products_g_mm2 (xy, xz, yz) in base
     axes at zero angles.

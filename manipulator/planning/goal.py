@@ -56,8 +56,8 @@ class Goal:
     (n,): those to arrive with, None where any of the pose's will do. orientation: where the
     pose's comes from. flow: of the stream of goals that it continues, None where it continues
     none. on_unreachable: see there. received: when, by a monotonic clock, in seconds; 0 where
-    that is not known. note: what is to be said of it while it is pursued, as that it is the
-    nearest pose.
+    that is not known. note: what is reported of it while it is pursued, as that it is the nearest
+    pose.
     """
 
     pose: Pose

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from manipulator.analysis.free_paths import line_between
-from manipulator.analysis.readings import distance, offset, scale
-from manipulator.analysis.slope import nearest_point
+from manipulator.analysis.free_paths import admits, line_between
+from manipulator.analysis.readings import displaced, distance, offset, scale
+from manipulator.analysis.slope import nearest_point, slopes
 from manipulator.arrays import Array
 from manipulator.errors import Unreachable
 from manipulator.limits.limit import Search
@@ -29,6 +29,9 @@ SPARE = 1e-5
 MOST_STEPS = 30
 LEAST_SIGMA = 0.1
 """σmin of an arm that goes as far as it reaches: it can still be driven there."""
+
+MOST_SLIDES, SLIDES = 8, 0.5 ** np.arange(6)
+"""Steps along what parts meet, each of the largest of these parts that is admitted."""
 
 ARM_JOINTS = 6
 """As many as the kernel's search has variables: other machines' goals stay as they are."""
@@ -65,6 +68,8 @@ class NearestGoal:
             self._last = None
             return goal
         starts = [(pose, joints), *filter(None, [self._last])]
+        if not self._machine.kinematics.is_explicit:
+            starts = starts[-1:]  # one search takes as long as a stream leaves time for
         found = [self._descended(goal.pose, *start) for start in starts]
         nearest = min(found, key=lambda one: float(distance(self._machine, one[0], goal.pose)))
         self._last = nearest
@@ -101,7 +106,7 @@ class NearestGoal:
         if not machine.constraints.is_one_group:
             return _by_joints(machine, target, joints, clearance)
         end = machine.constraints.descended(Search(target, clearance, MOST_STEPS), pose)
-        return end, joints
+        return _slid(machine, target, end, clearance), joints
 
 
 def _words(pose: Pose, goal: Pose, reason: str) -> str:
@@ -111,6 +116,29 @@ def _words(pose: Pose, goal: Pose, reason: str) -> str:
         f'nearest reachable pose, {1e3 * metres:.3g} mm and {np.degrees(radians):.3g}° from the '
         f'goal: {reason}'
     )
+
+
+def _slid(machine: Machine, target: Pose, pose: Pose, clearance: float) -> Pose:
+    """On from an admitted pose, along what keeps it from the target, as a wall that parts meet."""
+    length = machine.kinematics.characteristic_length
+    missed = float(distance(machine, pose, target))
+    for _ in range(MOST_SLIDES):
+        here = slopes(machine, pose)
+        bound = np.isfinite(here.readings.margins) & (here.steepness > 0.0)
+        steep = here.steepness[bound]
+        normals, slack = (
+            here.gradients[bound] / steep[:, None],
+            here.readings.margins[bound] / steep,
+        )
+        step, _ = nearest_point(offset(machine, pose, target), normals, slack - clearance)
+        trials = displaced(machine, pose, SLIDES[:, None] * step)
+        left = distance(machine, trials, target)
+        is_better = admits(machine, trials) & (left < missed - SETTLED * length)
+        if not is_better.any():
+            break
+        best = int(np.argmax(is_better))
+        pose, missed = trials[best], float(left[best])
+    return pose
 
 
 def _by_joints(

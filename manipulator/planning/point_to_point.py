@@ -97,7 +97,7 @@ def _calculated(request: ruckig.InputParameter, coordinates: int) -> Cubics:
         raise Refused('no jerk-limited move was found: it would take too long') from error
     except ruckig.RuckigError as error:
         text = ' '.join(str(error).split()).removeprefix('[ruckig] ').partition(' input:')[0]
-        raise Refused(f'no jerk-limited move was found ({text})') from error
+        raise Refused(f'no jerk-limited move was found (ruckig: {text})') from error
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
         raise Refused(f'no jerk-limited move was found ({result.name})')
     return Cubics.of(trajectory)

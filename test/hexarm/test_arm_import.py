@@ -9,7 +9,7 @@ import pytest
 from arm_control.urdf_chain import arm_of
 from arm_control.urdf_file import read_urdf, with_right_angles
 from hexarm import machines
-from hexarm.arm_import import Wishes, machine_text
+from hexarm.arm_import import ImportOptions, machine_text
 from hexarm.cli.main import main
 from hexarm.machine_check import report_of
 from hexarm.simulation.arm_model import arm_links
@@ -110,9 +110,9 @@ def tool_of(text, base, tip, angles):
     return frame
 
 
-def imported(text, base=None, tip=None, wishes=Wishes()):  # noqa: B008 (frozen)
+def imported(text, base=None, tip=None, options=ImportOptions()):  # noqa: B008 (frozen)
     source = read_urdf(text)
-    return machine_text(arm_of(source, base, tip), source.name, 'arm.urdf', wishes).text
+    return machine_text(arm_of(source, base, tip), source.name, 'arm.urdf', options).text
 
 
 def saved(tmp_path, text, name='arm.yaml'):
@@ -212,7 +212,7 @@ def test_what_the_file_does_not_say_is_assumed_and_marked():
     assert made.count('# assumed: range, speed, acceleration') == 6
     assert 'home_deg' in made
     assert 'No dynamics: the file has no mass' in made
-    told = imported(plain(), wishes=Wishes([0, 20, 40, 0, 30, 0], 500.0))
+    told = imported(plain(), options=ImportOptions([0, 20, 40, 0, 30, 0], 500.0))
     assert 'home_deg: [0.0, 20.0, 40.0, 0.0, 30.0, 0.0]\n' in told
     assert 'acceleration_deg_s2: 500.0}\n' in told
 

@@ -106,7 +106,8 @@ def test_coordinates_that_change_fast_make_the_state_that_differences_give():
 
 
 @pytest.mark.parametrize(
-    ('slowdown', 'reason'), [(1e3, ': it would take too long'), (1e6, r' \(error in step 1, dof')]
+    ('slowdown', 'reason'),
+    [(1e3, ': it would take too long'), (1e6, r' \(ruckig: error in step 1, dof')],
 )
 def test_a_move_that_is_too_slow_to_be_calculated_is_refused(slowdown, reason):
     moving = MotionState(Pose.identity(), np.full(6, 0.05), np.zeros(6))
