@@ -159,8 +159,10 @@ static int from_anywhere(const struct arm *arm, const struct frame *pose, const 
     int count = found_from(arm, pose, near, STEPS, branches, 0);
     if ((int)arm->closes == ALMOST_CLOSED)
         count = from_ideal(arm, pose, near, branches, count);
-    return arm->loops[0] < 0 ? from_spread_starts(arm, pose, branches, count)
-                             : from_elimination(arm, pose, branches, count);
+    count = from_elimination(arm, pose, branches, count);
+    return arm->loops[0] < 0 || has_odd(arm, count)
+               ? from_spread_starts(arm, pose, branches, count)
+               : count;
 }
 
 int arm_branches(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
