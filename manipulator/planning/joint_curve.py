@@ -1,19 +1,90 @@
-"""Joints over time in pieces of polynomials, through points as joint_trajectory_controller does.
+"""Plans of joints over time; curves through points, as joint_trajectory_controller makes them.
 
-Between two points with velocities the joints follow a cubic, with accelerations as well a quintic.
-Points of positions alone are joined by lines; parabolas round their corners.
+The curves are pieces of polynomials: between two points with velocities a cubic, with
+accelerations as well a quintic. Points of positions alone are joined by lines; parabolas round
+their corners.
 """
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from manipulator.arrays import Array, Mask, frozen
+from manipulator.kinematics import Kinematics
+from manipulator.planning.plan import MotionState
+from manipulator.pose import Pose
 
 TERMS = 6
 """Coefficients of a piece: at most a quintic."""
 
 ORDERS = np.arange(TERMS)
+
+DIFFERENCE_STEP = 1e-4
+"""s, for the change of the Jacobian."""
+
+
+class JointCurve(Protocol):
+    """Joints over time."""
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        ...
+
+    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+        """q, q̇ and q̈ (..., n) at each of the times (...), those of the ends before and after."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class JointCurvePlan:
+    """The joints' curve, and the poses (k,) at equal steps of its time."""
+
+    kinematics: Kinematics
+    curve: JointCurve
+    knots: Pose
+
+    @property
+    def duration(self) -> float:
+        """Seconds from rest to rest."""
+        return self.curve.duration
+
+    @property
+    def checked_duration(self) -> float:
+        """All of it."""
+        return self.duration
+
+    def joints_at(self, times: Array | float) -> Array:
+        """See `Plan`."""
+        return self.curve.at(times)[0]
+
+    def at(self, times: Array | float) -> MotionState:
+        """The state at each of the times (...): poses by forward kinematics, twists by Jacobian.
+
+        Raises NoSolution where the joints fix no pose.
+        """
+        shape, flat = np.shape(times), np.ravel(times)
+        q, rates, pulls = self.curve.at(flat)
+        poses = self.kinematics.forward_along(q, self.knots[self._knot(float(flat[0]))])
+        jacobian = self.kinematics.jacobian(poses, q)
+        twist = _times(jacobian, rates)
+        h = DIFFERENCE_STEP
+        ahead = self.kinematics.jacobian(poses.moved(h * twist), q + h * rates)
+        behind = self.kinematics.jacobian(poses.moved(-h * twist), q - h * rates)
+        bend = _times(ahead - behind, rates) / (2 * h)
+        acceleration = _times(jacobian, pulls) + bend
+        pose = Pose(poses.position.reshape(*shape, 3), poses.rotation.reshape(*shape, 3, 3))
+        return MotionState(pose, twist.reshape(*shape, 6), acceleration.reshape(*shape, 6))
+
+    def _knot(self, time: float) -> int:
+        last = len(self.knots.position) - 1
+        return min(max(round(time / max(self.duration, 1e-9) * last), 0), last)
+
+
+def _times(jacobian: Array, rates: Array) -> Array:
+    result: Array = np.einsum('...ij,...j->...i', jacobian, rates)
+    return result
 
 
 @dataclass(frozen=True, eq=False)

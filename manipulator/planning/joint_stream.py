@@ -15,7 +15,7 @@ from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
 from manipulator.planning.flowing import Attempt, Ends, Quintic, quintic_to
 from manipulator.planning.goal import Flow
-from manipulator.planning.joint_trajectory import JointCurvePlan
+from manipulator.planning.joint_curve import JointCurvePlan
 from manipulator.planning.point_to_point import Cubics, quickest
 from manipulator.pose import Pose
 
