@@ -10,6 +10,7 @@ from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
 from manipulator.planning.check import check_plan
 from manipulator.planning.cycle import Cycle
+from manipulator.planning.flowing import plan_stream_move
 from manipulator.planning.goal import Flow, Goal, Motion
 from manipulator.planning.joint_move import KNOTS, plan_joint_move
 from manipulator.planning.joint_stream import KNOTS as JOINT_KNOTS
@@ -22,7 +23,6 @@ from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Plan
 from manipulator.planning.point_to_point import plan_line_move, plan_move_in_motion
 from manipulator.planning.start import Start, plan_along_stream, slowed_down
-from manipulator.planning.stream_move import plan_stream_move
 from manipulator.planning.worker import Effort, TooLong
 from manipulator.pose import Pose
 from manipulator.unit_hints import hint_at_metres
