@@ -11,7 +11,6 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused
 from manipulator.machine import Machine
-from manipulator.motion_limits import MotionLimits
 from manipulator.planning.flowing import Attempt, Ends, flowing_to
 from manipulator.planning.goal import Flow
 from manipulator.planning.joint_curve import JointCurvePlan
@@ -44,19 +43,17 @@ class JointState:
 
 
 def plan_joint_move_in_motion(
-    machine: Machine, start: JointState, goal: Array, limits: MotionLimits, slowdown: float
+    machine: Machine, start: JointState, goal: Array, slowdown: float
 ) -> JointMoveInMotion:
-    """To rest at joints `goal` (n,). Raises Refused where there is no such move."""
-    curve = quickest(start.joints, goal, _bounds(machine, start, limits), slowdown)
-    return _plan(machine, start, curve)
+    """To rest at joints `goal` (n,); slowdown and errors: see `quickest`."""
+    return _plan(machine, start, quickest(start.joints, goal, _bounds(machine, start), slowdown))
 
 
 def plan_joint_stream(
     machine: Machine, start: JointState, goal: Array, flow: Flow, time: float, how: Attempt
 ) -> JointMoveInMotion | None:
     """At that time, to joints `goal` (n,) with their flow; errors: see `flowing_to`."""
-    bounds = _bounds(machine, start, machine.motion.for_plans)
-    curve = flowing_to(start.joints, goal, flow, time, bounds, how)
+    curve = flowing_to(start.joints, goal, flow, time, _bounds(machine, start), how)
     return None if curve is None else _plan(machine, start, curve)
 
 
@@ -69,11 +66,12 @@ def _plan(machine: Machine, start: JointState, curve: CoordinateCurve) -> JointM
     return JointMoveInMotion(machine.kinematics, curve, knots)
 
 
-def _bounds(machine: Machine, start: JointState, limits: MotionLimits) -> Ends:
+def _bounds(machine: Machine, start: JointState) -> Ends:
     """Speed, acceleration and jerk of each joint (n,): if it alone moved the platform or tool."""
     jacobian = machine.kinematics.jacobian(start.pose, start.joints[0])
     shift = np.maximum(np.linalg.norm(jacobian[:3], axis=0), TINY)
     turn = np.maximum(np.linalg.norm(jacobian[3:], axis=0), TINY)
+    limits = machine.motion.for_plans
     linear, angular, joint = limits.linear, limits.angular, limits.joint
     own = np.minimum(linear.speed / shift, angular.speed / turn)
     pull = np.minimum(linear.acceleration / shift, angular.acceleration / turn)

@@ -7,7 +7,6 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused, Unreachable
 from manipulator.machine import Machine
-from manipulator.motion_limits import MotionLimits
 from manipulator.planning.check import check_plan
 from manipulator.planning.cycle import Cycle
 from manipulator.planning.flowing import plan_stream_move
@@ -121,8 +120,9 @@ def plan_to(machine: Machine, start: Start, pose: Pose, effort: Effort | None = 
     From rest it is straight, and stays on the branch that the machine is on. Raises as
     `plan_goal`.
     """
+    limits = machine.motion.for_plans
 
-    def line(limits: MotionLimits, slowdown: float) -> Plan:
+    def line(slowdown: float) -> Plan:
         if start.state.is_at_rest:
             return plan_line_move(start.state.pose, pose, limits, slowdown)
         return plan_move_in_motion(start.state, pose, limits, slowdown)
@@ -145,9 +145,9 @@ def _plan_joints_in_motion(
     """A move to joints (n,) from the motion of others, along the stream that they continue."""
     cost = FORWARD_COST * JOINT_KNOTS
 
-    def move(limits: MotionLimits, slowdown: float) -> Plan:
+    def move(slowdown: float) -> Plan:
         effort.spend(cost)
-        return plan_joint_move_in_motion(machine, begin, joints, limits, slowdown)
+        return plan_joint_move_in_motion(machine, begin, joints, slowdown)
 
     if flow is not None:
         effort.spend(cost)
@@ -172,7 +172,7 @@ def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> 
         joints = machine.kinematics.inverse(goal.pose, near)
     joints = _off_the_stops(machine, joints)
 
-    def move(limits: MotionLimits, slowdown: float) -> Plan:
+    def move(slowdown: float) -> Plan:
         return plan_joint_move(machine, start.state.pose, start.joints, joints, slowdown)
 
     try:
