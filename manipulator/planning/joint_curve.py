@@ -6,13 +6,12 @@ their corners.
 """
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from manipulator.arrays import Array, Mask, frozen
 from manipulator.kinematics import Kinematics
-from manipulator.planning.plan import MotionState
+from manipulator.planning.plan import CoordinateCurve, MotionState
 from manipulator.pose import Pose
 
 TERMS = 6
@@ -24,25 +23,12 @@ DIFFERENCE_STEP = 1e-4
 """s, for the change of the Jacobian."""
 
 
-class JointCurve(Protocol):
-    """Joints over time."""
-
-    @property
-    def duration(self) -> float:
-        """Seconds."""
-        ...
-
-    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
-        """q, q̇ and q̈ (..., n) at each of the times (...), those of the ends before and after."""
-        ...
-
-
 @dataclass(frozen=True, eq=False)
 class JointCurvePlan:
     """The joints' curve, and the poses (k,) at equal steps of its time."""
 
     kinematics: Kinematics
-    curve: JointCurve
+    curve: CoordinateCurve
     knots: Pose
 
     @property

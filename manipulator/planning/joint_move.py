@@ -38,7 +38,7 @@ class ProportionalJoints:
         return self.profile.duration
 
     def at(self, times: Array | float) -> tuple[Array, Array, Array]:
-        """See `JointCurve`."""
+        """See `CoordinateCurve`."""
         s, rate, pull = self.profile.at(times)
         change = self.end - self.begin
         return between(self.begin, self.end, s), rate[..., None] * change, pull[..., None] * change

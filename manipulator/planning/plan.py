@@ -28,6 +28,19 @@ class MotionState:
         return bool(np.abs(self.twist).max() < 1e-6)
 
 
+class CoordinateCurve(Protocol):
+    """Coordinates over time: joints, or the local coordinates of poses."""
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        ...
+
+    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+        """Values and two derivatives (..., n) at each of the times (...), the ends' outside."""
+        ...
+
+
 class Plan(Protocol):
     """A motion from time 0 to `duration` (∞ for one that goes on until it is stopped)."""
 
