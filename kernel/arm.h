@@ -1,4 +1,4 @@
-/* The inverse of any arm with six joints: docs/arm-kinematics.md, 4 to 6. */
+/* The inverse of any arm with six joints: docs/arm-kinematics.md, 4 to 6 and 11. */
 #pragma once
 #include "branches.h"
 #include "closed_forms.h"
@@ -31,7 +31,8 @@ struct arm {
 int arm_branches(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
                  real branches[MOST_BRANCHES][JOINTS]);
 
-/* The branch to take from `near`; 0 and NaN where there is none. Nearby it is continued, 6.3. */
+/* The branch to take from `near`; 0 and NaN where there is none. Nearby it is continued, 6.3;
+   else the choice is (11.1). */
 int arm_inverse(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
                 real joints[JOINTS]);
 
