@@ -11,7 +11,7 @@ import numpy as np
 
 from manipulator.arrays import Array, Mask, frozen
 from manipulator.kinematics import Kinematics
-from manipulator.planning.plan import CoordinateCurve, MotionState
+from manipulator.planning.plan import CoordinateCurve, MotionState, Plan
 from manipulator.pose import Pose
 
 TERMS = 6
@@ -24,7 +24,7 @@ DIFFERENCE_STEP = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class JointCurvePlan:
+class JointCurvePlan(Plan):
     """The joints' curve, and the poses (k,) at equal steps of its time."""
 
     kinematics: Kinematics
@@ -35,11 +35,6 @@ class JointCurvePlan:
     def duration(self) -> float:
         """Seconds from rest to rest."""
         return self.curve.duration
-
-    @property
-    def checked_duration(self) -> float:
-        """All of it."""
-        return self.duration
 
     def joints_at(self, times: Array | float) -> Array:
         """See `Plan`."""
