@@ -1,9 +1,8 @@
 """How much of requested joint rates the joints can drive: speeds, stops, accelerations.
 
 Rates are scaled as a whole, never one joint alone, so that the tool keeps its direction
-(docs/arm-kinematics.md, 8). The formulas are in kernel/rate_scaling.c.
-
-The ways out where a twist cannot be kept to (docs/arm-kinematics.md, 9).
+(docs/arm-kinematics.md, 8). The formulas are in kernel/rate_scaling.c. Where no part of a twist
+can be driven, there are rates that lead out (section 9).
 """
 
 import itertools
@@ -96,6 +95,7 @@ class RateScaling:
 
 
 NEGLIGIBLE = 1e-9
+"""Rates (rad/s per unit of twist) and accelerations that count as none."""
 
 
 def blocked(unit_rates: Array, at_low: Mask, at_high: Mask) -> Mask:
