@@ -79,7 +79,7 @@ class Bridge(Process):
             self.states.append((self.now, reported))
             self._words.send(*reported)
 
-    def on_trouble(self, text):
+    def on_problem(self, text):
         self.troubles.append((self.now, text))
 
     def on_written(self, ticket, now):
