@@ -72,6 +72,11 @@ class FramedKinematics:
         """That of the machine."""
         return self.inner.is_explicit
 
+    @property
+    def joins_branches(self) -> bool:
+        """That of the machine."""
+        return self.inner.joins_branches
+
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """See `Kinematics`."""
         return self.inner.inverse(self.frames.platform(pose), near)
