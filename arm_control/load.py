@@ -91,10 +91,10 @@ class ArmJogger:
         here, there = limits.values(poses, np.array([joints, ahead]))
         rate = (there - here) / dt
         is_rising, is_falling = rate > STILL, rate < -STILL
-        room = np.where(
+        left = np.where(
             is_rising, limits.high - here, np.where(is_falling, here - limits.low, np.inf)
         )
-        time = np.maximum(room, 0.0) / np.maximum(np.abs(rate), STILL)
+        time = np.maximum(left, 0.0) / np.maximum(np.abs(rate), STILL)
         braking = float(ticks_for(twist, self.jog.motion, dt)) * dt / SHARE_BEFORE_STOPS
         parts = 2.0 * time / (dt + np.sqrt(dt**2 + 2.0 * braking * np.minimum(time, LONG)))
         worst = int(np.argmin(parts))

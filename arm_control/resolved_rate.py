@@ -41,7 +41,7 @@ AHEAD = 0.1
 SHARE = 0.2
 """Of what the best single joint gains, that such a motion must gain."""
 ENDLESS = 1e3
-"""Radians of room that count as endless."""
+"""Radians to the end of a range that count as endless."""
 SLIDING = 'sliding off the line: '
 JOINT_CORNER = 'corner of the joint ranges'
 STRAIGHT = frozen(np.zeros(6))

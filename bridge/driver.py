@@ -102,7 +102,7 @@ class BoardDriver:
         """Sends a joint command (rad or m) to the board, or raises why not.
 
         stamp: by the sender's clock, s; None means "now". A gripper that it does not name goes on
-        as it was request.
+        as it was requested.
         """
         self._refuse_unless_enabled()
         present = None if self.monitor.joints is None else self.monitor.joints.positions

@@ -95,7 +95,8 @@ def machine_status(session: Session, is_enabled_here: bool, problem: str) -> Mac
     return _MODES[state.mode]
 
 
-STATE_PERIOD = 0.02
+BOARD_STATE_PERIOD = 0.02
+"""Seconds between two STATEs of the board."""
 
 
 @dataclass(frozen=True)
@@ -212,8 +213,8 @@ class LinkMonitor:
         positions = self.calibration.positions(counts)
         velocities = np.zeros_like(positions)
         if self.joints is not None:
-            periods = max(round((now - self._seen_at) / STATE_PERIOD), 1)
-            velocities = (positions - self.joints.positions) / (periods * STATE_PERIOD)
+            periods = max(round((now - self._seen_at) / BOARD_STATE_PERIOD), 1)
+            velocities = (positions - self.joints.positions) / (periods * BOARD_STATE_PERIOD)
         self.joints = JointTable(positions, np.nan_to_num(velocities))
         self._seen_at = now
 

@@ -123,7 +123,7 @@ class FramedKinematics:
 
 @dataclass(frozen=True, eq=False)
 class FramedGroup:
-    """A group of limits of the machine, asked with poses of the pivot in the work frame.
+    """A group of limits of the machine, evaluated with poses of the pivot in the work frame.
 
     The group itself knows pivots that have the platform's axes: poses are turned to those.
     """
@@ -180,7 +180,7 @@ class FramedLimit(LimitOf):
 
     @property
     def group(self) -> LimitGroup | None:
-        """That of the limit, asked likewise."""
+        """That of the limit, evaluated likewise."""
         return self.framed_group
 
     @property

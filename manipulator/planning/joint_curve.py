@@ -148,11 +148,11 @@ def narrowest(times: Array, positions: Array, accelerations: Array, least: float
     still = np.zeros((1, positions.shape[1]))
     rates = np.concatenate([still, np.diff(positions, axis=0) / steps[:, None], still])
     needed = (np.abs(np.diff(rates, axis=0)) / (2 * accelerations)).max(axis=1)
-    widths: Array = np.minimum(np.maximum(needed, least), room(times))
+    widths: Array = np.minimum(np.maximum(needed, least), widest(times))
     return widths
 
 
-def room(times: Array) -> Array:
+def widest(times: Array) -> Array:
     """Half of the shorter line beside each point (m,)."""
     steps = np.diff(times)
     result: Array = 0.5 * np.minimum(np.append(steps[0], steps), np.append(steps, steps[-1]))

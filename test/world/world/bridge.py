@@ -133,7 +133,7 @@ class Bridge(Process):
         self.sent += [(now, frame.message) for frame in self._reader.feed(output)]
         self._cable.send_to_board(output)
         link.written(b'', now)
-        rest = link.rest(now)
+        rest = link.due_in(now)
         self._due_at = now + rest
         self.timeline.after(rest, lambda: self.handle(self._turn_if_due))
 
