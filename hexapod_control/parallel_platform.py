@@ -124,6 +124,11 @@ class ParallelPlatform(ABC):
         """Each leg has its own closed form."""
         return True
 
+    @property
+    def joins_branches(self) -> bool:
+        """A crank stays on its side of the rod."""
+        return False
+
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """Joints (..., 6); see `Kinematics`. As bent at home unless `near` is nearer otherwise.
 

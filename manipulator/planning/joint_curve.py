@@ -11,7 +11,7 @@ import numpy as np
 
 from manipulator.arrays import Array, Mask, frozen
 from manipulator.kinematics import Kinematics
-from manipulator.planning.plan import CoordinateCurve, MotionState
+from manipulator.planning.plan import CoordinateCurve, MotionState, Plan
 from manipulator.pose import Pose
 
 TERMS = 6
@@ -24,7 +24,7 @@ DIFFERENCE_STEP = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class JointCurvePlan:
+class JointCurvePlan(Plan):
     """The joints' curve, and the poses (k,) at equal steps of its time."""
 
     kinematics: Kinematics
@@ -35,11 +35,6 @@ class JointCurvePlan:
     def duration(self) -> float:
         """Seconds from rest to rest."""
         return self.curve.duration
-
-    @property
-    def checked_duration(self) -> float:
-        """All of it."""
-        return self.duration
 
     def joints_at(self, times: Array | float) -> Array:
         """See `Plan`."""
@@ -153,11 +148,11 @@ def narrowest(times: Array, positions: Array, accelerations: Array, least: float
     still = np.zeros((1, positions.shape[1]))
     rates = np.concatenate([still, np.diff(positions, axis=0) / steps[:, None], still])
     needed = (np.abs(np.diff(rates, axis=0)) / (2 * accelerations)).max(axis=1)
-    widths: Array = np.minimum(np.maximum(needed, least), room(times))
+    widths: Array = np.minimum(np.maximum(needed, least), widest(times))
     return widths
 
 
-def room(times: Array) -> Array:
+def widest(times: Array) -> Array:
     """Half of the shorter line beside each point (m,)."""
     steps = np.diff(times)
     result: Array = 0.5 * np.minimum(np.append(steps[0], steps), np.append(steps, steps[-1]))

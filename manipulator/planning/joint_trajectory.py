@@ -16,9 +16,9 @@ from manipulator.planning.joint_curve import (
     Curve,
     JointCurvePlan,
     narrowest,
-    room,
     rounded_lines,
     splines,
+    widest,
 )
 from manipulator.planning.joint_move import refuse_rule
 from manipulator.planning.joint_points import AT_REST, JointPoints
@@ -132,7 +132,7 @@ def _curves(
         accelerations = np.concatenate([first, points.accelerations[skipped:]])
         yield splines(times, positions, velocities, accelerations), points.times
         return
-    most, limits = room(times), machine.motion.for_plans.joint
+    most, limits = widest(times), machine.motion.for_plans.joint
     widths = narrowest(times, positions, limits.acceleration, NARROWEST * start.dt)
     for _ in range(ROUNDINGS):
         yield rounded_lines(times, positions, widths), points.times + 2 * widths[0]

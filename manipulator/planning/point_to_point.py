@@ -16,7 +16,7 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array, frozen
 from manipulator.errors import Refused
 from manipulator.motion_limits import MotionLimits
-from manipulator.planning.plan import CoordinateCurve, MotionState, PosePlan
+from manipulator.planning.plan import CoordinateCurve, MotionState, Plan
 from manipulator.pose import Pose
 
 FASTEST = 1e9
@@ -129,7 +129,7 @@ def state_of(x: Array, v: Array, a: Array, reference: Array) -> MotionState:
 
 
 @dataclass(frozen=True, eq=False)
-class LineMove(PosePlan):
+class LineMove(Plan):
     """start.moved(s·d): s goes from 0 to 1 along the profile, d (6,) is start.twist_to(goal)."""
 
     start: Pose
@@ -140,11 +140,6 @@ class LineMove(PosePlan):
     def duration(self) -> float:
         """Seconds from rest to rest."""
         return self.profile.duration
-
-    @property
-    def checked_duration(self) -> float:
-        """All of it."""
-        return self.duration
 
     def at(self, times: Array | float) -> MotionState:
         """The state at each of the times (...)."""
@@ -184,7 +179,7 @@ def plan_line_move(
 
 
 @dataclass(frozen=True, eq=False)
-class MoveInMotion(PosePlan):
+class MoveInMotion(Plan):
     """A curve of the six local coordinates about the goal's orientation."""
 
     goal: Pose
@@ -194,11 +189,6 @@ class MoveInMotion(PosePlan):
     def duration(self) -> float:
         """Seconds until rest at the goal."""
         return self.curve.duration
-
-    @property
-    def checked_duration(self) -> float:
-        """All of it."""
-        return self.duration
 
     def at(self, times: Array | float) -> MotionState:
         """Position, velocity and acceleration of the coordinates, turned into a state."""

@@ -384,7 +384,7 @@ class Executor:
 
     @property
     def _reason(self) -> str:
-        """Why a plan was braked, where that was not asked for."""
+        """Why a plan was braked, where nobody requested that."""
         if self._jog_command is not None:
             return self._jog_command.takeover
         return REPLACED if self.expected is not None else ''
