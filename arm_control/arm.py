@@ -65,7 +65,7 @@ class SerialArm:
 
     @property
     def joins_branches(self) -> bool:
-        """A jog drives from branch to branch where they meet; a platform's crank may never."""
+        """A jog drives from branch to branch where they meet, as with a stretched elbow."""
         return True
 
     @property

@@ -47,13 +47,13 @@ class Chain:
     def forward(self, joints: Array) -> Pose:
         """The tool's pose in the base frame for joints (..., 6)."""
         angles = ascontiguousarray(joints, float64)
-        if angles.ndim == 1:  # asked for at every tick: no shapes are put together
+        if angles.ndim == 1:  # computed at every tick: no shapes are put together
             position, rotation = empty(3), empty((3, 3))
         else:
             lead = angles.shape[:-1]
             position, rotation = empty((*lead, 3)), empty((*lead, 3, 3))
         if _kernel.chain_forward(self.numbers, angles, position, rotation):
-            return Pose(position, rotation)  # says what is not finite
+            return Pose(position, rotation)  # raises: not finite
         return Pose.unchecked(position, rotation)
 
     def jacobian(self, joints: Array) -> Array:

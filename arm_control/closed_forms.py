@@ -99,7 +99,7 @@ NO_LOOP, MOST_LOOPS = -1, 4
 
 
 class Closes(IntEnum):
-    """Which closed form an arm has, as kernel/arm.h says it."""
+    """Which closed form an arm has, as in kernel/arm.h."""
 
     NO_FORM = 0
     ALMOST = 1
@@ -116,7 +116,8 @@ def arm_numbers(
 ) -> Array:
     """An arm in the order of `struct arm`: its chain, the closed form that it has, or almost.
 
-    general is what a method without closed form adds: loops, mirror, chain that is eliminated.
+    length in m; low and high (6,) in rad. general is what `Numerical` adds: loops, mirror, and the
+    chain that is eliminated.
     """
     closes = Closes.NO_FORM
     if form is not None:

@@ -136,7 +136,7 @@ class LineRates:
 
     @property
     def direction(self) -> int:
-        """The index of the singular value that asks for most of the rates."""
+        """The index of the singular value that needs most of the rates."""
         return int(np.abs(self.numbers[2 * JOINTS : -1]).argmax())
 
     @property

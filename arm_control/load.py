@@ -37,10 +37,10 @@ LAG = 0.02
 
 @dataclass(frozen=True, eq=False)
 class ArmJogger:
-    """`Jogger` of an arm: what it follows and keeps is said in `ResolvedRate`.
+    """`Jogger` of an arm: see `ResolvedRate` for what it follows and keeps.
 
-    The wanted twist goes on from motion.along, the part of it that the joints could follow, or
-    from motion.twist where the tool would otherwise pass its accelerations. of_pose are the
+    The requested twist continues from motion.along, the part of it that the joints could follow,
+    or from motion.twist where the tool would otherwise pass its accelerations. of_pose are the
     limits in task space, for poses of the pivot.
     """
 
@@ -91,10 +91,10 @@ class ArmJogger:
         here, there = limits.values(poses, np.array([joints, ahead]))
         rate = (there - here) / dt
         is_rising, is_falling = rate > STILL, rate < -STILL
-        room = np.where(
+        left = np.where(
             is_rising, limits.high - here, np.where(is_falling, here - limits.low, np.inf)
         )
-        time = np.maximum(room, 0.0) / np.maximum(np.abs(rate), STILL)
+        time = np.maximum(left, 0.0) / np.maximum(np.abs(rate), STILL)
         braking = float(ticks_for(twist, self.jog.motion, dt)) * dt / SHARE_BEFORE_STOPS
         parts = 2.0 * time / (dt + np.sqrt(dt**2 + 2.0 * braking * np.minimum(time, LONG)))
         worst = int(np.argmin(parts))
@@ -107,27 +107,27 @@ class ArmJogger:
     def _within_joints(self, motion: JogMotion, twist: Array, dt: float) -> JogMotion:
         """The step, with no limits but those of the joints."""
         limits = self.jog.motion
-        wanted = towards(motion.along, twist, limits, dt)
-        ticks = ticks_for(wanted, limits, dt)
-        if ticks_for(wanted - motion.twist, limits, dt) > 1.0 + LAG:
-            wanted = towards(motion.twist, twist, limits, dt)
+        requested = towards(motion.along, twist, limits, dt)
+        ticks = ticks_for(requested, limits, dt)
+        if ticks_for(requested - motion.twist, limits, dt) > 1.0 + LAG:
+            requested = towards(motion.twist, twist, limits, dt)
         slowing = SHARE_BEFORE_STOPS / (max(ticks, 1.0) * dt)
-        after = self._stepped(motion, wanted, dt, slowing)
+        after = self._stepped(motion, requested, dt, slowing)
         along = ticks_for(after.along - motion.along, limits, dt)
         if along > 1.0 + ROUNDING or ticks_for(after.twist - motion.twist, limits, dt) > 1.0 + LAG:
-            # No part of what is wanted can be reached as gently as the tool asks for.
+            # No part of the request can be reached as gently as the tool asks for.
             straight = towards(motion.twist, np.zeros(6), limits, dt)
             braked = self._stepped(replace(motion, off_line=STRAIGHT), straight, dt)
             return replace(braked, scale=after.scale, held_by=after.held_by)
         return after
 
     def _stepped(
-        self, motion: JogMotion, wanted: Array, dt: float, slowing: float = AT_ONCE
+        self, motion: JogMotion, requested: Array, dt: float, slowing: float = AT_ONCE
     ) -> JogMotion:
         line = motion.off_line, motion.is_leaving, motion.is_under_way
         before = JogState(motion.joints, motion.rates, *line)
-        step = self.jog.step(before, self._of_tool(wanted, motion.pose), dt, slowing)
-        state, along = step.state, step.driven * wanted
+        step = self.jog.step(before, self._of_tool(requested, motion.pose), dt, slowing)
+        state, along = step.state, step.driven * requested
         along.setflags(write=False)
         return JogMotion(
             self.frames.pivot(self.jog.arm.chain.forward(state.joints)),

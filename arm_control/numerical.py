@@ -1,7 +1,8 @@
-"""Inverse of any chain by damped Newton steps from many starts (docs/arm-kinematics.md, 6).
+"""Inverse of any chain by elimination and damped Newton steps (docs/arm-kinematics.md, 6).
 
-A calibrated arm, built almost as one with a closed form, starts at that one's branches. The
-steps are in kernel/numerical.c, where they start in kernel/arm.c.
+A calibrated arm, built almost as one with a closed form, starts at that one's branches. The search
+is in kernel/arm.c. Here an arm is prepared for it: loops to eliminate, mirrored joints, ideal
+axes.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,15 +17,20 @@ from manipulator.arrays import Array
 from manipulator.pose import Pose
 
 STARTS = 33
+"""From which damped steps look for a pose that is refused: kernel/arm.c."""
+
 MOST_BRANCHES = 16
 """Of any arm with six joints."""
 
 
 @dataclass(frozen=True, eq=False)
 class Numerical:
-    """Levenberg–Marquardt with the error as damping (Sugihara, IEEE T-RO 27(5), 2011).
+    """Elimination (section 6.1), refined by Levenberg–Marquardt steps (6.2).
 
-    length scales metres against radians; low and high span the cold starts.
+    length (m) scales metres against radians; low and high (6,), rad, are the joint ranges, over
+    which the starts of an arm without elimination are spread. loops, general and numbers are what
+    the kernel needs: the loops of the elimination, best first; these with `mirror` and the chain
+    that is eliminated; `struct arm`.
     """
 
     chain: Chain
@@ -59,9 +65,9 @@ class Numerical:
         return self.numbers
 
     def branches(self, pose: Pose, near: Array) -> Array:
-        """What was found from `near`, which comes first, and from the cold starts: (..., 16, 6).
+        """What was found from `near`, which comes first, and by elimination: (..., 16, 6).
 
-        Next to a singularity a branch may be missed.
+        NaN rows follow. Next to a singularity a branch may be missed.
         """
         return arm_branches(self.numbers, pose, near)[0]
 
@@ -77,7 +83,10 @@ class Numerical:
 
 @dataclass(frozen=True, eq=False)
 class AlmostClosed:
-    """What damped Newton steps find from `near` and from the eight branches of the ideal arm."""
+    """From `near` and the eight branches of the ideal arm by damped steps, then by elimination.
+
+    docs/arm-kinematics.md, 6.4.
+    """
 
     ideal: ClosedForm
     numerical: Numerical
@@ -104,7 +113,7 @@ class AlmostClosed:
         return self.numbers
 
     def branches(self, pose: Pose, near: Array) -> Array:
-        """All of them and NaN (..., 16, 6); for a pose that has none, what `Numerical` finds."""
+        """All that were found, by whole turns nearest to `near`, then NaN rows: (..., 16, 6)."""
         return arm_branches(self.numbers, pose, near)[0]
 
     def refusal(self, pose: Pose) -> str:
@@ -130,12 +139,13 @@ def arm_branches(numbers: Array, pose: Pose, near: Array) -> tuple[Array, int]:
 
 TRIED = 48
 """Postures on which each loop of an elimination is tried."""
+
 LOOPS, CANDIDATES = 12, 48
-"""See kernel/elimination.h and general.h."""
+"""Loops that an arm has, and candidates of one: kernel/elimination.h and general.h."""
+
 ROUNDING, ACCURATE, USEFUL = 1e-9, 1e-6, 0.03
 """Radians from a posture at which a candidate is as good as exact, and at which an accurate and a
 useful loop have their candidates, in the geometric mean."""
-
 
 ASIDE = 1e-4
 """Of an arm's length: how far axes are moved aside where no loop has a use."""

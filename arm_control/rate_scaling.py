@@ -1,9 +1,8 @@
-"""How much of wanted joint rates the joints can drive: speeds, stops, accelerations.
+"""How much of requested joint rates the joints can drive: speeds, stops, accelerations.
 
 Rates are scaled as a whole, never one joint alone, so that the tool keeps its direction
-(docs/arm-kinematics.md, 8). The formulas are in kernel/rate_scaling.c.
-
-The ways out where a twist cannot be kept to (docs/arm-kinematics.md, 9).
+(docs/arm-kinematics.md, 8). The formulas are in kernel/rate_scaling.c. Where no part of a twist
+can be driven, there are rates that lead out (section 9).
 """
 
 import itertools
@@ -28,7 +27,7 @@ LIMITS = ('', 'speed', 'acceleration', 'stop')
 
 @dataclass(frozen=True)
 class Scale:
-    """The part of wanted rates that can be driven, and what set it, '' where all can.
+    """The part of requested rates that can be driven, and what set it, '' where all can.
 
     limit is 'speed', 'acceleration' or 'stop', joint counts from 1.
     """
@@ -96,6 +95,7 @@ class RateScaling:
 
 
 NEGLIGIBLE = 1e-9
+"""Rates (rad/s per unit of twist) and accelerations that count as none."""
 
 
 def blocked(unit_rates: Array, at_low: Mask, at_high: Mask) -> Mask:
@@ -114,7 +114,7 @@ def blocked(unit_rates: Array, at_low: Mask, at_high: Mask) -> Mask:
 def sliding_rates(
     scaled_jacobian: Array, scaled_twist: Array, damping: float, at_low: Mask, at_high: Mask
 ) -> Array:
-    """Joint rates (6,) with the twist nearest to the wanted one that leave or keep every stop.
+    """Joint rates (6,) with the twist nearest to the requested one that leave or keep every stop.
 
     Least squares |J q̇ − x|² + damping²·|q̇|², q̇ ≥ 0 at a low stop, ≤ 0 at a high one, exactly:
     the best admissible one over all ways of holding some of the stopped joints still. It is zero
@@ -122,15 +122,15 @@ def sliding_rates(
     """
     stopped = np.flatnonzero(at_low | at_high)
     normal = scaled_jacobian.T @ scaled_jacobian + damping**2 * np.eye(6)
-    wanted = scaled_jacobian.T @ scaled_twist
+    projected = scaled_jacobian.T @ scaled_twist
     best, least = np.zeros(6), 0.0
     for held in itertools.product((False, True), repeat=len(stopped)):
         free = np.ones(6, dtype=np.bool_)
         free[stopped[list(held)]] = False
         rates = np.zeros(6)
-        rates[free] = np.linalg.solve(normal[np.ix_(free, free)], wanted[free])
+        rates[free] = np.linalg.solve(normal[np.ix_(free, free)], projected[free])
         admissible = (rates[at_low] >= 0).all() and (rates[at_high] <= 0).all()
-        cost = float(rates @ normal @ rates / 2 - wanted @ rates)
+        cost = float(rates @ normal @ rates / 2 - projected @ rates)
         if admissible and cost < least:
             best, least = rates, cost
     return best
@@ -139,7 +139,7 @@ def sliding_rates(
 def folding_rates(
     posture: Posture, scaled_twist: Array, to_middle: Array, at_low: Mask, at_high: Mask
 ) -> Array:
-    """Joint rates (6,) that begin to bend a lost joint so that the tool goes the wanted way.
+    """Joint rates (6,) that begin to bend a lost joint so that the tool goes the requested way.
 
     At σ = 0 turning the joints along v does not move the tool, but accelerates it by J̇(v)·v, to
     the same side for v and −v: a stretched elbow bends inwards either way. The way is taken that

@@ -41,7 +41,7 @@ AHEAD = 0.1
 SHARE = 0.2
 """Of what the best single joint gains, that such a motion must gain."""
 ENDLESS = 1e3
-"""Radians of room that count as endless."""
+"""Radians to the end of a range that count as endless."""
 SLIDING = 'sliding off the line: '
 JOINT_CORNER = 'corner of the joint ranges'
 STRAIGHT = frozen(np.zeros(6))
@@ -75,10 +75,10 @@ class JogState:
 class JogStep:
     """What one tick came to.
 
-    scale is the part of the wanted twist that the joints allow (1 when nothing holds it back),
+    scale is the part of the requested twist that the joints allow (1 when nothing holds it back),
     held_by what set it: '', 'speed of joint 2', 'stop of joint 3', the singularity ahead, or
     SLIDING and where. driven is the part of the twist that the tool goes with by now, twist (6,)
-    is the tool's own, in base axes; where it slides, only what of it is wanted.
+    is the tool's own, in base axes; where it slides, only what of it is requested.
     """
 
     state: JogState
@@ -136,24 +136,27 @@ class ResolvedRate:
         could brake harder begin earlier.
         Raises InvalidInput for a twist or dt that is not finite or not positive.
         """
-        wanted = np.asarray(twist, dtype=np.float64)
-        is_finite = wanted.shape == (6,) and math.isfinite(math.hypot(*wanted.tolist()))
+        requested = np.asarray(twist, dtype=np.float64)
+        is_finite = requested.shape == (6,) and math.isfinite(math.hypot(*requested.tolist()))
         if not is_finite or not 0 < dt < math.inf:
-            raise InvalidInput(f'twist {wanted.tolist()} over {dt} s, needs six finite, positive')
-        tick = _Tick(self, state, wanted * self._unit, dt, slowing)
+            raise InvalidInput(
+                f'twist {requested.tolist()} over {dt} s: needs six finite numbers and a '
+                'positive time'
+            )
+        tick = _Tick(self, state, requested * self._unit, dt, slowing)
         drive = tick.damped() if self.slides else tick.on_line()
-        if drive.scale == 0.0 and wanted.any():
+        if drive.scale == 0.0 and requested.any():
             drive = tick.way_out() or drive
         before = state.rates, state.joints
         rates, joints = self.scaling.followed(*before, drive.rates, drive.scale, dt)
         off_line, driven, moving = tick.missed(rates)
         if drive.is_sliding:
-            off_line, moving = STRAIGHT, driven * wanted
+            off_line, moving = STRAIGHT, driven * requested
         is_leaving = drive.is_leaving or (state.is_leaving and tick.is_singular)
         is_moving = any(rates.tolist())
         is_on_line = is_moving and not (drive.is_sliding or is_leaving)
-        is_asked = is_moving or bool(wanted.any())
-        is_under_way = is_on_line or (state.is_under_way and is_asked)
+        is_driven = is_moving or bool(requested.any())
+        is_under_way = is_on_line or (state.is_under_way and is_driven)
         for array in (joints, rates, off_line, moving):
             array.setflags(write=False)
         after = JogState(joints, rates, off_line, is_leaving, is_under_way)

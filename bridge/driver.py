@@ -60,7 +60,7 @@ class Listener(Protocol):
     def on_machine_state(self, state: MachineReport) -> None:
         """After every event, whether it has changed or not."""
 
-    def on_trouble(self, text: str) -> None:
+    def on_problem(self, text: str) -> None:
         """Of the board or the line, for people to read."""
 
     def on_written(self, ticket: Ticket, now: float) -> None:
@@ -102,7 +102,7 @@ class BoardDriver:
         """Sends a joint command (rad or m) to the board, or raises why not.
 
         stamp: by the sender's clock, s; None means "now". A gripper that it does not name goes on
-        as it was request.
+        as it was requested.
         """
         self._refuse_unless_enabled()
         present = None if self.monitor.joints is None else self.monitor.joints.positions
@@ -147,8 +147,8 @@ class BoardDriver:
         error = request.future.exception()
         if error is None:
             return True, request.done
-        trouble = self.monitor.trouble
-        return False, f'{error}{f": {trouble}" if trouble else ""}'
+        problem = self.monitor.problem
+        return False, f'{error}{f": {problem}" if problem else ""}'
 
     def _request(self, command: Command, done: str) -> Request:
         return Request(done, self.link.request(command))
@@ -183,11 +183,11 @@ class BoardDriver:
             case Acknowledged(Arm() | Disarm() | Clear()):
                 self._must_restart = True
             case FaultReported():
-                self._listener.on_trouble(self.monitor.last_refusal)
+                self._listener.on_problem(self.monitor.last_refusal)
             case CommandFailed(command, reason):
-                self._listener.on_trouble(f'{type(command).__name__.upper()}: {reason}')
+                self._listener.on_problem(f'{type(command).__name__.upper()}: {reason}')
             case Disconnected(reason) | Incompatible(reason):
-                self._listener.on_trouble(reason)
+                self._listener.on_problem(reason)
         self._listener.on_machine_state(self._state())
 
     def _state(self) -> MachineReport:

@@ -69,7 +69,7 @@ class Link:
         self.is_open = False
         self._on_event, self._on_written = on_event, on_written
         self._bytes_per_second = bytes_per_second
-        self._look_at = self._read_at = self._setpoint_at = self._listened_at = 0.0
+        self._look_at = self._read_at = self._setpoint_at = self._turned_at = 0.0
         self._emptied_at = 0.0
         self._unsent = b''
         self._mailbox: deque[Ticket] = deque(maxlen=1)
@@ -107,7 +107,7 @@ class Link:
         """The port has not yet taken all that was to be written."""
         return bool(self._unsent)
 
-    def rest(self, now: float) -> float:
+    def due_in(self, now: float) -> float:
         """Seconds until the next turn, where neither bytes nor `wake` call for one before."""
         if not self.is_open:
             return max(self._look_at - now, 0.0)
@@ -121,9 +121,9 @@ class Link:
     def opened(self, now: float) -> None:
         """The port is open."""
         self.is_open = True
-        self._listened_at = self._emptied_at = now
+        self._turned_at = self._emptied_at = now
         self._note(self.session.opened(now))
-        self._tell(now)
+        self._report(now)
 
     def lost(self, reason: str, now: float) -> None:
         """There is no port, or no more, and why."""
@@ -131,7 +131,7 @@ class Link:
         self._unsent, self._sent_ticket = b'', None
         self._look_at = now + LOOK_AGAIN_AFTER
         self._note(self.session.closed(reason, now))
-        self._tell(now)
+        self._report(now)
 
     def turn(self, received: bytes, now: float) -> bytes:
         """All that is to be written now; `written` must follow."""
@@ -146,8 +146,8 @@ class Link:
             self._read_at = now + len(received) / self._bytes_per_second
             self._note(without_passed_states(self.session.receive(received, now, emptied_at)))
         # After a stall the port is read before the board counts as silent.
-        self._note(self.session.tick(self._listened_at))
-        self._listened_at = now
+        self._note(self.session.tick(self._turned_at))
+        self._turned_at = now
         self._unsent += self.session.take_output()
         return self._unsent if self.is_open else b''
 
@@ -157,7 +157,7 @@ class Link:
         ticket, self._sent_ticket = self._sent_ticket, None
         if ticket is not None:
             self._on_written(ticket, now)
-        self._tell(now)
+        self._report(now)
 
     def _take_requests(self, now: float) -> None:
         while self._requests:
@@ -192,7 +192,7 @@ class Link:
             refusal = Refused(event.reason) if isinstance(event, CommandFailed) else None
             self._unreported.append(_Outcome(event, futures, refusal))
 
-    def _tell(self, now: float) -> None:
+    def _report(self, now: float) -> None:
         while self._unreported:
             outcome = self._unreported.popleft()
             if outcome.event is not None:

@@ -76,14 +76,14 @@ _MODES = {
 _FAULTS = {FaultCode.UNDERVOLTAGE: 'the battery is too low'}
 
 
-def machine_status(session: Session, is_enabled_here: bool, trouble: str) -> MachineStatus:
-    """The state of the machine; `trouble` is why there is no board, where there is none."""
+def machine_status(session: Session, is_enabled_here: bool, problem: str) -> MachineStatus:
+    """The state of the machine; `problem` is why there is no board, where there is none."""
     if session.phase is Phase.INCOMPATIBLE:
-        return MachineStatus(ERROR, MachineState.FAULT, trouble)
+        return MachineStatus(ERROR, MachineState.FAULT, problem)
     state = session.state
     if session.phase is not Phase.READY or state is None:
-        if trouble or session.phase is Phase.CLOSED:
-            return MachineStatus(ERROR, MachineState.DISCONNECTED, trouble)
+        if problem or session.phase is Phase.CLOSED:
+            return MachineStatus(ERROR, MachineState.DISCONNECTED, problem)
         return MachineStatus(WARN, MachineState.BOOTING, 'waiting for HELLO from the board')
     if state.mode is Mode.FAULT:
         return MachineStatus(
@@ -95,7 +95,8 @@ def machine_status(session: Session, is_enabled_here: bool, trouble: str) -> Mac
     return _MODES[state.mode]
 
 
-STATE_PERIOD = 0.02
+BOARD_STATE_PERIOD = 0.02
+"""Seconds between two STATEs of the board."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +121,7 @@ class LinkMonitor:
     joints: JointTable | None = None
     refusals: int = 0
     last_refusal: str = ''
-    trouble: str = ''
+    problem: str = ''
     is_enabled_here: bool = False
     is_measured: bool = False
     _seen_at: float = field(default=0.0)
@@ -128,7 +129,7 @@ class LinkMonitor:
     @property
     def status(self) -> MachineStatus:
         """The machine state."""
-        return machine_status(self.session, self.is_enabled_here, self.trouble)
+        return machine_status(self.session, self.is_enabled_here, self.problem)
 
     @property
     def is_clear(self) -> bool:
@@ -165,12 +166,12 @@ class LinkMonitor:
         """`now` is monotonic, in seconds."""
         match event:
             case Opened():
-                self.trouble = ''
+                self.problem = ''
             case Connected():
-                self.trouble = ''
+                self.problem = ''
                 self.is_enabled_here = False
             case Disconnected(reason) | Incompatible(reason):
-                self.trouble = reason
+                self.problem = reason
                 self.joints = None
             case Acknowledged(Arm()):
                 self.is_enabled_here = True
@@ -212,8 +213,8 @@ class LinkMonitor:
         positions = self.calibration.positions(counts)
         velocities = np.zeros_like(positions)
         if self.joints is not None:
-            periods = max(round((now - self._seen_at) / STATE_PERIOD), 1)
-            velocities = (positions - self.joints.positions) / (periods * STATE_PERIOD)
+            periods = max(round((now - self._seen_at) / BOARD_STATE_PERIOD), 1)
+            velocities = (positions - self.joints.positions) / (periods * BOARD_STATE_PERIOD)
         self.joints = JointTable(positions, np.nan_to_num(velocities))
         self._seen_at = now
 

@@ -177,7 +177,7 @@ class LinkThread(threading.Thread):
         if self._port is not None:
             reading += [self._port] if self._link.is_listening(now) else []
             writing += [self._port] if self._link.is_behind else []
-        readable, _, _ = select.select(reading, writing, [], self._link.rest(now))
+        readable, _, _ = select.select(reading, writing, [], self._link.due_in(now))
         if self._wake_out in readable:
             with contextlib.suppress(BlockingIOError):
                 os.read(self._wake_out, 4096)

@@ -46,7 +46,7 @@ RETRY_AFTER = 0.1
 MAX_TRIES = 4
 MAX_BOOT = 5.0
 MODE_AFTER: dict[type, Mode] = {Disarm: Mode.DISARMED, Stop: Mode.STOPPED}
-SHOWN_BY_STATE = (Arm, Clear, Play)
+ACKNOWLEDGED_BY_STATE = (Arm, Clear, Play)
 """Commands whose resulting mode is known from the next STATE only: acknowledged with it."""
 
 
@@ -171,7 +171,7 @@ class Session:
                 return []
             raise Refused('a STOP is in progress')
         reason = f'{type(command).__name__.upper()} came after it'
-        displaced = self._show_obeyed() or self._fail_pending(reason)
+        displaced = self._acknowledge_obeyed() or self._fail_pending(reason)
         self._begin(command, now)
         return displaced
 
@@ -231,7 +231,7 @@ class Session:
         self.state = state
         self.phase = Phase.READY
         connected: list[Event] = [Connected(self.hello)] if is_first else []
-        obeyed = self._show_obeyed()
+        obeyed = self._acknowledge_obeyed()
         if self.is_stop_requested and self._pending is None and state.mode is not Mode.STOPPED:
             self._begin(Stop(), now)
         return [*connected, *obeyed, StateReceived(state)]
@@ -244,7 +244,7 @@ class Session:
             return self._fail_pending(REASONS[ack.result])
         if isinstance(pending.command, Clear):
             self.is_stop_requested = False
-        if isinstance(pending.command, SHOWN_BY_STATE):
+        if isinstance(pending.command, ACKNOWLEDGED_BY_STATE):
             pending.is_obeyed = True
             return []
         self._pending = None
@@ -254,7 +254,7 @@ class Session:
             self.state = replace(self.state, mode=mode)
         return [Acknowledged(pending.command)]
 
-    def _show_obeyed(self) -> list[Event]:
+    def _acknowledge_obeyed(self) -> list[Event]:
         """Acknowledges with a STATE later than the command, so that its effect is visible."""
         pending = self._pending
         if pending is None or not pending.is_obeyed:

@@ -40,18 +40,18 @@ def send_stop(address: bytes) -> bool:
 class StopSocket:
     """Calls on_stop for each STOP that was sent to `address`; the link's thread waits for it.
 
-    `trouble`: why the address is not available, '' where it is; the other ways to stop remain.
+    `problem`: why the address is not available, '' where it is; the other ways to stop remain.
     """
 
     def __init__(self, address: bytes, on_stop: Callable[[], object]) -> None:
-        self.trouble = ''
+        self.problem = ''
         self._on_stop = on_stop
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
         try:
             self._socket.bind(address)
         except OSError as error:
-            self.trouble = f'`hexarm stop` reaches this bridge over ROS only: {error.strerror}'
+            self.problem = f'`hexarm stop` reaches this bridge over ROS only: {error.strerror}'
 
     def fileno(self) -> int:
         """For select."""

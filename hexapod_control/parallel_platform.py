@@ -7,6 +7,7 @@ from itertools import product
 from typing import ClassVar, Protocol
 
 import numpy as np
+from numpy import empty
 
 from hexapod_control.forward import End, rules, solution
 from hexapod_control.geometry import LEGS
@@ -123,13 +124,18 @@ class ParallelPlatform(ABC):
         """Each leg has its own closed form."""
         return True
 
+    @property
+    def joins_branches(self) -> bool:
+        """A crank stays on its side of the rod."""
+        return False
+
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """Joints (..., 6); see `Kinematics`. As bent at home unless `near` is nearer otherwise.
 
-        It calls the kernel itself: of a microsecond, each call of another function is a tenth.
+        It calls the kernel itself: of half a microsecond, each call of another function is a lot.
         """
         position = pose.position
-        joints = np.empty(LEGS if position.ndim == 1 else (*position.shape[:-1], LEGS))
+        joints = empty(LEGS if position.ndim == 1 else (*position.shape[:-1], LEGS))
         if near is not None:
             near = stretched(near, joints.shape)
         if leg_inverse(self.legs.numbers, position, pose.rotation, near, joints):

@@ -5,37 +5,46 @@ enum { RELEASE_FROM = 64 /* items from which on other threads may run */ };
 
 static const PyObject *numpy_ndarray;
 
-/* What a plain array of numpy's holds, without the buffer protocol: for four arrays this takes twice
-   as long as six legs' inverse. 0 for what is not a plain array of the right kind. */
-static int open_plain(const PyObject *object, int is_written, Py_buffer *view)
+/* The arguments of a call: their numbers, and the buffers to be released after it. */
+struct opened {
+    real *arrays[MOST_ARRAYS];
+    int held;
+    Py_buffer buffers[MOST_ARRAYS];
+};
+
+/* Whether it is a plain array of numpy's of the right kind: one is read without the buffer
+   protocol, which for four arrays takes twice as long as six legs' inverse. */
+static int is_plain(const struct ndarray *array, int is_written)
 {
-    const struct ndarray *array = (const struct ndarray *)object;
     const int flags = is_written ? ARRAY_IS_DENSE | ARRAY_IS_WRITABLE : ARRAY_IS_DENSE;
-    if (object->type != numpy_ndarray || (array->flags & flags) != flags
-        || array->type->letter != 'd' || array->type->byte_order != '=')
-        return 0;
-    view->buf = array->data;
-    view->len = (Py_ssize_t)sizeof(real);
-    for (int k = 0; k < array->dimensions; k++)
-        view->len *= array->shape[k];
-    return 1;
+    return array->object.type == numpy_ndarray && (array->flags & flags) == flags
+           && array->type->letter == 'd' && array->type->byte_order == '=';
 }
 
-/* Anything else is asked for its buffer, which says what is wrong with it. */
-static int open_array(const struct function *f, int index, PyObject *object, Py_buffer *view)
+/* The array's length in bytes; -1 where it is of no use. What is no plain array is asked for its
+   buffer, which says what is wrong with it. */
+static Py_ssize_t open_array(const struct function *f, int index, PyObject *object,
+                             struct opened *to)
 {
+    const struct ndarray *array = (const struct ndarray *)object;
     const int is_written = f->arrays[index].kind == WRITTEN;
-    view->obj = NULL;
-    if (open_plain(object, is_written, view))
-        return 0;
-    if (PyObject_GetBuffer(object, view,
+    if (is_plain(array, is_written)) {
+        Py_ssize_t length = (Py_ssize_t)sizeof(real);
+        for (int k = 0; k < array->dimensions; k++)
+            length *= array->shape[k];
+        to->arrays[index] = array->data;
+        return length;
+    }
+    Py_buffer *buffer = &to->buffers[to->held];
+    if (PyObject_GetBuffer(object, buffer,
                            PyBUF_C_CONTIGUOUS | PyBUF_FORMAT | (is_written ? PyBUF_WRITABLE : 0)))
         return -1;
-    if (view->format[0] == 'd' && view->format[1] == 0)
-        return 0;
+    to->held++;
+    to->arrays[index] = buffer->buf;
+    if (buffer->format[0] == 'd' && buffer->format[1] == 0)
+        return buffer->len;
     PyErr_Format(PyExc_TypeError, "%s: array %d holds '%s', not float64", f->method.name, index + 1,
-                 view->format);
-    PyBuffer_Release(view);
+                 buffer->format);
     return -1;
 }
 
@@ -62,7 +71,7 @@ static Py_ssize_t call(const struct function *f, real **arrays, Py_ssize_t items
         return f->all(arrays, items);
     for (Py_ssize_t i = 0; i < items; i++) {
         sum += f->each(arrays);
-        for (int k = 0; i + 1 < items && k < MOST_ARRAYS; k++)
+        for (int k = 0; i + 1 < items && k < MOST_ARRAYS && f->arrays[k].kind != END; k++)
             if (f->arrays[k].kind != WHOLE && arrays[k])
                 arrays[k] += f->arrays[k].numbers;
     }
@@ -82,30 +91,27 @@ static PyObject *run(const struct function *f, real **arrays, Py_ssize_t items)
 PyObject *python_call(PyObject *row, PyObject *const *arguments, Py_ssize_t count)
 {
     const struct function *f = PyCapsule_GetPointer(row, NULL);
-    Py_buffer views[MOST_ARRAYS];
-    real *arrays[MOST_ARRAYS] = {NULL};
+    struct opened opened;
     Py_ssize_t items = -1;
     PyObject *result = NULL;
-    int wanted = 0, opened = 0, is_good = 1;
+    int wanted = 0, is_good = 1;
     while (wanted < MOST_ARRAYS && f->arrays[wanted].kind != END)
         wanted++;
     if (count != wanted)
         return PyErr_Format(PyExc_TypeError, "%s takes %d arrays, not %zd", f->method.name, wanted,
                             count);
+    opened.held = 0;
     for (int k = 0; is_good && k < wanted; k++) {
+        opened.arrays[k] = NULL;
         if (f->arrays[k].kind == OPTIONAL && arguments[k] == &_Py_NoneStruct)
             continue;
-        is_good = open_array(f, k, arguments[k], &views[opened]) == 0;
-        if (is_good) {
-            arrays[k] = views[opened].buf;
-            is_good = fits(f, k, views[opened++].len, &items);
-        }
+        Py_ssize_t length = open_array(f, k, arguments[k], &opened);
+        is_good = length >= 0 && fits(f, k, length, &items);
     }
     if (is_good)
-        result = run(f, arrays, items);
-    while (opened-- > 0)
-        if (views[opened].obj)
-            PyBuffer_Release(&views[opened]);
+        result = run(f, opened.arrays, items);
+    while (opened.held > 0)
+        PyBuffer_Release(&opened.buffers[--opened.held]);
     return result;
 }
 

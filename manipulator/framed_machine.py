@@ -72,6 +72,11 @@ class FramedKinematics:
         """That of the machine."""
         return self.inner.is_explicit
 
+    @property
+    def joins_branches(self) -> bool:
+        """That of the machine."""
+        return self.inner.joins_branches
+
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """See `Kinematics`."""
         return self.inner.inverse(self.frames.platform(pose), near)
@@ -118,7 +123,7 @@ class FramedKinematics:
 
 @dataclass(frozen=True, eq=False)
 class FramedGroup:
-    """A group of limits of the machine, asked with poses of the pivot in the work frame.
+    """A group of limits of the machine, evaluated with poses of the pivot in the work frame.
 
     The group itself knows pivots that have the platform's axes: poses are turned to those.
     """
@@ -175,7 +180,7 @@ class FramedLimit(LimitOf):
 
     @property
     def group(self) -> LimitGroup | None:
-        """That of the limit, asked likewise."""
+        """That of the limit, evaluated likewise."""
         return self.framed_group
 
     @property

@@ -57,6 +57,11 @@ class Kinematics(Protocol):
         """Whether the inverse is a closed form, so that a pose costs the same everywhere."""
         ...
 
+    @property
+    def joins_branches(self) -> bool:
+        """Whether it may be driven from branch to branch where they meet, as an arm."""
+        ...
+
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """Joints (..., n) for the pose, on the branch nearest to `near` (default: home's branch).
 

@@ -128,7 +128,7 @@ def to_quaternion(rotation: ArrayLike) -> Array:
 def from_rpy(roll_pitch_yaw: ArrayLike) -> Array:
     """Rz(yaw)·Ry(pitch)·Rx(roll): turns about the fixed x, then y, then z axis (REP-103).
 
-    Seed 1, eq. (1), with φ = yaw, θ = pitch, ψ = roll and the misprinted third column mended.
+    Prokopovich 2019, eq. (1), with φ = yaw, θ = pitch, ψ = roll; its third column is misprinted.
     """
     angles = np.asarray(roll_pitch_yaw, dtype=np.float64)
     (sr, sp, sy), (cr, cp, cy) = np.sin(angles).T, np.cos(angles).T

@@ -35,7 +35,7 @@ class SetpointValidator:
     def __init__(self, machine: Machine) -> None:
         self._machine = machine
         self._names = machine.kinematics.joint_names
-        self._joins_branches = getattr(machine.kinematics, 'joins_branches', False)
+        self._joins_branches = machine.kinematics.joins_branches
         self._commanded: Array | None = None
         self._last_step: Array | float = 0.0
         self._last_age = self._unused = 0.0

@@ -15,7 +15,7 @@ from bridge.protocol import Mode, ResetCause
 from manipulator.errors import InvalidInput
 
 HIGHEST_U16 = 0xFFFF
-ROOM = 1024
+OUTPUT_BYTES = 1024
 BLANK = b'\xff'
 
 
@@ -76,7 +76,7 @@ class Board:
         self._host = self._program.host_new(ctypes.byref(self._wires))
         if not self._host:
             raise MemoryError('no memory for a board')
-        self._output = ctypes.create_string_buffer(ROOM)
+        self._output = ctypes.create_string_buffer(OUTPUT_BYTES)
         self.reset(ResetCause.POWER_ON)
 
     def __del__(self) -> None:
@@ -164,7 +164,7 @@ class Board:
 
     def take_output(self) -> bytes:
         """The bytes for the host since the last call."""
-        length = self._program.host_take(self._host, self._output, ROOM)
+        length = self._program.host_take(self._host, self._output, OUTPUT_BYTES)
         return self._output.raw[:length]
 
     def _load_table(self) -> None:

@@ -64,7 +64,7 @@ class BoardTopics:
         self._message = status(LEVELS[current.level], name, current.state, values)
         self._states.publish(self._message)
 
-    def on_trouble(self, text: str) -> None:
+    def on_problem(self, text: str) -> None:
         """Logs it."""
         self.warn(text)
 

@@ -58,8 +58,8 @@ class SerialBridge(Node):
         self._driver = BoardDriver(config, self._topics, time.time() - time.monotonic())
         address = stop_address(self.get_fully_qualified_name(), self.context.get_domain_id())
         self._stop_socket = StopSocket(address, self._stop)
-        if self._stop_socket.trouble:
-            self.get_logger().warning(self._stop_socket.trouble)
+        if self._stop_socket.problem:
+            self.get_logger().warning(self._stop_socket.problem)
         self._link = LinkThread(
             lambda: SerialPort(port, line.baud), self._driver.link, [self._stop_socket]
         )

@@ -74,8 +74,8 @@ class TopicBridge(Node):
         self._stop_node = StopNode(self, self._stop, self._on_stop)
         address = stop_address(self.get_fully_qualified_name(), self.context.get_domain_id())
         self._stop_socket = StopSocket(address, self._stop)
-        if self._stop_socket.trouble:
-            self.get_logger().warning(self._stop_socket.trouble)
+        if self._stop_socket.problem:
+            self.get_logger().warning(self._stop_socket.problem)
         self._timer = SteadyTimer(self, PERIOD, self._tick)
         beside = list(received_by(self._stop_node))
         self._diagnostics = Diagnostics(self, self._report, ('joint_command', SENT), beside)

@@ -60,6 +60,11 @@ class StackKinematics:
         """The sections are, their shares are found by descent."""
         return False
 
+    @property
+    def joins_branches(self) -> bool:
+        """As a platform: never."""
+        return False
+
     def inverse(self, pose: Pose, near: Array | None = None) -> Array:
         """See `Kinematics`; the descent starts at the sections of `near`."""
         sections = self._shared(pose, near)

@@ -74,7 +74,7 @@ class ServoLine:
 
     def __init__(self, port: str, config: BoardConfig) -> None:
         """LinkError: why the port cannot be used."""
-        self.trouble = ''
+        self.problem = ''
         self.is_off = False
         self.is_in_use = False
         self._is_energised = False
@@ -141,8 +141,8 @@ class ServoLine:
         while self.mode not in (Mode.ARMED, Mode.HOLDING):
             if self.mode is Mode.ARMING:  # takes as long as set in the machine file, and ends
                 until = time.monotonic() + ARM_WITHIN
-            if self.trouble or time.monotonic() > until:
-                raise Refused(f'the servos were not energised: {self.trouble or "no answer"}')
+            if self.problem or time.monotonic() > until:
+                raise Refused(f'the servos were not energised: {self.problem or "no answer"}')
             time.sleep(LOOK_EVERY)
         self._is_energised = True
 
@@ -174,26 +174,26 @@ class ServoLine:
 
     def _await_board(self) -> None:
         if not self._is_ready.wait(CONNECT_WITHIN):
-            reason = self.trouble or 'the board does not answer: is its firmware on it?'
+            reason = self.problem or 'the board does not answer: is its firmware on it?'
             raise LinkError(reason)
         if self.mode is None:
-            raise LinkError(self.trouble or 'no frame comes from the board any more')
+            raise LinkError(self.problem or 'no frame comes from the board any more')
 
     def _open_once(self) -> SerialPort:
         port, self._port = self._port, None
         if port is None:
-            raise LinkError(self.trouble or 'the port was lost')
+            raise LinkError(self.problem or 'the port was lost')
         return port
 
     def _note(self, event: Event, now: float) -> None:
         """In the link's thread."""
         match event:
             case Disconnected(reason) | Incompatible(reason):
-                self.trouble = self.trouble or reason
+                self.problem = self.problem or reason
                 self._is_ready.set()
             case FaultReported(fault):
                 if fault.code is FaultCode.UNDERVOLTAGE:
-                    self.trouble = 'the battery is too low'
+                    self.problem = 'the battery is too low'
             case _:
                 if self.mode is not None:
                     self._is_ready.set()

@@ -174,8 +174,8 @@ class CalibrationSession:
         characters = self.terminal.read()
         if characters is None:
             raise TerminalGone('the terminal was closed')
-        if self.line.trouble:
-            raise LinkError(self.line.trouble)
+        if self.line.problem:
+            raise LinkError(self.line.problem)
         if self.line.has_released:
             raise LinkError('the board has taken the power from the servos')
         return key_names(characters)

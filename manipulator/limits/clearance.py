@@ -113,14 +113,14 @@ class Clearance:
         """Metres (..., n + m) between `pairs`, then those `faced`, of parts that are so placed."""
         (first, second), parts = self.pairs, self.faced[0]
         lead = segments.shape[:-2]
-        between, room = np.empty((*lead, len(first))), np.empty((*lead, len(parts)))
+        between, to_boxes = np.empty((*lead, len(first))), np.empty((*lead, len(parts)))
         if first.size:
             one, other = (np.take(segments, index, axis=-2) for index in (first, second))
             _kernel.segment_distance(one, other, between)
         if parts.size:
             own = np.take(segments, parts, axis=-2)
-            _kernel.box_clearance(own, stretched(self._boxes, (*room.shape, 7)), room)
-        return np.concatenate([between, room], axis=-1) - self._widths
+            _kernel.box_clearance(own, stretched(self._boxes, (*to_boxes.shape, 7)), to_boxes)
+        return np.concatenate([between, to_boxes], axis=-1) - self._widths
 
 
 @dataclass(frozen=True, eq=False)

@@ -48,10 +48,10 @@ class Diagnostics:
 
     def _publish(self) -> None:
         level, message, values = self._report()
-        trouble = self._trouble()
-        if trouble:
-            self._node.get_logger().warning(trouble, throttle_duration_sec=5.0)
-            level, message = max(level, WARN), f'{message}; {trouble}' if message else trouble
+        problems = self._graph_problems()
+        if problems:
+            self._node.get_logger().warning(problems, throttle_duration_sec=5.0)
+            level, message = max(level, WARN), f'{message}; {problems}' if message else problems
         name = self._node.get_fully_qualified_name().lstrip('/')
         stamp = self._node.get_clock().now().to_msg()
         report = status(level, name, message, values)
@@ -61,7 +61,7 @@ class Diagnostics:
         array.header.stamp = stamp
         self._publisher.publish(array)
 
-    def _trouble(self) -> str:
+    def _graph_problems(self) -> str:
         received = [*received_by(self._node), *self._received_beside]
         found = crowds(self._node, self._single_publisher) + unreceived(self._node, received)
         return '; '.join(found)

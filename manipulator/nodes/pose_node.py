@@ -211,15 +211,15 @@ class PoseNode(Node):
             'joint_states_refused': self._states.refused,
             'last_refusal': self._states.last_refusal,
         }
-        trouble = self._saved.watch()
+        problem = self._saved.watch()
         solution = self._estimate.solution
         if solution is None:
-            return _level(trouble), trouble or 'no joint states', values
+            return _level(problem), problem or 'no joint states', values
         values['singularity_margin'] = solution.sigma_min
         values['residual_mm'] = solution.residual * 1e3
         values['iterations'] = solution.iterations
-        return _level(trouble), trouble or 'running', values
+        return _level(problem), problem or 'running', values
 
 
-def _level(trouble: str) -> Any:
-    return WARN if trouble else OK
+def _level(problem: str) -> Any:
+    return WARN if problem else OK

@@ -130,7 +130,7 @@ class FilteredCallback:
 
 
 class SoleSubscription:
-    """Hands every message to `accept`, which reads `trouble` first.
+    """Hands every message to `accept`, which reads `conflict` first.
 
     is_continuous: see SoleSource. is_raw: messages are handed over encoded.
 
@@ -167,7 +167,7 @@ class SoleSubscription:
         self._accept(message)
 
     @property
-    def trouble(self) -> str:
+    def conflict(self) -> str:
         """Why no message counts at present, '' where they come from one publisher."""
         if self._source.is_mixed(time.monotonic()):
             return f'more than one publisher sends on {self.topic}'

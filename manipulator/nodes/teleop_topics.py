@@ -42,9 +42,9 @@ class TeleopTopics:
         node.create_subscription(PointStamped, 'look_at', self._on_look_at, COMMAND)
 
     @property
-    def trouble(self) -> str:
+    def conflict(self) -> str:
         """Which sources are refused because two publishers send on them, '' where none is."""
-        return '; '.join(source.trouble for source in self._sources if source.trouble)
+        return '; '.join(source.conflict for source in self._sources if source.conflict)
 
     def report(self) -> dict[str, object]:
         """The values of /diagnostics about jogging."""
@@ -59,8 +59,8 @@ class TeleopTopics:
     def _subscribe(self, source: str) -> SoleSubscription:
         def accept(message: TwistStamped) -> None:
             now = time.monotonic()
-            if sole.trouble:
-                self._teleop.reject(source, now, sole.trouble)
+            if sole.conflict:
+                self._teleop.reject(source, now, sole.conflict)
             self._teleop.receive(source, twist_of(message), message.header.frame_id, now)
 
         callback = FilteredCallback(self._node, source, accept)
@@ -74,8 +74,8 @@ class TeleopTopics:
 
         def accept(message: RawMessage) -> None:
             now = time.monotonic()
-            if sole.trouble:
-                self._teleop.reject(source, now, sole.trouble)
+            if sole.conflict:
+                self._teleop.reject(source, now, sole.conflict)
             rates = decoded(message.serialized, JointState, MOST_NAMED_BYTES)
             self._teleop.receive_joints(source, named_joints(rates, 'velocity'), now)
 

@@ -225,7 +225,7 @@ class TrajectoryNode(Node):
             'tick_jitter_p50_ms': jitter.quantile(0.5) * 1e3,
             'tick_jitter_p99_ms': jitter.quantile(0.99) * 1e3,
         }
-        trouble = self._teleop_topics.trouble
-        if trouble:
-            return ERROR, f'{trouble}: end all but one, then release the deadman', values
+        conflict = self._teleop_topics.conflict
+        if conflict:
+            return ERROR, f'{conflict}: end all but one, then release the deadman', values
         return OK, now.reason or now.result, values

@@ -10,7 +10,7 @@ import numpy as np
 from manipulator import rotation as so3
 from manipulator.arrays import Array, frozen
 from manipulator.errors import InvalidInput
-from manipulator.planning.plan import MotionState, PosePlan
+from manipulator.planning.plan import MotionState, Plan
 from manipulator.pose import Pose
 
 LONGEST_PERIOD = 60.0
@@ -19,7 +19,7 @@ FREQUENCY_STEP = 1000
 
 
 @dataclass(frozen=True, eq=False)
-class Cycle(PosePlan):
+class Cycle(Plan):
     """x(t) = Σ A sin(2π f t + φ) on x, y, z, roll, pitch and yaw about the centre pose.
 
     amplitude, frequency and phase are (terms, 6) or (6,): metres and radians, hertz, radians.

@@ -1,6 +1,7 @@
-"""Polynomials of the fifth degree that join a motion to a stream of goals, each coordinate alone.
+"""Moves that follow a stream of goals, of poses or of joints: docs/motion.md, section 6.
 
-They hold until the next goal but one must have come; what follows is a move to rest.
+Each coordinate joins the stream by a polynomial of the fifth degree. It holds until the next goal
+but one must have come; what follows is a move to rest.
 """
 
 from dataclasses import dataclass
@@ -8,7 +9,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from manipulator.arrays import Array
+from manipulator.motion_limits import MotionLimits
 from manipulator.planning.goal import Flow
+from manipulator.planning.plan import MotionState
+from manipulator.planning.point_to_point import (
+    Cubics,
+    MoveInMotion,
+    coordinate_bounds,
+    coordinates,
+    coordinates_of_goal,
+    quickest,
+)
+from manipulator.pose import Pose
 
 SHORTEST = 0.05
 """Seconds in which a goal is reached, at least."""
@@ -32,7 +44,11 @@ class Attempt:
     slowdown: float = 1.0
 
 
-ATTEMPTS = Attempt(), Attempt(slowdown=1.5), Attempt(1.0, 1.5), Attempt(3.0, 2.0)
+ATTEMPTS = (
+    Attempt(),
+    Attempt(slowdown=1.5),
+    *(Attempt(later, 2.0) for later in (1.0, 3.0, 7.0, 15.0)),
+)
 """In this order: a machine that is off the stream, or begins it, needs time to catch up."""
 
 Ends = tuple[Array, Array, Array]
@@ -59,6 +75,52 @@ class Quintic:
         """At the end of the span."""
         x, v, a = (part[0] for part in self.at(np.array([self.span])))
         return x, v, a
+
+
+@dataclass(frozen=True, eq=False)
+class Flowing:
+    """Coordinates (n,) over time: `early` along a stream, then `rest`, if no other goal comes."""
+
+    early: Quintic
+    rest: Cubics
+
+    @property
+    def duration(self) -> float:
+        """Seconds until rest."""
+        return self.early.span + self.rest.duration
+
+    def at(self, times: Array | float) -> Ends:
+        """See `CoordinateCurve`."""
+        flat, span = np.ravel(times), self.early.span
+        is_early = (flat < span)[:, None]
+        both = zip(self.early.at(flat), self.rest.at(flat - span), strict=True)
+        x, v, a = (
+            np.where(is_early, early, late).reshape(*np.shape(times), -1) for early, late in both
+        )
+        return x, v, a
+
+
+def plan_stream_move(
+    start: MotionState, goal: Pose, flow: Flow, time: float, limits: MotionLimits, how: Attempt
+) -> MoveInMotion | None:
+    """From any state, at that time, to the goal with its flow; errors: see `flowing_to`."""
+    begin, end = coordinates(start, goal.rotation), coordinates_of_goal(goal)
+    curve = flowing_to(begin, end, flow, time, coordinate_bounds(limits), how)
+    return None if curve is None else MoveInMotion(goal, curve)
+
+
+def flowing_to(
+    start: Ends, goal: Array, flow: Flow, time: float, bounds: Ends, how: Attempt
+) -> Flowing | None:
+    """From any motion, at that time, to the goal (n,) with its flow; to rest if no other comes.
+
+    bounds: of speed, acceleration and jerk, (n,) each. None where a coordinate would pass its
+    jerk. Raises Refused where there is no move to rest.
+    """
+    early = quintic_to(start, goal, flow, time, bounds[2], how.later)
+    if early is None:
+        return None
+    return Flowing(early, quickest(early.end, goal, bounds, how.slowdown))
 
 
 def quintic_to(

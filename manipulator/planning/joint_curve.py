@@ -1,7 +1,8 @@
-"""Joints over time in pieces of polynomials, through points as joint_trajectory_controller does.
+"""Plans of joints over time; curves through points, as joint_trajectory_controller makes them.
 
-Between two points with velocities the joints follow a cubic, with accelerations as well a quintic.
-Points of positions alone are joined by lines; parabolas round their corners.
+The curves are pieces of polynomials: between two points with velocities a cubic, with
+accelerations as well a quintic. Points of positions alone are joined by lines; parabolas round
+their corners.
 """
 
 from dataclasses import dataclass
@@ -9,11 +10,62 @@ from dataclasses import dataclass
 import numpy as np
 
 from manipulator.arrays import Array, Mask, frozen
+from manipulator.kinematics import Kinematics
+from manipulator.planning.plan import CoordinateCurve, MotionState, Plan
+from manipulator.pose import Pose
 
 TERMS = 6
 """Coefficients of a piece: at most a quintic."""
 
 ORDERS = np.arange(TERMS)
+
+DIFFERENCE_STEP = 1e-4
+"""s, for the change of the Jacobian."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointCurvePlan(Plan):
+    """The joints' curve, and the poses (k,) at equal steps of its time."""
+
+    kinematics: Kinematics
+    curve: CoordinateCurve
+    knots: Pose
+
+    @property
+    def duration(self) -> float:
+        """Seconds from rest to rest."""
+        return self.curve.duration
+
+    def joints_at(self, times: Array | float) -> Array:
+        """See `Plan`."""
+        return self.curve.at(times)[0]
+
+    def at(self, times: Array | float) -> MotionState:
+        """The state at each of the times (...): poses by forward kinematics, twists by Jacobian.
+
+        Raises NoSolution where the joints fix no pose.
+        """
+        shape, flat = np.shape(times), np.ravel(times)
+        q, rates, pulls = self.curve.at(flat)
+        poses = self.kinematics.forward_along(q, self.knots[self._knot(float(flat[0]))])
+        jacobian = self.kinematics.jacobian(poses, q)
+        twist = _times(jacobian, rates)
+        h = DIFFERENCE_STEP
+        ahead = self.kinematics.jacobian(poses.moved(h * twist), q + h * rates)
+        behind = self.kinematics.jacobian(poses.moved(-h * twist), q - h * rates)
+        bend = _times(ahead - behind, rates) / (2 * h)
+        acceleration = _times(jacobian, pulls) + bend
+        pose = Pose(poses.position.reshape(*shape, 3), poses.rotation.reshape(*shape, 3, 3))
+        return MotionState(pose, twist.reshape(*shape, 6), acceleration.reshape(*shape, 6))
+
+    def _knot(self, time: float) -> int:
+        last = len(self.knots.position) - 1
+        return min(max(round(time / max(self.duration, 1e-9) * last), 0), last)
+
+
+def _times(jacobian: Array, rates: Array) -> Array:
+    result: Array = np.einsum('...ij,...j->...i', jacobian, rates)
+    return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,11 +148,11 @@ def narrowest(times: Array, positions: Array, accelerations: Array, least: float
     still = np.zeros((1, positions.shape[1]))
     rates = np.concatenate([still, np.diff(positions, axis=0) / steps[:, None], still])
     needed = (np.abs(np.diff(rates, axis=0)) / (2 * accelerations)).max(axis=1)
-    widths: Array = np.minimum(np.maximum(needed, least), room(times))
+    widths: Array = np.minimum(np.maximum(needed, least), widest(times))
     return widths
 
 
-def room(times: Array) -> Array:
+def widest(times: Array) -> Array:
     """Half of the shorter line beside each point (m,)."""
     steps = np.diff(times)
     result: Array = 0.5 * np.minimum(np.append(steps[0], steps), np.append(steps, steps[-1]))

@@ -10,10 +10,10 @@ import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.errors import NoSolution, Refused
-from manipulator.kinematics import POSE_NUMBERS, Kinematics
+from manipulator.kinematics import POSE_NUMBERS
 from manipulator.machine import Machine
 from manipulator.motion_limits import MotionLimits
-from manipulator.planning.plan import MotionState
+from manipulator.planning.joint_curve import JointCurvePlan
 from manipulator.planning.point_to_point import Profile, profile_within
 from manipulator.pose import Pose
 
@@ -23,21 +23,13 @@ KNOTS = 64
 TINY = 1e-9
 """rad or m that count as no motion."""
 
-DIFFERENCE_STEP = 1e-4
-"""Of the move, for the change of its twist."""
-
 
 @dataclass(frozen=True, eq=False)
-class JointMove:
-    """q(s) = (1 − s)·begin + s·end for s from 0 to 1 along a jerk-limited profile.
+class ProportionalJoints:
+    """q(s) = (1 − s)·begin + s·end, s from 0 to 1 along the profile; begin, end (n,), rad or m."""
 
-    begin and end (n,) in rad or m; knots are the poses (KNOTS + 1,) at equal steps of s.
-    """
-
-    kinematics: Kinematics
     begin: Array
     end: Array
-    knots: Pose
     profile: Profile
 
     @property
@@ -45,43 +37,28 @@ class JointMove:
         """Seconds from rest to rest."""
         return self.profile.duration
 
-    @property
-    def checked_duration(self) -> float:
-        """All of it."""
-        return self.duration
-
-    def joints_at(self, times: Array | float) -> Array:
-        """See `Plan`."""
-        s, _, _ = self.profile.at(times)
-        return between(self.begin, self.end, s)
-
-    def at(self, times: Array | float) -> MotionState:
-        """The state at each of the times (...): poses by forward kinematics, twists by Jacobian.
-
-        Raises NoSolution where the joints fix no pose.
-        """
+    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+        """See `CoordinateCurve`."""
         s, rate, pull = self.profile.at(times)
-        h, flat = DIFFERENCE_STEP, s.ravel()
-        pose, slope = self._slopes(flat)
-        bend = (self._slopes(flat + h)[1] - self._slopes(flat - h)[1]) / (2 * h)
-        shape = s.shape
-        pose = Pose(pose.position.reshape(*shape, 3), pose.rotation.reshape(*shape, 3, 3))
-        slope, bend = slope.reshape(*shape, 6), bend.reshape(*shape, 6)
-        rate, pull = rate[..., None], pull[..., None]
-        return MotionState(pose, rate * slope, rate**2 * bend + pull * slope)
+        change = self.end - self.begin
+        return between(self.begin, self.end, s), rate[..., None] * change, pull[..., None] * change
+
+
+@dataclass(frozen=True, eq=False)
+class JointMove(JointCurvePlan):
+    """A plan of such joints; its knots are the poses (KNOTS + 1,) at equal steps of s."""
+
+    curve: ProportionalJoints
 
     def where(self, time: float) -> str:
         """See `Plan`."""
-        share, _, _ = self.profile.at(time)
-        return f'at {100 * float(share):.0f} % of the joint move'
+        return f'at {100 * self._share(time):.0f} % of the joint move'
 
-    def _slopes(self, s: Array) -> tuple[Pose, Array]:
-        """Poses (N,) and d(pose)/ds (N, 6) at each s (N,), in ascending order."""
-        joints = between(self.begin, self.end, s)
-        knot = min(max(round(float(s[0]) * KNOTS), 0), KNOTS)
-        poses = self.kinematics.forward_along(joints, self.knots[knot])
-        slopes: Array = self.kinematics.jacobian(poses, joints) @ (self.end - self.begin)
-        return poses, slopes
+    def _knot(self, time: float) -> int:
+        return round(self._share(time) * KNOTS)
+
+    def _share(self, time: float) -> float:
+        return float(self.curve.profile.at(time)[0])
 
 
 def between(begin: Array, end: Array, s: Array) -> Array:
@@ -108,7 +85,8 @@ def plan_joint_move(
         raise Refused(f'on the joint move: {error}') from error
     steps = knots[:-1].twist_to(knots[1:]) * KNOTS
     profile = profile_within(_bounds(machine.motion.for_plans, goal - begin, steps), slowdown)
-    return JointMove(machine.kinematics, frozen(begin), frozen(goal), knots, profile)
+    curve = ProportionalJoints(frozen(begin), frozen(goal), profile)
+    return JointMove(machine.kinematics, curve, knots)
 
 
 def refuse_rule(joints: int) -> None:

@@ -4,7 +4,6 @@ As with poses, a stream is joined by polynomials; then all joints go to rest at 
 limits allow.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,11 +11,11 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused
 from manipulator.machine import Machine
-from manipulator.motion_limits import MotionLimits
-from manipulator.planning.flowing import Attempt, Ends, Quintic, quintic_to
+from manipulator.planning.flowing import Attempt, Ends, flowing_to
 from manipulator.planning.goal import Flow
-from manipulator.planning.joint_trajectory import JointCurvePlan
-from manipulator.planning.point_to_point import Cubics, quickest
+from manipulator.planning.joint_curve import JointCurvePlan
+from manipulator.planning.plan import CoordinateCurve
+from manipulator.planning.point_to_point import quickest
 from manipulator.pose import Pose
 
 KNOTS = 16
@@ -27,36 +26,8 @@ TINY = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class JointsInMotion:
-    """Joints over time: `early`, if there is any, then a trajectory to rest."""
-
-    early: Quintic | None
-    rest: Cubics
-
-    @property
-    def _span(self) -> float:
-        return 0.0 if self.early is None else self.early.span
-
-    @property
-    def duration(self) -> float:
-        """Seconds until rest."""
-        return self._span + self.rest.duration
-
-    def at(self, times: Array | float) -> Ends:
-        """Joints with two derivatives, (..., n), at each of the times (...)."""
-        flat = np.ravel(times)
-        parts: Sequence[Array] = self.rest.at(flat - self._span)
-        if self.early is not None:
-            is_early = (flat < self._span)[:, None]
-            both = zip(self.early.at(flat), parts, strict=True)
-            parts = [np.where(is_early, early, late) for early, late in both]
-        q, rates, pulls = (part.reshape(*np.shape(times), -1) for part in parts)
-        return q, rates, pulls
-
-
-@dataclass(frozen=True, eq=False)
 class JointMoveInMotion(JointCurvePlan):
-    """A plan of such joints."""
+    """A plan of joints that begins in motion."""
 
     def where(self, time: float) -> str:
         """See `Plan`."""
@@ -72,37 +43,21 @@ class JointState:
 
 
 def plan_joint_move_in_motion(
-    machine: Machine, start: JointState, goal: Array, limits: MotionLimits, slowdown: float
+    machine: Machine, start: JointState, goal: Array, slowdown: float
 ) -> JointMoveInMotion:
-    """To rest at joints `goal` (n,). Raises Refused where there is no such move."""
-    bounds = _bounds(machine, start, limits)
-    return _plan(
-        machine, start, JointsInMotion(None, _to_rest(start.joints, goal, bounds, slowdown))
-    )
+    """To rest at joints `goal` (n,); slowdown and errors: see `quickest`."""
+    return _plan(machine, start, quickest(start.joints, goal, _bounds(machine, start), slowdown))
 
 
 def plan_joint_stream(
     machine: Machine, start: JointState, goal: Array, flow: Flow, time: float, how: Attempt
 ) -> JointMoveInMotion | None:
-    """At that time, to joints `goal` (n,) with their flow; to rest if no other goal comes.
-
-    None where a joint would pass its jerk. Raises Refused where there is no move to rest.
-    """
-    bounds = _bounds(machine, start, machine.motion.for_plans)
-    early = quintic_to(start.joints, goal, flow, time, bounds[2], how.later)
-    if early is None:
-        return None
-    rest = _to_rest(early.end, goal, bounds, how.slowdown)
-    return _plan(machine, start, JointsInMotion(early, rest))
+    """At that time, to joints `goal` (n,) with their flow; errors: see `flowing_to`."""
+    curve = flowing_to(start.joints, goal, flow, time, _bounds(machine, start), how)
+    return None if curve is None else _plan(machine, start, curve)
 
 
-def _to_rest(joints: Ends, goal: Array, bounds: Ends, slowdown: float) -> Cubics:
-    speed, acceleration, jerk = bounds
-    slower = speed / slowdown, acceleration / slowdown**2, jerk / slowdown**3
-    return quickest(joints, goal, slower)
-
-
-def _plan(machine: Machine, start: JointState, curve: JointsInMotion) -> JointMoveInMotion:
+def _plan(machine: Machine, start: JointState, curve: CoordinateCurve) -> JointMoveInMotion:
     rows = curve.at(np.linspace(0.0, curve.duration, KNOTS))[0]
     try:
         knots = machine.kinematics.forward_along(rows, start.pose)
@@ -111,11 +66,12 @@ def _plan(machine: Machine, start: JointState, curve: JointsInMotion) -> JointMo
     return JointMoveInMotion(machine.kinematics, curve, knots)
 
 
-def _bounds(machine: Machine, start: JointState, limits: MotionLimits) -> Ends:
+def _bounds(machine: Machine, start: JointState) -> Ends:
     """Speed, acceleration and jerk of each joint (n,): if it alone moved the platform or tool."""
     jacobian = machine.kinematics.jacobian(start.pose, start.joints[0])
     shift = np.maximum(np.linalg.norm(jacobian[:3], axis=0), TINY)
     turn = np.maximum(np.linalg.norm(jacobian[3:], axis=0), TINY)
+    limits = machine.motion.for_plans
     linear, angular, joint = limits.linear, limits.angular, limits.joint
     own = np.minimum(linear.speed / shift, angular.speed / turn)
     pull = np.minimum(linear.acceleration / shift, angular.acceleration / turn)

@@ -5,92 +5,35 @@ It starts from rest where the machine is, at its first point or before it, and e
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.errors import NoSolution, Refused
-from manipulator.kinematics import Kinematics
 from manipulator.machine import Machine
 from manipulator.planning.check import check_plan
-from manipulator.planning.joint_curve import Curve, narrowest, room, rounded_lines, splines
+from manipulator.planning.joint_curve import (
+    Curve,
+    JointCurvePlan,
+    narrowest,
+    rounded_lines,
+    splines,
+    widest,
+)
 from manipulator.planning.joint_move import refuse_rule
 from manipulator.planning.joint_points import AT_REST, JointPoints
 from manipulator.planning.path_timing import MOST_TICKS
-from manipulator.planning.plan import MotionState
 from manipulator.planning.worker import Effort
 from manipulator.pose import Pose
 
 KNOT_STEP, FEWEST_KNOTS, MOST_KNOTS = 0.05, 64, 20_000
 """Seconds between poses that are known beforehand, and how many: solutions begin there."""
 
-DIFFERENCE_STEP = 1e-4
-"""s, for the change of the Jacobian."""
-
 ROUNDINGS = 8
 """Attempts to round the corners of lines within the limits."""
 
 NARROWEST = 2.0
 """Ticks of half a corner, where no joint's acceleration asks for more."""
-
-
-class JointCurve(Protocol):
-    """Joints over time."""
-
-    @property
-    def duration(self) -> float:
-        """Seconds."""
-        ...
-
-    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
-        """q, q̇ and q̈ (..., n) at each of the times (...), those of the ends before and after."""
-        ...
-
-
-@dataclass(frozen=True, eq=False)
-class JointCurvePlan:
-    """The joints' curve, and the poses (k,) at equal steps of its time."""
-
-    kinematics: Kinematics
-    curve: JointCurve
-    knots: Pose
-
-    @property
-    def duration(self) -> float:
-        """Seconds from rest to rest."""
-        return self.curve.duration
-
-    @property
-    def checked_duration(self) -> float:
-        """All of it."""
-        return self.duration
-
-    def joints_at(self, times: Array | float) -> Array:
-        """See `Plan`."""
-        return self.curve.at(times)[0]
-
-    def at(self, times: Array | float) -> MotionState:
-        """The state at each of the times (...): poses by forward kinematics, twists by Jacobian.
-
-        Raises NoSolution where the joints fix no pose.
-        """
-        shape, flat = np.shape(times), np.ravel(times)
-        q, rates, pulls = self.curve.at(flat)
-        poses = self.kinematics.forward_along(q, self.knots[self._knot(float(flat[0]))])
-        jacobian = self.kinematics.jacobian(poses, q)
-        twist = _times(jacobian, rates)
-        h = DIFFERENCE_STEP
-        ahead = self.kinematics.jacobian(poses.moved(h * twist), q + h * rates)
-        behind = self.kinematics.jacobian(poses.moved(-h * twist), q - h * rates)
-        bend = _times(ahead - behind, rates) / (2 * h)
-        acceleration = _times(jacobian, pulls) + bend
-        pose = Pose(poses.position.reshape(*shape, 3), poses.rotation.reshape(*shape, 3, 3))
-        return MotionState(pose, twist.reshape(*shape, 6), acceleration.reshape(*shape, 6))
-
-    def _knot(self, time: float) -> int:
-        last = len(self.knots.position) - 1
-        return min(max(round(time / max(self.duration, 1e-9) * last), 0), last)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,11 +51,6 @@ class JointTrajectory(JointCurvePlan):
         """See `Plan`: by the time, and the point that comes next."""
         following = min(int(np.searchsorted(self.ends, time)), len(self.ends) - 1)
         return f'{time:.2f} s after the start, before point {self.numbers[following]}'
-
-
-def _times(jacobian: Array, rates: Array) -> Array:
-    result: Array = np.einsum('...ij,...j->...i', jacobian, rates)
-    return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +132,7 @@ def _curves(
         accelerations = np.concatenate([first, points.accelerations[skipped:]])
         yield splines(times, positions, velocities, accelerations), points.times
         return
-    most, limits = room(times), machine.motion.for_plans.joint
+    most, limits = widest(times), machine.motion.for_plans.joint
     widths = narrowest(times, positions, limits.acceleration, NARROWEST * start.dt)
     for _ in range(ROUNDINGS):
         yield rounded_lines(times, positions, widths), points.times + 2 * widths[0]

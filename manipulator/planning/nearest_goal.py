@@ -97,8 +97,8 @@ class NearestGoal:
         line = line_between(machine, pose, end)
         limits, there = machine.constraints, machine.kinematics.inverse_along(line, joints)
         values = limits.values(line, there)
-        room = np.minimum(values - limits.low, limits.high - values)
-        return bool((room > SPARE).all())
+        margins = np.minimum(values - limits.low, limits.high - values)
+        return bool((margins > SPARE).all())
 
     def _descended(self, target: Pose, pose: Pose, joints: Array) -> tuple[Pose, Array]:
         machine = self._machine

@@ -17,7 +17,7 @@ from manipulator.planning.check import check_plan
 from manipulator.planning.orientation import OrientationRule
 from manipulator.planning.path import Path, Tolerance, path_along, path_in_time
 from manipulator.planning.path_limits import PathLimits, fastest, path_limits
-from manipulator.planning.plan import MotionState, PosePlan
+from manipulator.planning.plan import MotionState, Plan
 from manipulator.planning.worker import Effort
 from manipulator.pose import Pose
 
@@ -31,7 +31,7 @@ MOST_TICKS = 100_000
 
 
 @dataclass(frozen=True, eq=False)
-class TimedPath(PosePlan):
+class TimedPath(Plan):
     """Squared speeds along the path at its nodes (m + 1,); between them s̈ is constant.
 
     joints are those at the first pose: another branch of them cannot drive this plan. is_stamped:
@@ -54,11 +54,6 @@ class TimedPath(PosePlan):
     def duration(self) -> float:
         """Seconds from rest to rest."""
         return float(self._times[-1])
-
-    @property
-    def checked_duration(self) -> float:
-        """All of it."""
-        return self.duration
 
     def percent(self, time: float) -> int:
         """How much of its time is over at the last half second before `time`."""

@@ -28,6 +28,19 @@ class MotionState:
         return bool(np.abs(self.twist).max() < 1e-6)
 
 
+class CoordinateCurve(Protocol):
+    """Coordinates over time: joints, or the local coordinates of poses."""
+
+    @property
+    def duration(self) -> float:
+        """Seconds."""
+        ...
+
+    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+        """Values and two derivatives (..., n) at each of the times (...), the ends' outside."""
+        ...
+
+
 class Plan(Protocol):
     """A motion from time 0 to `duration` (∞ for one that goes on until it is stopped)."""
 
@@ -38,39 +51,31 @@ class Plan(Protocol):
 
     @property
     def checked_duration(self) -> float:
-        """Seconds to check: the duration, or the period of a cycle."""
-        ...
+        """Seconds to check: the duration, unless a plan differs, as a cycle by its period."""
+        return self.duration
 
     def at(self, times: Array | float) -> MotionState:
         """The state at each of the times (...), the end state after the end."""
         ...
 
     def joints_at(self, times: Array | float) -> Array | None:
-        """The joints (..., n) at each of the times where the plan has them, else None.
+        """The joints (..., n) at each of the times; None, unless a plan has them.
 
-        Where it does not, they follow from the poses, on the branch that the machine is on.
+        Without them they follow from the poses, on the branch that the machine is on.
         """
-        ...
+        return None
 
     def where(self, time: float) -> str:
         """The place at a time, in words that follow what happens there: 'at 62 % of the line'."""
         ...
 
 
-class PosePlan:
-    """Shared by plans that are given as poses alone."""
-
-    def joints_at(self, times: Array | float) -> None:
-        """See `Plan`: they follow from the poses."""
-
-
 @dataclass(frozen=True, eq=False)
-class Hold(PosePlan):
+class Hold(Plan):
     """Rest at one pose."""
 
     pose: Pose
     duration: float = 0.0
-    checked_duration: float = 0.0
 
     def at(self, times: Array | float) -> MotionState:
         """The pose at rest, once for each time."""

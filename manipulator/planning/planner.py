@@ -7,9 +7,9 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused, Unreachable
 from manipulator.machine import Machine
-from manipulator.motion_limits import MotionLimits
 from manipulator.planning.check import check_plan
 from manipulator.planning.cycle import Cycle
+from manipulator.planning.flowing import plan_stream_move
 from manipulator.planning.goal import Flow, Goal, Motion
 from manipulator.planning.joint_move import KNOTS, plan_joint_move
 from manipulator.planning.joint_stream import KNOTS as JOINT_KNOTS
@@ -22,7 +22,6 @@ from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Plan
 from manipulator.planning.point_to_point import plan_line_move, plan_move_in_motion
 from manipulator.planning.start import Start, plan_along_stream, slowed_down
-from manipulator.planning.stream_move import plan_stream_move
 from manipulator.planning.worker import Effort, TooLong
 from manipulator.pose import Pose
 from manipulator.unit_hints import hint_at_metres
@@ -121,8 +120,9 @@ def plan_to(machine: Machine, start: Start, pose: Pose, effort: Effort | None = 
     From rest it is straight, and stays on the branch that the machine is on. Raises as
     `plan_goal`.
     """
+    limits = machine.motion.for_plans
 
-    def line(limits: MotionLimits, slowdown: float) -> Plan:
+    def line(slowdown: float) -> Plan:
         if start.state.is_at_rest:
             return plan_line_move(start.state.pose, pose, limits, slowdown)
         return plan_move_in_motion(start.state, pose, limits, slowdown)
@@ -145,9 +145,9 @@ def _plan_joints_in_motion(
     """A move to joints (n,) from the motion of others, along the stream that they continue."""
     cost = FORWARD_COST * JOINT_KNOTS
 
-    def move(limits: MotionLimits, slowdown: float) -> Plan:
+    def move(slowdown: float) -> Plan:
         effort.spend(cost)
-        return plan_joint_move_in_motion(machine, begin, joints, limits, slowdown)
+        return plan_joint_move_in_motion(machine, begin, joints, slowdown)
 
     if flow is not None:
         effort.spend(cost)
@@ -172,7 +172,7 @@ def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> 
         joints = machine.kinematics.inverse(goal.pose, near)
     joints = _off_the_stops(machine, joints)
 
-    def move(limits: MotionLimits, slowdown: float) -> Plan:
+    def move(slowdown: float) -> Plan:
         return plan_joint_move(machine, start.state.pose, start.joints, joints, slowdown)
 
     try:

@@ -16,7 +16,7 @@ from manipulator import rotation as so3
 from manipulator.arrays import Array, frozen
 from manipulator.errors import Refused
 from manipulator.motion_limits import MotionLimits
-from manipulator.planning.plan import MotionState, PosePlan
+from manipulator.planning.plan import CoordinateCurve, MotionState, Plan
 from manipulator.pose import Pose
 
 FASTEST = 1e9
@@ -129,7 +129,7 @@ def state_of(x: Array, v: Array, a: Array, reference: Array) -> MotionState:
 
 
 @dataclass(frozen=True, eq=False)
-class LineMove(PosePlan):
+class LineMove(Plan):
     """start.moved(s·d): s goes from 0 to 1 along the profile, d (6,) is start.twist_to(goal)."""
 
     start: Pose
@@ -140,11 +140,6 @@ class LineMove(PosePlan):
     def duration(self) -> float:
         """Seconds from rest to rest."""
         return self.profile.duration
-
-    @property
-    def checked_duration(self) -> float:
-        """All of it."""
-        return self.duration
 
     def at(self, times: Array | float) -> MotionState:
         """The state at each of the times (...)."""
@@ -184,25 +179,20 @@ def plan_line_move(
 
 
 @dataclass(frozen=True, eq=False)
-class MoveInMotion(PosePlan):
-    """A trajectory in the coordinates about the goal's orientation."""
+class MoveInMotion(Plan):
+    """A curve of the six local coordinates about the goal's orientation."""
 
     goal: Pose
-    cubics: Cubics
+    curve: CoordinateCurve
 
     @property
     def duration(self) -> float:
         """Seconds until rest at the goal."""
-        return self.cubics.duration
-
-    @property
-    def checked_duration(self) -> float:
-        """All of it."""
-        return self.duration
+        return self.curve.duration
 
     def at(self, times: Array | float) -> MotionState:
         """Position, velocity and acceleration of the coordinates, turned into a state."""
-        x, v, a = self.cubics.at(times)
+        x, v, a = self.curve.at(times)
         return state_of(x, v, a, self.goal.rotation)
 
     def where(self, time: float) -> str:
@@ -215,29 +205,42 @@ def plan_move_in_motion(
 ) -> MoveInMotion:
     """The quickest move within the limits on speed, acceleration and jerk of each coordinate.
 
-    slowdown k ≥ 1 divides speed by k, acceleration by k² and jerk by k³. Raises Refused where
-    ruckig finds none.
+    Slowdown and errors: see `quickest`.
     """
-    bounds = [
-        np.repeat(
-            [getattr(part, name) / slowdown**power for part in (limits.linear, limits.angular)], 3
-        )
-        for power, name in enumerate(('speed', 'acceleration', 'jerk'), start=1)
-    ]
-    bounds[0] = np.minimum(bounds[0], limits.axis_speeds / slowdown)
-    target = np.concatenate([goal.position, np.zeros(3)])
-    return MoveInMotion(goal, quickest(coordinates(start, goal.rotation), target, bounds))
+    begin, end = coordinates(start, goal.rotation), coordinates_of_goal(goal)
+    return MoveInMotion(goal, quickest(begin, end, coordinate_bounds(limits), slowdown))
 
 
-def quickest(start: tuple[Array, Array, Array], target: Array, bounds: Sequence[Array]) -> Cubics:
+def coordinates_of_goal(goal: Pose) -> Array:
+    """Local coordinates (6,) of a goal about its own orientation."""
+    return np.concatenate([goal.position, np.zeros(3)])
+
+
+def coordinate_bounds(limits: MotionLimits) -> tuple[Array, Array, Array]:
+    """The most speed, acceleration and jerk of each of the six local coordinates, (6,) each."""
+    speed, acceleration, jerk = (
+        np.repeat([getattr(part, name) for part in (limits.linear, limits.angular)], 3)
+        for name in ('speed', 'acceleration', 'jerk')
+    )
+    return np.minimum(speed, limits.axis_speeds), acceleration, jerk
+
+
+def quickest(
+    start: tuple[Array, Array, Array],
+    target: Array,
+    bounds: tuple[Array, Array, Array],
+    slowdown: float = 1.0,
+) -> Cubics:
     """The move from coordinates with two derivatives, each (n,), to rest at a target.
 
-    bounds: of speed, acceleration and jerk, (n,) each. Raises Refused where there is none.
+    bounds: of speed, acceleration and jerk, (n,) each; slowdown k ≥ 1 divides them by k, k², k³.
+    Raises Refused where there is no such move.
     """
     request = ruckig.InputParameter(len(target))
     for name, values in zip(('position', 'velocity', 'acceleration'), start, strict=True):
         setattr(request, f'current_{name}', values.tolist())
     request.target_position = target.tolist()
-    for name, most in zip(('velocity', 'acceleration', 'jerk'), bounds, strict=True):
-        setattr(request, f'max_{name}', np.minimum(most, FASTEST).tolist())
+    names = ('velocity', 'acceleration', 'jerk')
+    for power, (name, most) in enumerate(zip(names, bounds, strict=True), start=1):
+        setattr(request, f'max_{name}', np.minimum(most / slowdown**power, FASTEST).tolist())
     return _calculated(request, len(target))

@@ -8,7 +8,6 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import Refused
 from manipulator.machine import Machine
-from manipulator.motion_limits import MotionLimits
 from manipulator.planning.check import LimitUtilisation, check_plan
 from manipulator.planning.flowing import ATTEMPTS, STILL, Attempt
 from manipulator.planning.goal import Flow
@@ -71,12 +70,15 @@ def plan_along_stream(
 
 
 def slowed_down(
-    machine: Machine, start: Start, plan: Callable[[MotionLimits, float], Plan], effort: Effort
+    machine: Machine, start: Start, plan: Callable[[float], Plan], effort: Effort
 ) -> Plan:
-    """The first of ever slower plans within all limits; Refused where none is."""
+    """The first of ever slower plans within all limits; Refused where none is.
+
+    plan: makes one for a slowdown k ≥ 1.
+    """
     slowdown = 1.0
     for _ in range(MOST_ATTEMPTS):
-        move = plan(machine.motion.for_plans, slowdown)
+        move = plan(slowdown)
         peak = start.checked(machine, move, effort)
         if peak.fits:
             return move

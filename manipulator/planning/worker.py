@@ -35,7 +35,7 @@ class Effort:
 
     @property
     def is_whole(self) -> bool:
-        """Whether it is all that a plan may cost, and not what a tick has room for."""
+        """Whether it is all that a plan may cost, and not only what fits into a tick."""
         return self._most >= MOST_POSES
 
     def spend(self, poses: int) -> None:

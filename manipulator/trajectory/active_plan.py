@@ -14,14 +14,12 @@ from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
 from manipulator.planning.point_to_point import LineMove, MoveInMotion
-from manipulator.planning.stream_move import StreamMove
 from manipulator.states import MotionMode
 
 MODES: dict[type, MotionMode] = {
     Hold: MotionMode.HOLD,
     LineMove: MotionMode.MOVE,
     MoveInMotion: MotionMode.MOVE,
-    StreamMove: MotionMode.MOVE,
     JointMove: MotionMode.MOVE,
     JointMoveInMotion: MotionMode.MOVE,
     Cycle: MotionMode.CYCLE,

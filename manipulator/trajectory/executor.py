@@ -14,12 +14,13 @@ from manipulator.arrays import Array
 from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.planning.cycle import Cycle
+from manipulator.planning.flowing import Flowing
 from manipulator.planning.goal import Goal
 from manipulator.planning.joint_stream import JointMoveInMotion
 from manipulator.planning.joint_trajectory import JointTrajectory
 from manipulator.planning.path_timing import TimedPath
 from manipulator.planning.plan import Hold, MotionState, Plan
-from manipulator.planning.stream_move import StreamMove
+from manipulator.planning.point_to_point import MoveInMotion
 from manipulator.planning.worker import InPlace, Worker
 from manipulator.pose import Pose
 from manipulator.states import MotionMode, MotionResult
@@ -127,7 +128,10 @@ class Executor:
     @property
     def is_streaming(self) -> bool:
         """Whether a stream of goals is followed."""
-        return isinstance(self._active.plan, StreamMove | JointMoveInMotion)
+        plan = self._active.plan
+        return isinstance(plan, MoveInMotion | JointMoveInMotion) and isinstance(
+            plan.curve, Flowing
+        )
 
     def slow_down(self, most: float) -> None:
         """Scales the active plan to `most` of its speed, from (0, 1], as fast as it may brake."""
@@ -380,7 +384,7 @@ class Executor:
 
     @property
     def _reason(self) -> str:
-        """Why a plan was braked, where that was not asked for."""
+        """Why a plan was braked, where nobody requested that."""
         if self._jog_command is not None:
             return self._jog_command.takeover
         return REPLACED if self.expected is not None else ''

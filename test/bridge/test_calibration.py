@@ -33,6 +33,9 @@ def servo(name='lift', channel=0, **changes):
     return {key: value for key, value in (values | changes).items() if value is not None}
 
 
+MILLIMETRES = {'centre_deg': None, 'us_per_deg': None, 'centre_mm': 150.0, 'us_per_mm': 10.0}
+
+
 def servos(*joints, **changes):
     values = {'speed_deg_s': 600.0, 'park_deg': [0.0] * len(joints), 'joints': list(joints)}
     return build(ServosConfig, {key: v for key, v in (values | changes).items() if v is not None})
@@ -52,7 +55,7 @@ def test_counts_stand_in_channel_order_and_positions_in_file_order():
 
 
 def test_linear_joints_are_metres():
-    joints = [servo(centre_deg=None, us_per_deg=None, centre_mm=150.0, us_per_mm=10.0)]
+    joints = [servo(**MILLIMETRES)]
     config = servos(*joints, park_deg=None, park_mm=[150.0], speed_deg_s=None, speed_mm_s=20.0)
     calibration = Calibration.from_config(config)
     assert calibration.counts([0.151]) == (2 * 1510,)
@@ -134,6 +137,16 @@ def test_a_park_pose_out_of_reach_is_a_config_error():
         ([servo(us_per_deg=None)], {}, 'needs centre_deg and us_per_deg'),
         ([servo(centre_mm=1.0, us_per_mm=1.0)], {}, 'needs centre_deg and us_per_deg'),
         ([servo('a'), servo('a', 1)], {}, 'duplicate names'),
+        (
+            [servo('a', is_gripper=True), servo('b', 1, is_gripper=True)],
+            {},
+            'joints: more than one is the gripper',
+        ),
+        (
+            [servo('a'), servo('b', 1, **MILLIMETRES)],
+            {},
+            'joints: some are in degrees, others in millimetres',
+        ),
         ([servo('a'), servo('b', 2)], {}, r'channels \[0, 2\] are not 0 to 1'),
         ([servo()], {'park_deg': [0.0, 0.0]}, 'park_deg: 2 values for 1 joint$'),
         ([servo()], {'park_deg': None}, 'park_deg: missing'),

@@ -40,7 +40,7 @@ class Rig:
     def on_machine_state(self, state):
         self.states.append(state)
 
-    def on_trouble(self, text):
+    def on_problem(self, text):
         self.troubles.append(text)
 
     def on_written(self, ticket, now):

@@ -98,11 +98,11 @@ def test_setpoints_are_spaced_and_the_last_one_is_written(rig):
     rig.put(3001)
     rig.turn()
     rig.put(3002)
-    assert 0.0 < rig.link.rest(rig.now) <= SPACING
+    assert 0.0 < rig.link.due_in(rig.now) <= SPACING
     rig.turn()
     assert rig.counts == [3001]
     rig.now += SPACING
-    assert rig.link.rest(rig.now) == 0.0
+    assert rig.link.due_in(rig.now) == 0.0
     rig.turn()
     assert rig.counts == [3001, 3002]
 
@@ -222,7 +222,7 @@ def test_a_lost_port_is_looked_for_again_and_its_board_comes_back_disarmed(rig):
     assert str(asked.exception(0.0)) == 'the port was disconnected'
     assert rig.logged(Ticket, Disconnected) == [Disconnected('the port was disconnected')]
     assert not rig.link.wants_port(rig.now)
-    assert rig.link.rest(rig.now) == LOOK_AGAIN_AFTER
+    assert rig.link.due_in(rig.now) == LOOK_AGAIN_AFTER
     rig.now += LOOK_AGAIN_AFTER
     assert rig.link.wants_port(rig.now)
     rig.board.reset(ResetCause.EXTERNAL)
@@ -252,8 +252,8 @@ def test_no_more_is_read_than_a_line_carries():
     link.turn(bytes(100), 0.0)
     assert not link.is_listening(0.099)
     assert link.is_listening(0.1)
-    assert link.rest(0.0) == TICK
-    assert link.rest(0.08) == pytest.approx(0.02)
+    assert link.due_in(0.0) == TICK
+    assert link.due_in(0.08) == pytest.approx(0.02)
 
 
 @pytest.mark.parametrize('seconds', [0.6, 2.0, 10.0])

@@ -58,7 +58,7 @@ def test_where_no_bridge_listens_it_is_known(listening):
 def test_a_bridge_whose_address_is_taken_reports_it_and_leaves_it_to_the_other(listening):
     first, received = listening(ADDRESS)
     second, _ = listening(ADDRESS)
-    assert (first.trouble, 'over ROS only' in second.trouble) == ('', True)
+    assert (first.problem, 'over ROS only' in second.problem) == ('', True)
     assert send_stop(ADDRESS)
     receive_all(first)
     assert received == ['STOP']

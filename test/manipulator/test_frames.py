@@ -85,3 +85,11 @@ def test_plain_frames_change_nothing():
 def test_pivot_nowhere_is_refused():
     with pytest.raises(InvalidInput, match='pivot'):
         Frames().with_pivot((float('nan'), 0.0, 0.0))
+
+
+@pytest.mark.parametrize('name', ['arm_6r', 'robocake', 'stack_6_6'])
+def test_frames_leave_the_kinematics_what_they_are(name):
+    inner = load(name)
+    framed = in_frames(inner, Frames().with_pivot([0.0, 0.01, 0.03]))
+    for claim in ('is_explicit', 'joins_branches', 'joint_unit', 'joint_names'):
+        assert getattr(framed.kinematics, claim) == getattr(inner.kinematics, claim), claim

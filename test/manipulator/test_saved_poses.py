@@ -106,6 +106,7 @@ poses:
   1: {xyz_mm: [0, 0, 0], rpy_deg: [0, 0, 0], joints_deg: [0, 0, 0, 0, 0, 0]}
   short: {xyz_mm: [0, 0], rpy_deg: [0, 0, 0], joints_deg: [0, 0, 0]}
   metres: {xyz_mm: [0, 0, 0], rpy_deg: [0, 0, 0], joints_mm: [0, 0, 0, 0, 0, 0]}
+  five: {xyz_mm: [0, 0, 0], rpy_deg: [0, 0, 0], joints_deg: [0, 0, 0, 0, 0]}
 sequences:
   wave: [nowhere]
   none: []
@@ -118,6 +119,7 @@ sequences:
         'poses.1: 1 is not a name',
         'poses.short: xyz_mm: has 2 entries, needs 3',
         'poses.metres: the joints need the key joints_deg',
+        'poses.five: joints_deg: needs 6 numbers',
         "sequences.wave: [0].pose: no saved pose is called 'nowhere'",
         'sequences.none: needs a list of 1 to 1000 steps',
         'sequences.fast: [0].speed_mm_s: -1 outside',

@@ -143,7 +143,7 @@ class Loop:
     def on_written(self, ticket, now):
         self._written = ticket
 
-    def on_trouble(self, text):
+    def on_problem(self, text):
         if text.startswith('the board: '):
             self.refusals.append(f'tick {self.tick}: {text}')
 

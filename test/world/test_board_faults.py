@@ -51,7 +51,7 @@ def test_a_board_that_was_away_comes_back_disarmed(world, line, kind, text):
 
 def test_a_board_with_another_program_is_not_driven_and_the_right_one_is(world, line):
     line.inject(FaultKind.VERSION)
-    world.wait('word', lambda: 'has protocol 2, this host 1' in world.bridge.monitor.trouble)
+    world.wait('word', lambda: 'has protocol 2, this host 1' in world.bridge.monitor.problem)
     since = world.now
     world.run(1.0)
     assert world.frames(Setpoint, since) == []

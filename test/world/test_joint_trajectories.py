@@ -50,7 +50,7 @@ def send(world, names, points, starts_in=None):
     def whole(point):
         rows = (point.velocities, point.accelerations)
         more = [[*row, *still] if len(row) else [] for row in rows]
-        return JointPoint(point.time, [*point.positions, *stay], *more)
+        return JointPoint(point.time, [*point.positions, *stay], *more, point.effort)
 
     return world.send_trajectory([*names, *rest], list(map(whole, points)), starts_in)
 
@@ -199,6 +199,24 @@ STILL, ONE = [0.0], ('joint_1',)
             [JointPoint(1.0, [0.1]), JointPoint(1.0, [0.2])],
             None,
             'point 2: time_from_start is 1 s, that of the point before 1 s: it must increase',
+        ),
+        (
+            ('joint_1',),
+            [JointPoint(-0.5, [0.1])],
+            None,
+            'point 1: time_from_start is -0.5 s, needs at least 0',
+        ),
+        (
+            ('joint_1',),
+            [JointPoint(1.0, [0.1], effort=[1.0])],
+            None,
+            'point 1: effort is not supported',
+        ),
+        (
+            ('joint_1',),
+            [JointPoint(2000.0, [0.1])],
+            None,
+            'the trajectory would take 2000 s, at most 1000 s',
         ),
         (
             ('joint_1',),

@@ -47,7 +47,7 @@ class JoyTeleop(Node):
 
     def _on_joy(self, message: Joy) -> None:
         axes, buttons = message.axes.tolist(), message.buttons.tolist()
-        self._reader = self._reader.receive(axes, buttons, time.monotonic(), self._pad.trouble)
+        self._reader = self._reader.receive(axes, buttons, time.monotonic(), self._pad.conflict)
         if self._reader.fault:
             raise InvalidInput(self._reader.fault)
 
@@ -75,8 +75,9 @@ class JoyTeleop(Node):
             'last_refusal': self._joy.last_refusal,
             'not_seen_at_rest_yet': ', '.join(self._reader.untrusted),
         }
-        if self._pad.trouble:
-            return ERROR, f'{self._pad.trouble}: end all but one, then release the deadman', values
+        conflict = self._pad.conflict
+        if conflict:
+            return ERROR, f'{conflict}: end all but one, then release the deadman', values
         if command.reason:
             return WARN, f'{self._pad.topic}: {command.reason}', values
         return OK, 'deadman held' if command.is_held else 'deadman released', values

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from hexarm.recording.topics import COMMANDS, SETTLED, TopicSelection
+from hexarm.recording.topics import ALL_FOUND_AFTER, COMMANDS, TopicSelection
 
 OF_THE_PAD = {'joy'}
 """What joy_teleop only hears: docs/joystick.md."""
@@ -39,8 +39,8 @@ def test_other_machines_are_left_alone(topic):
 def test_command_is_joined_once_its_publisher_has_been_there_for_long(command):
     selection, topic = TopicSelection('arm'), f'/arm/{command}'
     assert not selection.may_join(topic, ['script'], 10.0)
-    assert not selection.may_join(topic, ['script'], 10.0 + SETTLED - 0.01)
-    assert selection.may_join(topic, ['script'], 10.0 + SETTLED)
+    assert not selection.may_join(topic, ['script'], 10.0 + ALL_FOUND_AFTER - 0.01)
+    assert selection.may_join(topic, ['script'], 10.0 + ALL_FOUND_AFTER)
     assert not selection.may_join(topic, [], 20.0)
     assert not selection.may_join(topic, ['script'], 20.1), 'the next publisher is another one'
 

@@ -353,7 +353,22 @@ def test_bad_surroundings_are_named_all_at_once():
         'bodies.link_diameters_mm: holds the number 5, needs a list',
         'bodies.rod_diameter_mm: -1 outside [0.001, 1e+06]',
     ]
+    flat = (
+        'surroundings: {workspace_mm: [[0, 0, 0], [9, 9, 0]], boxes: ['
+        '{name: a, corners_mm: [[0, 0, 0], [1, 0, 1]]}, '
+        '{name: " ", centre_mm: [0, 0, 0], size_mm: [1, 1, 1]}]}\n'
+    )
+    assert problems_of(text + flat) == [
+        'surroundings.boxes[0]: corners_mm: has no size along y',
+        'surroundings.boxes[1]: name: is empty',
+    ]
     known = 'boxes: [{name: a, corners_mm: [[0, 0, 0], [1, 1, 1]]}]'
+    assert problems_of(text + flat.replace('[1, 0, 1]', '[1, 1, 1]').replace('" "', 'b')) == [
+        'surroundings: workspace_mm: has no size along z'
+    ]
+    assert problems_of(text + 'bodies: {link_diameters_mm: [1, 2]}\n') == [
+        'bodies.link_diameters_mm: has 2 entries, needs 7'
+    ]
     assert problems_of(
         text + f'surroundings: {{floor_mm: 900, {known}}}\nbodies: {{rod_diameter_mm: 3}}\n'
     ) == ['bodies.rod_diameter_mm: an arm has no such parts']

@@ -61,7 +61,7 @@ def test_second_publisher_is_trouble_until_a_second_after_its_end(graph_of, cloc
     with graph_of(executor) as graph:
         seen = []
         pads = SoleSubscription(
-            graph.node('machine'), Joy, 'joy', lambda m: seen.append(pads.trouble), MEASUREMENT
+            graph.node('machine'), Joy, 'joy', lambda m: seen.append(pads.conflict), MEASUREMENT
         )
         user = Sender(graph, clock, Joy, 'joy', lambda: len(seen))
         first = user.publisher()
@@ -99,7 +99,7 @@ def test_twists_of_two_publishers_move_nothing_until_there_was_silence(graph, cl
     user.send(second)
     for _ in range(12):
         assert topics.report()['jogged_by'] == ''
-        assert topics.trouble == f'more than one publisher sends on /here/{source}'
+        assert topics.conflict == f'more than one publisher sends on /here/{source}'
         user.send(first, second)
     for _ in range(50):
         user.send(first)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from manipulator.planning.joint_curve import narrowest, room, rounded_lines, splines
+from manipulator.planning.joint_curve import narrowest, rounded_lines, splines, widest
 
 TIMES = np.array([0.0, 0.7, 1.5, 3.0])
 RNG = np.random.default_rng(5)
@@ -34,7 +34,7 @@ def test_a_cubic_is_what_is_left_where_one_of_two_points_has_no_accelerations():
 
 def test_rates_and_accelerations_are_the_derivatives():
     times, h = np.linspace(0.01, 2.99, 57), 1e-6
-    for curve in (splines(TIMES, Q, V, A), rounded_lines(TIMES, Q, 0.5 * room(TIMES))):
+    for curve in (splines(TIMES, Q, V, A), rounded_lines(TIMES, Q, 0.5 * widest(TIMES))):
         ahead, behind = curve.at(times + h), curve.at(times - h)
         for k in range(2):
             slope = (ahead[k] - behind[k]) / (2 * h)
@@ -54,4 +54,4 @@ def test_rounded_lines_are_the_lines_but_for_their_corners_and_end_at_rest():
     assert np.abs(ends[0] - Q[[0, -1]]).max() < 1e-12
     assert np.abs(ends[1]).max() < 1e-12
     corners = curve.at(np.linspace(0.0, curve.duration, 2001))[2]
-    assert np.abs(corners).max() <= 40.0 + 1e-9 or (widths == room(TIMES)).any()
+    assert np.abs(corners).max() <= 40.0 + 1e-9 or (widths == widest(TIMES)).any()

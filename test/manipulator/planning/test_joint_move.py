@@ -162,3 +162,20 @@ def test_a_joint_move_to_a_stop_passes_the_check_of_ik():
         np.testing.assert_allclose(check.admit(executor.step(), now), executor.joints, atol=1e-6)
         assert now < 110.0
     np.testing.assert_allclose(executor.joints, end, atol=2e-6)
+
+
+@pytest.mark.parametrize(
+    ('stamps', 'is_stream'), [((1.0, 2.0, 3.0), False), ((1.0, 1.1, 1.2), True)]
+)
+def test_joint_goals_are_a_stream_only_if_they_come_in_a_row(stamps, is_stream):
+    machine, begin, _, plan = planned('arm_6r')
+    change = plan.joints_at(plan.duration) - begin
+    executor = Executor(machine, machine.kinematics.home, begin, DT)
+    for share, stamp in zip((0.1, 0.2, 0.3), stamps, strict=True):
+        joints = begin + share * change
+        pose = machine.kinematics.forward(joints).pose
+        executor.pursue(Goal(pose, stamp, motion=Motion.JOINT, joints=joints))
+        for _ in range(10):
+            executor.step()
+    assert executor.is_busy
+    assert executor.is_streaming is is_stream

@@ -3,6 +3,7 @@
 import contextlib
 import itertools
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -59,6 +60,41 @@ def test_it_begins_by_holding_and_names_no_goal():
     assert motion.newest_stamp == 0.0
     motion.stop()
     assert motion.status == MotionStatus('hold', 'stopped', 0.0)
+
+
+class Failing:
+    """The kinematics of a machine, which find no joints while `is_failing`."""
+
+    is_failing = False
+
+    def __init__(self, inner):
+        self._inner = inner
+
+    def __getattr__(self, name):
+        return getattr(self._inner, name)
+
+    def inverse(self, pose, near=None):
+        if self.is_failing:
+            raise Unreachable('leg 2: rod too short', 2)
+        return self._inner.inverse(pose, near)
+
+
+def test_a_pose_without_joints_ends_the_motion_at_the_last_command_that_had_some():
+    """The check of a plan finds such poses; one that it has missed must not move anything."""
+    kinematics = Failing(MACHINE.kinematics)
+    machine = replace(MACHINE, kinematics=kinematics)
+    motion = Executor(machine, HOME, kinematics.inverse(HOME), DT)
+    motion.pursue(Goal(pose(x=0.005), 12.5))
+    poses, joints = run(motion, 15)
+    kinematics.is_failing = True
+    held = [motion.step() for _ in range(3)]
+    assert max(np.abs(one.twist_to(poses[-1])).max() for one in held) < 1e-12
+    assert (motion.joints == joints[-1]).all()
+    assert motion.status == MotionStatus('hold', 'stopped', 12.5, 'leg 2: rod too short')
+    kinematics.is_failing = False
+    motion.pursue(Goal(HOME, 13.0))
+    run(motion, 100)
+    assert (motion.status.result, motion.status.goal_stamp) == ('reached', 13.0)
 
 
 def test_goal_is_reached_and_named_by_its_stamp():

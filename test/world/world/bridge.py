@@ -79,7 +79,7 @@ class Bridge(Process):
             self.states.append((self.now, reported))
             self._words.send(*reported)
 
-    def on_trouble(self, text):
+    def on_problem(self, text):
         self.troubles.append((self.now, text))
 
     def on_written(self, ticket, now):
@@ -133,7 +133,7 @@ class Bridge(Process):
         self.sent += [(now, frame.message) for frame in self._reader.feed(output)]
         self._cable.send_to_board(output)
         link.written(b'', now)
-        rest = link.rest(now)
+        rest = link.due_in(now)
         self._due_at = now + rest
         self.timeline.after(rest, lambda: self.handle(self._turn_if_due))
 

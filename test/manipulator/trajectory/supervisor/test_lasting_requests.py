@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
-from manipulator.errors import InvalidInput
+from manipulator.errors import InvalidInput, Refused
 from manipulator.pose import Pose
 from manipulator.trajectory.executor import Goal
 
@@ -18,6 +18,15 @@ def test_override_is_kept_over_a_new_enabling(driving):
     driving.note_machine_state('enabled', is_followed=False)
     driving.see(HOME)
     driving.note_machine_state('enabled', is_followed=True)
+    driving.executor.pursue(Goal(ELSEWHERE, 1.0))
+    assert np.abs(driving.run(50).twist_to(HOME)).max() < 1e-6
+
+
+@pytest.mark.parametrize('rate', [-0.01, 1.01, np.nan, np.inf])
+def test_an_override_outside_0_and_1_is_refused_and_the_last_one_kept(driving, rate):
+    driving.override(0.0)
+    with pytest.raises(Refused, match=r'speed override \S+ outside \[0, 1\]'):
+        driving.override(rate)
     driving.executor.pursue(Goal(ELSEWHERE, 1.0))
     assert np.abs(driving.run(50).twist_to(HOME)).max() < 1e-6
 
