@@ -28,7 +28,7 @@ LEADS = (3, 12, 50)
 """Ticks after which a plan is to be joined in motion, at the first, second and third attempt."""
 
 TICK_POSES = 200
-"""Poses that may be solved for a plan within a tick: 2 ms of an arm, 0.2 ms of a platform."""
+"""Poses that may be solved for a plan within a tick: docs/motion.md, section 3."""
 
 NOTABLE = 5
 """Ticks of planning after which that is reported: most plans, and streams of goals, take less."""
