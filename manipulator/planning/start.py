@@ -17,6 +17,7 @@ from manipulator.planning.worker import Effort
 
 MOST_ATTEMPTS = 8
 MARGIN = 1.01
+"""By which a plan is slowed down further than the last attempt needed."""
 MOST_SLOWDOWN = 30.0
 """Times that a move may take of what platform or tool alone would need: what joints that must turn
 faster near a singular posture may cost."""
