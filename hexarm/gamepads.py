@@ -28,4 +28,8 @@ def load(name_or_path: str) -> Gamepad:
             problem = f'no gamepad is called {shown(name_or_path)}{hint} (shipped: {there})'
             raise ConfigError([problem])
         path = known[name_or_path]
-    return build(Gamepad, parse_yaml(text_of(path), str(path)), source=str(path))
+    content = parse_yaml(text_of(path), str(path))
+    if not {'deadman', 'sticks'} & {*content}:
+        problem = 'this is no mapping of a gamepad: deadman, sticks are missing'
+        raise ConfigError([problem], str(path))
+    return build(Gamepad, content, source=str(path))

@@ -130,8 +130,8 @@ static int from_ideal(const struct arm *arm, const struct frame *pose, const rea
     return count;
 }
 
-/* From one loop after another, until one is certain, or adds nothing to what was found otherwise. If
-   none is, two branches that almost meet may have been taken for none. */
+/* From one loop after another, until one is certain, or adds nothing to what was found otherwise.
+   If none is, two branches that almost meet may have been taken for none. */
 static int from_elimination(const struct arm *arm, const struct frame *pose,
                             real branches[MOST_BRANCHES][JOINTS], int count)
 {
@@ -159,8 +159,10 @@ static int from_anywhere(const struct arm *arm, const struct frame *pose, const 
     int count = found_from(arm, pose, near, STEPS, branches, 0);
     if ((int)arm->closes == ALMOST_CLOSED)
         count = from_ideal(arm, pose, near, branches, count);
-    return arm->loops[0] < 0 ? from_spread_starts(arm, pose, branches, count)
-                             : from_elimination(arm, pose, branches, count);
+    count = from_elimination(arm, pose, branches, count);
+    return arm->loops[0] < 0 || has_odd(arm, count)
+               ? from_spread_starts(arm, pose, branches, count)
+               : count;
 }
 
 int arm_branches(const struct arm *arm, const struct frame *pose, const real near[JOINTS],

@@ -23,7 +23,7 @@ struct arm {
     struct ranges ranges;
     real loops[MOST_LOOPS]; /* of `general_candidates`, the best first; -1: no more have a use */
     struct mirror mirror;
-    struct chain solved; /* what is eliminated: the chain, or almost, where no loop has a use for it */
+    struct chain solved; /* what is eliminated: the chain, or almost, if no loop has a use for it */
 };
 
 /* The branches of a pose, in the first rows; how many rows, some of which may be NaN. `near` gives

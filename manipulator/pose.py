@@ -79,6 +79,15 @@ class Pose:
         """The orientation as roll, pitch, yaw in radians."""
         return so3.to_rpy(self.rotation)
 
+    def __repr__(self) -> str:
+        """One pose as the call that makes it, to 1 µm and 1 µrad; of an array its shape."""
+        leading = self.position.shape[:-1]
+        if leading:
+            return f'<Pose of shape {leading}>'
+        # + 0.0 turns −0 into 0
+        xyz, rpy = ((np.round(part, 6) + 0.0).tolist() for part in (self.position, self.rpy))
+        return f'Pose.from_xyz_rpy({xyz}, {rpy})'
+
     def __matmul__(self, other: 'Pose') -> 'Pose':
         """T_a_b @ T_b_c is T_a_c."""
         return Pose(

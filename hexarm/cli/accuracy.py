@@ -27,7 +27,7 @@ from manipulator.pose import Pose
 PAPER_MACHINE, PAPER_NOISE = 'robocake', math.radians(1.0)
 """Prokopovich 2019: 1° of an SG90."""
 TOLERANCE = 1e-4
-DRAWS, FEWEST_DRAWS = 4000, 100
+DRAWS, FEWEST_DRAWS, MOST_DRAWS = 4000, 100, 100_000
 MACHINES = 400
 MAP_POSITIONS = 4000
 PAPER_UM = {
@@ -85,8 +85,10 @@ def answer(arguments: argparse.Namespace) -> Answer:
     for name, value in (('--noise', noise), ('--tolerance', arguments.tolerance)):
         if not 0.0 <= value < 1.0:
             raise InvalidInput(f'{name} {value:g} is outside [0, 1)')
-    if arguments.draws < FEWEST_DRAWS:
-        raise InvalidInput(f'--draws {arguments.draws} is below {FEWEST_DRAWS}')
+    if not FEWEST_DRAWS <= arguments.draws <= MOST_DRAWS:
+        raise InvalidInput(
+            f'--draws {arguments.draws} is outside [{FEWEST_DRAWS}, {MOST_DRAWS:,}]'
+        )
     is_papers = is_papers and math.isclose(noise, PAPER_NOISE)
     errors = servo_errors(machine.kinematics, file, noise)
     common = common_error(file, noise, len(machine.kinematics.joint_names))

@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 from hexarm.cli.commands import Commands, declare
 from hexarm.cli.statuses import INTERRUPTED, PIPE_CLOSED, REFUSED
 from manipulator.errors import ConfigError, InvalidInput, ManipulatorError, Refused
-from manipulator.formatting import did_you_mean, nearest
+from manipulator.formatting import did_you_mean, nearest, shown
 from manipulator.requirements import missing
 
 EXAMPLES = """\
@@ -34,7 +34,16 @@ MOST_OF_AN_ERROR = 400
 
 
 class Parser(argparse.ArgumentParser):
-    """Names the nearest command for one that does not exist."""
+    """Names the nearest command, choice or option for one that does not exist."""
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse's, but each subcommand reports what it does not know, with its own usage."""
+        arguments, unknown = super().parse_known_args(args, namespace)
+        if unknown:
+            near = nearest(unknown[0].partition('=')[0], self._option_string_actions)
+            meant = did_you_mean(near if unknown[0].startswith('--') else '')
+            super().error(f'{shown(unknown[0])} is unknown here{meant}')
+        return arguments, unknown
 
     def error(self, message: str) -> NoReturn:
         """Usage, the message, status 2."""
@@ -42,7 +51,8 @@ class Parser(argparse.ArgumentParser):
         if found is not None:
             choices = re.findall(r'[\w-]+', found[2])
             near = nearest(found[1].lower(), choices)
-            message = f'{found[1]!r} is not one of {", ".join(choices)}{did_you_mean(near)}'
+            known = 'unknown' if near else f'not one of {", ".join(choices)}'
+            message = f'{found[1]!r} is {known}{did_you_mean(near)}'
         super().error(message[:MOST_OF_AN_ERROR])
 
 

@@ -22,6 +22,7 @@ from manipulator.machine import Machine
 from manipulator.pose import Pose
 
 POINTS, FEWER_POINTS, FEWEST_POINTS = 1_000_000, 20_000, 1000
+MOST_POINTS = 10_000_000
 SLOW_POINTS = 2000
 """For stacks, and arms that are solved numerically: up to a millisecond and more a pose."""
 TABLE_POINTS = 100_000
@@ -53,8 +54,8 @@ def answer(arguments: argparse.Namespace) -> Answer:
     """Volumes in m³ with their errors at 95 % confidence; ranges in metres and radians."""
     machine = load(arguments.machine)
     points = default_points(machine) if arguments.points is None else arguments.points
-    if points < FEWEST_POINTS:
-        raise InvalidInput(f'--points {points} is below {FEWEST_POINTS}')
+    if not FEWEST_POINTS <= points <= MOST_POINTS:
+        raise InvalidInput(f'--points {points} is outside [{FEWEST_POINTS}, {MOST_POINTS:,}]')
     if not 0.0 < arguments.tilt <= np.pi:
         raise InvalidInput(f'--tilt {arguments.tilt} rad is outside (0, π]')
     data = None if arguments.data is None else Path(arguments.data)

@@ -10,13 +10,13 @@ from mcap.writer import CompressionType, Writer
 
 from hexarm.recording.log_parser import schema_text
 from hexarm.recording.sink import Topic
-from manipulator.errors import ManipulatorError
+from manipulator.errors import InvalidInput, ManipulatorError
 
 CHUNK_BYTES = 1 << 20
 
 
 class NotWritten(ManipulatorError, OSError):
-    """A recording that cannot be begun or cannot go on: the file's name, and why."""
+    """A recording that cannot go on: the file's name, and why."""
 
 
 class Bag:
@@ -26,6 +26,7 @@ class Bag:
     """
 
     def __init__(self, path: Path) -> None:
+        """InvalidInput where the file exists or cannot be written."""
         self.path = path
         self.counts: Counter[str] = Counter()
         self._channels: dict[str, int] = {}
@@ -33,7 +34,7 @@ class Bag:
         try:
             self._file = path.open('xb')
         except OSError as error:
-            raise NotWritten(f'{path}: {_reason(error)}') from error
+            raise InvalidInput(f'{path}: {_reason(error)}') from error
         self._writer = Writer(self._file, CHUNK_BYTES, CompressionType.ZSTD)
         self._writer.start(Profile.ROS2, 'hexarm')
 

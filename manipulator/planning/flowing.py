@@ -44,7 +44,11 @@ class Attempt:
     slowdown: float = 1.0
 
 
-ATTEMPTS = Attempt(), Attempt(slowdown=1.5), Attempt(1.0, 1.5), Attempt(3.0, 2.0)
+ATTEMPTS = (
+    Attempt(),
+    Attempt(slowdown=1.5),
+    *(Attempt(later, 2.0) for later in (1.0, 3.0, 7.0, 15.0)),
+)
 """In this order: a machine that is off the stream, or begins it, needs time to catch up."""
 
 Ends = tuple[Array, Array, Array]

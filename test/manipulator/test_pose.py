@@ -94,3 +94,18 @@ def test_arrays_are_copies_that_cannot_be_written():
 def test_what_is_no_pose_is_refused(position, rotation, message):
     with pytest.raises(InvalidInput, match=message):
         Pose(np.asarray(position, dtype=float), rotation)
+
+
+@given(poses)
+def test_a_printed_pose_makes_the_pose_again(pose):
+    again = eval(repr(pose), {'Pose': Pose})
+    np.testing.assert_allclose(homogeneous(again), homogeneous(pose), atol=2e-6)
+
+
+def test_a_pose_is_printed_in_numbers_that_a_person_reads():
+    pose = Pose.from_xyz_rpy([0.004, -1e-18, 0.045], [0.0, 0.05, 0.0])
+    assert repr(pose) == 'Pose.from_xyz_rpy([0.004, 0.0, 0.045], [0.0, 0.05, 0.0])'
+
+
+def test_an_array_of_poses_is_printed_as_its_shape():
+    assert repr(Pose.from_xyz_rpy(np.zeros((20, 3)))) == '<Pose of shape (20,)>'

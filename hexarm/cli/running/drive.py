@@ -14,12 +14,14 @@ from hexarm.cli.answers import (
     units_of,
     with_negatives,
 )
+from hexarm.cli.running.machine_calls import remedy
 from hexarm.cli.statuses import STATUSES
 from hexarm.namespaces import namespace_of
 from hexarm.robot_values import checked, moved_to
 from manipulator.errors import ConfigError, InvalidInput, Refused, TimedOut, Unreachable
 from manipulator.formatting import shown
 from manipulator.pose import Pose
+from manipulator.states import MachineState
 
 if TYPE_CHECKING:
     from hexarm.robot import Robot
@@ -77,15 +79,29 @@ def add_driving(
 
 
 def running(act: Act) -> Callable[[argparse.Namespace], int]:
-    """A subcommand's `run`, with the machine of its namespace; Ctrl-C brakes it."""
+    """A subcommand's `run`, with the machine of its namespace; Ctrl-C brakes it.
+
+    A refusal ends with the command that comes first: `hexarm enable`, `hexarm clear`.
+    """
 
     def answer(arguments: argparse.Namespace) -> Answer:
         from hexarm.robot import Robot  # noqa: PLC0415 (needs ROS)
 
         with Robot(arguments.namespace) as robot:
-            return act(robot, arguments)
+            try:
+                return act(robot, arguments)
+            except Refused as error:
+                first = first_step(robot.state, arguments.namespace)
+                raise Refused(f'{error}{first}') from error
 
     return answering(answer)
+
+
+def first_step(state: str, namespace: str) -> str:
+    """What lets a machine in this state move, where a command does."""
+    if state == MachineState.DISARMED:
+        return f'. First: hexarm enable {namespace}'
+    return remedy(state, namespace)
 
 
 def go(robot: 'Robot', arguments: argparse.Namespace) -> Answer:

@@ -5,7 +5,10 @@ import math
 
 from hexarm.namespaces import NoMachine, namespace_of
 from hexarm.recording.topics import TopicSelection, nothing_recorded
+from manipulator.formatting import shown
 from manipulator.nodes.stop_signal import StopSignal
+
+LAST_PORT = 65535
 
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
@@ -15,8 +18,17 @@ def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') 
         'namespace', nargs='?', type=namespace_of, default='hexapod', help='default: hexapod'
     )
     parser.add_argument('--host', default='127.0.0.1', help='0.0.0.0 for every network')
-    parser.add_argument('--port', type=int, default=8765, help='default: 8765')
+    parser.add_argument(
+        '--port', type=tcp_port, default=8765, help='default: 8765; 0: any that is free'
+    )
     parser.set_defaults(run=run)
+
+
+def tcp_port(word: str) -> int:
+    """A TCP port's number; 0 lets the system choose one."""
+    if not (word.isascii() and word.isdigit() and int(word) <= LAST_PORT):
+        raise argparse.ArgumentTypeError(f'{shown(word)}: needs a port from 0 to {LAST_PORT}')
+    return int(word)
 
 
 def run(arguments: argparse.Namespace) -> int:

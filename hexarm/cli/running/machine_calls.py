@@ -45,20 +45,21 @@ def answer(act: 'Callable[[Client], str | None]', arguments: argparse.Namespace)
         try:
             text = act(client)
         except Refused as error:
-            raise Refused(f'{error}{remedy(client, space)}') from error
+            raise Refused(f'{error}{remedy(client.machine_state.message, space)}') from error
         client.spin(SETTLES)
-        words = f' ({text})' if text else ''
-        state = {
+        state = client.machine_state.message
+        words = (f' ({text})' if text else '') + remedy(state, space)
+        reported = {
             'namespace': f'/{space}',
-            'state': client.machine_state.message,
+            'state': state,
             'motion': client.motion_status.message,
             'answer': text or '',
         }
-        return state, [f'/{space}: {client.summary}{words}{remedy(client, space)}']
+        return reported, [f'/{space}: {client.summary}{words}']
 
 
-def remedy(client: 'Client', namespace: str) -> str:
+def remedy(state: str, namespace: str) -> str:
     """What ends a stop or a fault, where the machine has one."""
-    if client.machine_state.message not in (MachineState.STOPPED, MachineState.FAULT):
+    if state not in (MachineState.STOPPED, MachineState.FAULT):
         return ''
     return f'. Inspect the machine, then: hexarm clear {namespace}'

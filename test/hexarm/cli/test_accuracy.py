@@ -61,7 +61,14 @@ def test_noise_is_the_play_of_the_machine_files_servos(capsys):
 
 
 @pytest.mark.parametrize(
-    'words', [['--noise', '-1'], ['--noise', 'nan'], ['--tolerance', '2'], ['--draws', '3']]
+    'words',
+    [
+        ['--noise', '-1'],
+        ['--noise', 'nan'],
+        ['--tolerance', '2'],
+        ['--draws', '3'],
+        ['--draws', '9' * 20],
+    ],
 )
 def test_what_makes_no_sense_is_refused(capsys, words):
     assert main(['accuracy', 'robocake', *words]) == 2

@@ -26,9 +26,32 @@ def test_unknown_subcommand_names_the_nearest(typed, meant, capsys):
     with pytest.raises(SystemExit) as ended:
         main([typed])
     assert ended.value.code == 2
+    assert capsys.readouterr().err.endswith(f"'{typed}' is unknown, did you mean '{meant}'?\n")
+
+
+def test_unknown_subcommand_that_is_near_to_none_lists_all(capsys):
+    with pytest.raises(SystemExit):
+        main(['frobnicate'])
     said = capsys.readouterr().err
-    assert f"'{typed}' is not one of" in said
-    assert f"did you mean '{meant}'?" in said
+    assert "'frobnicate' is not one of" in said
+    assert all(command.name in said for command in COMMANDS)
+
+
+@pytest.mark.parametrize(
+    ('typed', 'reason'),
+    [
+        (['pose', '--untis', 'mm'], "'--untis' is unknown here, did you mean '--units'?"),
+        (['pose', '--untis=mm'], "'--untis=mm' is unknown here, did you mean '--units'?"),
+        (['machines', 'ur5'], "'ur5' is unknown here"),
+    ],
+)
+def test_unknown_option_is_reported_by_its_subcommand_with_the_nearest(typed, reason, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(typed)
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f'usage: hexarm {typed[0]} ')
+    assert said.endswith(f'hexarm {typed[0]}: error: {reason}\n')
 
 
 def test_the_list_of_machines_ends_with_their_folder(capsys):

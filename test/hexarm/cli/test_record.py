@@ -24,12 +24,12 @@ def test_arguments_that_make_no_sense(words, reason, capsys):
 def test_a_file_that_exists_is_kept(tmp_path, capsys):
     path = tmp_path / 'old.mcap'
     path.write_text('precious')
-    assert main(['record', '-o', str(path)]) == 1
+    assert main(['record', '-o', str(path)]) == 2
     assert f'{path}: exists already, and is not overwritten' in capsys.readouterr().err
     assert path.read_text() == 'precious'
 
 
 def test_a_folder_that_does_not_exist_is_named(tmp_path, capsys):
     path = tmp_path / 'none' / 'new.mcap'
-    assert main(['record', '-o', str(path)]) == 1
+    assert main(['record', '-o', str(path)]) == 2
     assert f'{path}: No such file or directory' in capsys.readouterr().err

@@ -54,6 +54,7 @@ def test_pictures_and_a_csv_table_are_written(capsys, tmp_path):
     [
         ['--points', '10'],
         ['--points', '0'],
+        ['--points', '9' * 20],
         ['--tilt', '-1'],
         ['--tilt', 'nan'],
         ['--data', 'table.xls'],

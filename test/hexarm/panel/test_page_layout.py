@@ -245,7 +245,7 @@ def test_a_text_of_the_graph_cannot_become_markup(desk, shown):
 
 
 @pytest.mark.parametrize('device', SIZES)
-def test_every_tab_is_legible_and_its_picture_is_kept(device, request, shown):
+def test_every_tab_is_legible_and_its_picture_is_kept(browser, device, request, shown):
     page = request.getfixturevalue(device)
     shown.show(LONG, **shown.usual())
     page.locator('#state').get_by_text('enabled').wait_for()

@@ -73,3 +73,11 @@ def test_a_machine_that_does_not_come_is_status_1_with_the_reason(monkeypatch, c
     monkeypatch.setattr('hexarm.cli.running.foxglove.StopSignal', lambda: Mock(is_set=False))
     assert main(['foxglove', 'nowhere', '--port', '0']) == 1
     assert 'no machine found in /nowhere on ROS domain 7' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('port', ['65536', '-1', 'eight', '9' * 30])
+def test_a_number_that_is_no_port_is_refused_in_words(port, capsys):
+    with pytest.raises(SystemExit) as refusal:
+        main(['foxglove', 'hexapod', f'--port={port}'])
+    assert refusal.value.code == 2
+    assert f"'{port}': needs a port from 0 to 65535" in capsys.readouterr().err

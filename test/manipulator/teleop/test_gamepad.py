@@ -4,6 +4,7 @@ from pathlib import Path
 import pytest
 
 from hexarm.gamepads import load, shipped
+from hexarm.machines import find
 from manipulator.config import build
 from manipulator.errors import ConfigError
 from manipulator.teleop.gamepad import Gamepad, Stick
@@ -28,6 +29,14 @@ def test_shipped_mappings_drive_all_six_components_under_a_deadman():
 def test_unknown_gamepad_names_the_nearest():
     with pytest.raises(ConfigError, match="'xbix', did you mean 'xbox'"):
         load('xbix')
+
+
+def test_a_machine_file_is_no_mapping():
+    with pytest.raises(ConfigError) as caught:
+        load(str(find('robocake')))
+    assert caught.value.problems == (
+        'this is no mapping of a gamepad: deadman, sticks are missing',
+    )
 
 
 def test_mapping_is_loaded_by_path(tmp_path):
