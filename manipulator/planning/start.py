@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.errors import Refused
+from manipulator.errors import NoSolution, Refused
 from manipulator.machine import Machine
 from manipulator.planning.check import LimitUtilisation, check_plan
 from manipulator.planning.flowing import ATTEMPTS, STILL, Attempt
@@ -39,8 +39,11 @@ class Start:
     before: Array | None = None
 
     def checked(self, machine: Machine, plan: Plan, effort: Effort) -> LimitUtilisation:
-        """`check_plan` from here."""
-        return check_plan(plan, machine, self.joints, self.dt, effort, self.before)
+        """`check_plan` from here; Refused, too, where the joints of a plan fix no pose."""
+        try:
+            return check_plan(plan, machine, self.joints, self.dt, effort, self.before)
+        except NoSolution as error:
+            raise Refused(f'on the joint move: {error}') from error
 
     @property
     def joint_motion(self) -> JointState | None:
