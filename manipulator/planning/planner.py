@@ -209,7 +209,7 @@ def _plan_line(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pl
     plan = plan_to(machine, start, goal.pose, effort)
     if goal.joints is not None or goal.then is not None:
         times = np.append(np.arange(0.0, plan.duration, start.dt), plan.duration)
-        joints = machine.kinematics.inverse_along(plan.at(times).pose, start.joints)[-1]
+        joints = plan.joints_along(machine.kinematics, times, start.joints)[-1]
         _check_arrival(machine, goal, joints, start.dt, effort)
     return plan
 

@@ -147,10 +147,7 @@ class Executor:
         """The joints (AHEAD_ROWS, n) with which the active plan goes on for AHEAD seconds."""
         active = self._active
         times = active.time + np.linspace(0.0, AHEAD, AHEAD_ROWS)
-        rows = active.plan.joints_at(times)
-        if rows is None:
-            rows = self._machine.kinematics.inverse_along(active.plan.at(times).pose, self.joints)
-        return rows
+        return active.plan.joints_along(self._machine.kinematics, times, self.joints)
 
     @property
     def own_joints(self) -> Array | None:
