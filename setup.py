@@ -21,7 +21,7 @@ class BuildLibraries(build_ext):
 
 setup(
     name=NAME,
-    version='0.1.0',
+    version='0.2.0',
     description='Controls parallel platforms and serial arms, from a pose target to servo pulses',
     long_description=(Path(__file__).resolve().parent / 'README.md').read_text(encoding='utf-8'),
     long_description_content_type='text/markdown',
