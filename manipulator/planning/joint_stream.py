@@ -67,8 +67,14 @@ def _plan(machine: Machine, start: JointState, curve: CoordinateCurve) -> JointM
 
 
 def _bounds(machine: Machine, start: JointState) -> Ends:
-    """Speed, acceleration and jerk of each joint (n,): if it alone moved the platform or tool."""
-    jacobian = machine.kinematics.jacobian(start.pose, start.joints[0])
+    """Speed, acceleration and jerk of each joint (n,): if it alone moved the platform or tool.
+
+    Raises Refused in a posture where joint rates fix no twist.
+    """
+    try:
+        jacobian = machine.kinematics.jacobian(start.pose, start.joints[0])
+    except NoSolution as error:
+        raise Refused(f'on the joint move: {error}') from error
     shift = np.maximum(np.linalg.norm(jacobian[:3], axis=0), TINY)
     turn = np.maximum(np.linalg.norm(jacobian[3:], axis=0), TINY)
     limits = machine.motion.for_plans

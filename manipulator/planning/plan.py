@@ -6,6 +6,7 @@ from typing import Protocol
 import numpy as np
 
 from manipulator.arrays import Array, frozen
+from manipulator.kinematics import Kinematics
 from manipulator.pose import Pose
 
 
@@ -64,6 +65,14 @@ class Plan(Protocol):
         Without them they follow from the poses, on the branch that the machine is on.
         """
         return None
+
+    def joints_along(self, kinematics: Kinematics, times: Array, near: Array) -> Array:
+        """The joints (k, n) at times (k,) in a row: its own, else those of its poses from `near`.
+
+        NaN where the inverse ends: see `Kinematics.inverse_along`.
+        """
+        own = self.joints_at(times)
+        return kinematics.inverse_along(self.at(times).pose, near) if own is None else own
 
     def where(self, time: float) -> str:
         """The place at a time, in words that follow what happens there: 'at 62 % of the line'."""
