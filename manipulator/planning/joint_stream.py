@@ -11,10 +11,10 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused
 from manipulator.machine import Machine
-from manipulator.planning.flowing import Attempt, Ends, flowing_to
+from manipulator.planning.flowing import Attempt, flowing_to
 from manipulator.planning.goal import Flow
 from manipulator.planning.joint_curve import JointCurvePlan
-from manipulator.planning.plan import CoordinateCurve
+from manipulator.planning.plan import CoordinateCurve, Ends
 from manipulator.planning.point_to_point import quickest
 from manipulator.pose import Pose
 
