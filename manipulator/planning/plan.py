@@ -29,6 +29,10 @@ class MotionState:
         return bool(np.abs(self.twist).max() < 1e-6)
 
 
+Ends = tuple[Array, Array, Array]
+"""Coordinates (..., n) with two derivatives."""
+
+
 class CoordinateCurve(Protocol):
     """Coordinates over time: joints, or the local coordinates of poses."""
 
@@ -37,7 +41,7 @@ class CoordinateCurve(Protocol):
         """Seconds."""
         ...
 
-    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+    def at(self, times: Array | float) -> Ends:
         """Values and two derivatives (..., n) at each of the times (...), the ends' outside."""
         ...
 

@@ -14,7 +14,7 @@ from manipulator.planning.goal import Flow, Goal, Motion
 from manipulator.planning.joint_move import KNOTS, plan_joint_move
 from manipulator.planning.joint_stream import KNOTS as JOINT_KNOTS
 from manipulator.planning.joint_stream import (
-    JointState,
+    MovingJoints,
     plan_joint_move_in_motion,
     plan_joint_stream,
 )
@@ -137,7 +137,7 @@ def plan_to(machine: Machine, start: Start, pose: Pose, effort: Effort | None = 
 def _plan_joints_in_motion(
     machine: Machine,
     start: Start,
-    begin: JointState,
+    begin: MovingJoints,
     joints: Array,
     flow: Flow | None,
     effort: Effort,

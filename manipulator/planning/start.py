@@ -11,7 +11,7 @@ from manipulator.machine import Machine
 from manipulator.planning.check import LimitUtilisation, check_plan
 from manipulator.planning.flowing import ATTEMPTS, STILL, Attempt
 from manipulator.planning.goal import Flow
-from manipulator.planning.joint_stream import JointState
+from manipulator.planning.joint_stream import MovingJoints
 from manipulator.planning.plan import MotionState, Plan
 from manipulator.planning.worker import Effort
 
@@ -46,11 +46,11 @@ class Start:
             raise Refused(f'on the joint move: {error}') from error
 
     @property
-    def joint_motion(self) -> JointState | None:
+    def joint_motion(self) -> MovingJoints | None:
         """The joints in motion or at rest; None in a motion of poses."""
         still = np.zeros_like(self.joints)
         rates = (still, still) if self.state.is_at_rest else self.rates
-        return None if rates is None else JointState(self.state.pose, (self.joints, *rates))
+        return None if rates is None else MovingJoints(self.state.pose, (self.joints, *rates))
 
 
 def plan_along_stream(
