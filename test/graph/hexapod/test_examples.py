@@ -118,7 +118,7 @@ def test_stop_ends_the_motion_of_another_program(start, enabled):
 
     def stop_on_tour():
         tour = start('axis_tour')
-        assert tour.stdout.readline().startswith('x ±')
+        assert tour.stdout.readline().startswith('x +')
         assert enabled.end_of(start('stop')) == (0, 'enabled\n')
         status, said = enabled.end_of(tour)
         assert status == 1
