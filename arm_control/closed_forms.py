@@ -19,6 +19,7 @@ EXACT = 1e-9
 """Metres, and sines of angles: how well axes must meet or be parallel for a closed form."""
 
 BRANCHES = 8
+"""Two of joint 1, times two elbows, times two wrists."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from arm_control.bodies import arm_bodies
 from arm_control.geometry import ArmGeometry, check_axes, placed
 from arm_control.joint_limits import ArmLimits
 from arm_control.rate_scaling import AT_ONCE
-from arm_control.resolved_rate import STRAIGHT, JogState, ResolvedRate
+from arm_control.resolved_rate import JogState, ResolvedRate
 from manipulator.arrays import Array, frozen
 from manipulator.config import build
 from manipulator.errors import ConfigError
@@ -22,7 +22,7 @@ from manipulator.limits.machine_limits import JointRange
 from manipulator.machine import Kind, Machine, MachineFile
 from manipulator.motion_limits import MotionLimits
 from manipulator.pose import Pose
-from manipulator.teleop.jogger import JogMotion, ticks_for, towards
+from manipulator.teleop.jogger import STRAIGHT, JogMotion, ticks_for, towards
 
 SHARE_BEFORE_STOPS = 0.5
 """Of the tool's acceleration, what braking before a stop counts on; the rest is for bends: a joint
@@ -117,15 +117,15 @@ class ArmJogger:
         if along > 1.0 + ROUNDING or ticks_for(after.twist - motion.twist, limits, dt) > 1.0 + LAG:
             # No part of the request can be reached as gently as the tool asks for.
             straight = towards(motion.twist, np.zeros(6), limits, dt)
-            braked = self._stepped(replace(motion, off_line=STRAIGHT), straight, dt)
+            line = replace(motion.line, off_line=STRAIGHT)
+            braked = self._stepped(replace(motion, line=line), straight, dt)
             return replace(braked, scale=after.scale, held_by=after.held_by)
         return after
 
     def _stepped(
         self, motion: JogMotion, requested: Array, dt: float, slowing: float = AT_ONCE
     ) -> JogMotion:
-        line = motion.off_line, motion.is_leaving, motion.is_under_way
-        before = JogState(motion.joints, motion.rates, *line)
+        before = JogState(motion.joints, motion.rates, motion.line)
         step = self.jog.step(before, self._of_tool(requested, motion.pose), dt, slowing)
         state, along = step.state, step.driven * requested
         along.setflags(write=False)
@@ -136,9 +136,7 @@ class ArmJogger:
             state.rates,
             step.scale,
             step.held_by,
-            state.off_line,
-            state.is_leaving,
-            state.is_under_way,
+            state.line,
             along,
         )
 

@@ -27,6 +27,7 @@ from manipulator import _kernel
 from manipulator.arrays import Array, Mask, frozen
 from manipulator.errors import InvalidInput
 from manipulator.motion_limits import MotionLimits
+from manipulator.teleop.jogger import ON_LINE, STRAIGHT, LineState
 
 CORNER = 0.05
 """Radians from its stop at which a joint counts as part of a corner."""
@@ -44,23 +45,15 @@ ENDLESS = 1e3
 """Radians to the end of a range that count as endless."""
 SLIDING = 'sliding off the line: '
 JOINT_CORNER = 'corner of the joint ranges'
-STRAIGHT = frozen(np.zeros(6))
 
 
 @dataclass(frozen=True, eq=False)
 class JogState:
-    """Joint angles and rates (6,), in rad and rad/s.
-
-    off_line (6,) is the twist that would bring the tool back onto its commanded line within a
-    second, in base axes. is_leaving: it is on its way out of a singular posture, off the line.
-    is_under_way: it has moved along the line, which it does not leave any more until it has stood.
-    """
+    """Joint angles and rates (6,), in rad and rad/s, and the tool beside its line."""
 
     joints: Array
     rates: Array
-    off_line: Array = field(default_factory=lambda: STRAIGHT)
-    is_leaving: bool = False
-    is_under_way: bool = False
+    line: LineState = ON_LINE
 
     @classmethod
     def at_rest(cls, joints: Array) -> 'JogState':
@@ -152,14 +145,14 @@ class ResolvedRate:
         off_line, driven, moving = tick.missed(rates)
         if drive.is_sliding:
             off_line, moving = STRAIGHT, driven * requested
-        is_leaving = drive.is_leaving or (state.is_leaving and tick.is_singular)
+        is_leaving = drive.is_leaving or (state.line.is_leaving and tick.is_singular)
         is_moving = any(rates.tolist())
         is_on_line = is_moving and not (drive.is_sliding or is_leaving)
         is_driven = is_moving or bool(requested.any())
-        is_under_way = is_on_line or (state.is_under_way and is_driven)
+        is_under_way = is_on_line or (state.line.is_under_way and is_driven)
         for array in (joints, rates, off_line, moving):
             array.setflags(write=False)
-        after = JogState(joints, rates, off_line, is_leaving, is_under_way)
+        after = JogState(joints, rates, LineState(off_line, is_leaving, is_under_way))
         held = drive.scale, drive.held_by, tick.sigma_min
         return JogStep(after, *held, driven, moving)
 
@@ -190,7 +183,7 @@ class _Tick:
 
     def on_line(self) -> _Drive:
         """The twist with its direction kept, as far as the joints allow."""
-        off_line = self._state.off_line * self._jog._unit
+        off_line = self._state.line.off_line * self._jog._unit
         line = line_rates(self.posture, self._twist, self._jog._onset, off_line)
         drive = self._scaled(line)
         if drive.scale > 0.0 or self.sigma_min >= self._jog.onset:
@@ -213,15 +206,15 @@ class _Tick:
         if self._jog.slides and sigma < self._jog.onset:
             return self._sliding(self._place())
         found = self._folding() if sigma < LOST else None
-        if found or self._state.is_under_way:
+        if found or self._state.line.is_under_way:
             return found
-        if sigma < LOST or (self._state.is_leaving and self.is_singular):
+        if sigma < LOST or (self._state.line.is_leaving and self.is_singular):
             found = self._leaving()
         return found or (self._sliding(JOINT_CORNER) if self._is_trapped() else None)
 
     def missed(self, rates: Array) -> tuple[Array, float, Array]:
         """How far (6,) the tool is off its line, its part of the twist (0 to 1), its own twist."""
-        off_line, part, moving = self._state.off_line.copy(), np.empty(1), np.empty(6)
+        off_line, part, moving = self._state.line.off_line.copy(), np.empty(1), np.empty(6)
         time = np.array((self._jog.arm.characteristic_length, self._dt))
         _kernel.part_driven(self.posture.numbers, time, self._twist, rates, off_line, part, moving)
         return off_line, float(part[0]), moving

@@ -12,8 +12,11 @@ from manipulator.formatting import counted
 from manipulator.message_filter import NOTABLE_OFFSET, StampFilter
 
 PULSE_PERIOD = 0.02
+"""Seconds between two pulses of a servo: no command takes effect sooner."""
 LONGEST_GAP = 0.05
+"""Seconds of motion, after the last command, that one command may make up for."""
 START = 0.005
+"""Seconds of motion at full speed within which a first command must be of the joints."""
 
 
 class Overtaken(Refused):

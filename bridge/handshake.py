@@ -6,7 +6,9 @@ from bridge.protocol import PROTOCOL_VERSION, Hello, State, is_newer
 from manipulator.formatting import counted
 
 UPTIME_SLACK_MS = 250
+"""By which a board's clock may lag besides half of the elapsed time."""
 SHORTEST_ADVANCE_MS = 125
+"""Of a board's clock between two HELLOs of one run: half of their period."""
 LONGEST_STALL_MS = 2**26
 """19 hours: lead of a board's clock over ours, which halts while the computer sleeps."""
 LONGEST_LAG_MS = 2**30

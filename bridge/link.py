@@ -14,7 +14,11 @@ from bridge.session import Session
 from manipulator.errors import Refused
 
 LOOK_AGAIN_AFTER = 0.25
+"""Seconds from the loss of the port to the next attempt to open it."""
+
 TICK = 0.05
+"""Seconds between two turns at most."""
+
 SPACING = 0.0025
 """Setpoints go out 400 times a second at most, half of what the line carries: a flood of them
 must not queue up in the operating system, ahead of a STOP."""

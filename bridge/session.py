@@ -43,9 +43,13 @@ from manipulator.deadlines import BOARD_DEADLINE
 from manipulator.errors import Refused
 
 RETRY_AFTER = 0.1
+"""Seconds without an answer after which a command is sent again."""
 MAX_TRIES = 4
+"""Of a command, before it fails; a STOP is reported as failed, and repeated."""
 MAX_BOOT = 5.0
+"""Seconds from the opening of the port to HELLO, after which the board is reported as missing."""
 MODE_AFTER: dict[type, Mode] = {Disarm: Mode.DISARMED, Stop: Mode.STOPPED}
+"""The board's mode once it has acknowledged a command."""
 ACKNOWLEDGED_BY_STATE = (Arm, Clear, Play)
 """Commands whose resulting mode is known from the next STATE only: acknowledged with it."""
 

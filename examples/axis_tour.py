@@ -10,7 +10,9 @@ with Robot(sys.argv[1] if len(sys.argv) > 1 else '/hexapod') as robot:
     home = dict(zip(('x', 'y', 'z'), robot.pose.position, strict=True))
     home |= dict.fromkeys(('roll', 'pitch', 'yaw'), 0.0)
     for axis, centre in home.items():
-        way = 0.004 if axis in 'xyz' else 0.07
-        print(f'{axis} ± {way:g} {"m" if axis in "xyz" else "rad"}', flush=True)
+        unit, way = ('m', 0.004) if axis in 'xyz' else ('rad', 0.07)
         for value in (centre + way, centre - way, centre):
             robot.move(**{axis: value})
+            pose = robot.pose
+            measured = dict(zip(home, (*pose.position, *pose.rpy), strict=True))[axis] - centre
+            print(f'{axis} {value - centre:+.4f} {unit}, measured {measured:+.4f}', flush=True)

@@ -91,7 +91,7 @@ class Kind(Generic[T]):
     """A kind of machine: the schemas of its sections geometry and limits, and what makes it.
 
     geometry may be a union of forms; make takes both sections as built by the schemas. screen
-    raises ConfigError for sections of which no schema has to tell more.
+    raises ConfigError for sections whose other faults need not be listed.
     """
 
     geometry: Any

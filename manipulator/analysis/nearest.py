@@ -27,7 +27,7 @@ RANDOM_STARTS, FEWER_STARTS, MOST_ITERATIONS = 12, 3, 200
 
 
 def nearest_by_joints(machine: Machine, target: Pose) -> Pose:
-    """The pose nearest to `target` in the metric of `metric.distance`, over all joints in range.
+    """The pose nearest to `target` in the metric of `readings.distance`, over all joints in range.
 
     Bounded least squares (trust region reflective: Branch, Coleman, Li 1999) from home's joints
     and a fixed set of others; the best local minimum. Every such pose is connected to home through
@@ -127,7 +127,7 @@ KICKS, KICK_POSES, KICK_RADII, KICK_GAIN = 12, 1500, (3e-2, 1e-2, 1e-3, 1e-4, 1e
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """A reachable pose, and how far it is from the target, in metres (see `metric`)."""
+    """A reachable pose, and how far it is from the target, in metres (see `readings.distance`)."""
 
     pose: Pose
     distance: float

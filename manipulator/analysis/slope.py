@@ -33,7 +33,7 @@ AROUND = STEP * np.concatenate([np.zeros((1, 6)), np.eye(6), -np.eye(6)])
 class Slopes:
     """Readings of one pose, and how its margins change.
 
-    gradients (2k, 6) are per metre in each direction of `metric.offset`, 0 where a margin has
+    gradients (2k, 6) are per metre in each direction of `readings.offset`, 0 where a margin has
     none; steepness (2k,) is their length, taken on the steeper side of a kink.
     """
 

@@ -28,7 +28,7 @@ class IkNode(Node):
         name = declare(self, 'machine', default_machine, 'machine file: a shipped name or a path')
         machine = load(name)
         self._names = machine.kinematics.joint_names
-        self._check = SetpointValidator(machine)
+        self._validator = SetpointValidator(machine)
         self._setpoint = FilteredCallback(self, 'setpoint', self._on_setpoint)
         self._states = FilteredCallback(self, 'joint_states', self._on_joint_states)
         self._requests = FilteredCallback(self, 'joint_setpoint', self._on_requested)
@@ -41,14 +41,14 @@ class IkNode(Node):
         )
 
     def _on_setpoint(self, message: PoseStamped) -> None:
-        joints = self._check.command(pose_of(message), time.monotonic())
+        joints = self._validator.command(pose_of(message), time.monotonic())
         self._publisher.publish(joint_message(joints, self._names, message.header.stamp))
 
     def _on_requested(self, message: JointState) -> None:
-        self._check.note_requested(joints_of(message, self._names), time.monotonic())
+        self._validator.note_requested(joints_of(message, self._names), time.monotonic())
 
     def _on_joint_states(self, message: JointState) -> None:
-        self._check.note_joints(known_joints(message, self._names))
+        self._validator.note_joints(known_joints(message, self._names))
 
     def _report(self) -> Report:
         values = {

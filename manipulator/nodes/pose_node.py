@@ -90,7 +90,7 @@ def _marker(number: int, stroke: Stroke, width: float, frame: str, stamp: Time) 
     return marker
 
 
-LISTENED = QoSProfile(depth=100)
+TF_QOS = QoSProfile(depth=100)
 """The quality of service that every tf2 listener requests."""
 
 
@@ -115,7 +115,7 @@ class Transforms:
         except ModuleNotFoundError:
             self._kind = None
             return
-        self._publisher = node.create_publisher(self._kind, '/tf', LISTENED)
+        self._publisher = node.create_publisher(self._kind, '/tf', TF_QOS)
 
     def show(
         self, kinematics: Kinematics, frames: Frames, pose: Pose, joints: Array, stamp: Time

@@ -17,6 +17,7 @@ from manipulator.pose import Pose
 from manipulator.unit_hints import hint_at_metres
 
 TOLERANCE = 1.005
+"""Limit utilisation up to which a plan is accepted."""
 
 AT_ONCE = 256
 """Ticks solved together: bounds the memory of a long plan, and how late it is given up."""

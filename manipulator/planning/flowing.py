@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from manipulator.arrays import Array
+from manipulator.arrays import Array, frozen
 from manipulator.motion_limits import MotionLimits
 from manipulator.planning.goal import Flow
-from manipulator.planning.plan import MotionState
+from manipulator.planning.joint_curve import Curve, quintic
+from manipulator.planning.plan import Ends, MotionState
 from manipulator.planning.point_to_point import (
     Cubics,
     MoveInMotion,
@@ -51,47 +52,22 @@ ATTEMPTS = (
 )
 """In this order: a machine that is off the stream, or begins it, needs time to catch up."""
 
-Ends = tuple[Array, Array, Array]
-"""Coordinates (n,) with two derivatives."""
-
-
-@dataclass(frozen=True, eq=False)
-class Quintic:
-    """coefficients (6, n), the constant ones first; they hold for the first `span` seconds."""
-
-    coefficients: Array
-    span: float
-
-    def at(self, times: Array) -> Ends:
-        """Coordinates (k, n), with two derivatives, at times (k,), those of the ends outside."""
-        powers = np.clip(times, 0.0, self.span)[:, None] ** np.arange(6)
-        factors = np.arange(1.0, 6.0)
-        first = self.coefficients[1:] * factors[:, None]
-        second = first[1:] * factors[:4, None]
-        return powers @ self.coefficients, powers[:, :5] @ first, powers[:, :4] @ second
-
-    @property
-    def end(self) -> Ends:
-        """At the end of the span."""
-        x, v, a = (part[0] for part in self.at(np.array([self.span])))
-        return x, v, a
-
 
 @dataclass(frozen=True, eq=False)
 class Flowing:
     """Coordinates (n,) over time: `early` along a stream, then `rest`, if no other goal comes."""
 
-    early: Quintic
+    early: Curve
     rest: Cubics
 
     @property
     def duration(self) -> float:
         """Seconds until rest."""
-        return self.early.span + self.rest.duration
+        return self.early.duration + self.rest.duration
 
     def at(self, times: Array | float) -> Ends:
         """See `CoordinateCurve`."""
-        flat, span = np.ravel(times), self.early.span
+        flat, span = np.ravel(times), self.early.duration
         is_early = (flat < span)[:, None]
         both = zip(self.early.at(flat), self.rest.at(flat - span), strict=True)
         x, v, a = (
@@ -120,12 +96,13 @@ def flowing_to(
     early = quintic_to(start, goal, flow, time, bounds[2], how.later)
     if early is None:
         return None
-    return Flowing(early, quickest(early.end, goal, bounds, how.slowdown))
+    end = early.at(early.duration)
+    return Flowing(early, quickest(end, goal, bounds, how.slowdown))
 
 
 def quintic_to(
     start: Ends, goal: Array, flow: Flow, time: float, jerks: Array, later: float
-) -> Quintic | None:
+) -> Curve | None:
     """From any motion, at that time, to the goal (n,) with its flow; later: see `Attempt`.
 
     None where a coordinate would pass its jerk (n,).
@@ -137,28 +114,10 @@ def quintic_to(
     beyond = max(span - seconds, later * seconds)
     v = flow.twist + beyond * flow.acceleration
     end = goal + beyond * (flow.twist + v) / 2.0
-    coefficients = _coefficients(start, (end, v, flow.acceleration), seconds + beyond)
+    coefficients = np.array(quintic(start, (end, v, flow.acceleration), seconds + beyond))
     if (np.abs(_jerk(coefficients, seconds + beyond)) > jerks[:, None]).any():
         return None
-    return Quintic(coefficients, span)
-
-
-def _coefficients(start: Ends, end: Ends, seconds: float) -> Array:
-    """Of the polynomials from one to the other, (6, n)."""
-    x, v, a = start
-    left = end[0] - (x + seconds * (v + seconds * a / 2.0))
-    faster = (end[1] - (v + seconds * a)) * seconds
-    harder = (end[2] - a) * seconds**2
-    return np.array(
-        [
-            x,
-            v,
-            a / 2.0,
-            (10.0 * left - 4.0 * faster + harder / 2.0) / seconds**3,
-            (-15.0 * left + 7.0 * faster - harder) / seconds**4,
-            (6.0 * left - 3.0 * faster + harder / 2.0) / seconds**5,
-        ]
-    )
+    return Curve(frozen([0.0, span]), frozen(coefficients[None]))
 
 
 def _jerk(coefficients: Array, seconds: float) -> Array:

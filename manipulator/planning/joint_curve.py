@@ -11,7 +11,7 @@ import numpy as np
 
 from manipulator.arrays import Array, Mask, frozen
 from manipulator.kinematics import Kinematics
-from manipulator.planning.plan import CoordinateCurve, MotionState, Plan
+from manipulator.planning.plan import CoordinateCurve, Ends, MotionState, Plan
 from manipulator.pose import Pose
 
 TERMS = 6
@@ -83,7 +83,7 @@ class Curve:
         """Seconds."""
         return float(self.breaks[-1])
 
-    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+    def at(self, times: Array | float) -> Ends:
         """q, q̇ and q̈ (..., n) at each of the times (...), those of the ends before and after."""
         t = np.clip(np.asarray(times, dtype=np.float64), 0.0, self.duration)
         last = len(self.breaks) - 2
@@ -108,15 +108,26 @@ def splines(times: Array, positions: Array, velocities: Array, accelerations: Ar
         (-2 * change / steps + v0 + v1) / steps**2,
         0 * change, 0 * change,
     ]  # fmt: skip
-    quintic = [
-        positions[:-1], v0, a0 / 2,
-        (20 * change / steps - 12 * v0 - 8 * v1 - (3 * a0 - a1) * steps) / (2 * steps**2),
-        (-30 * change / steps + 16 * v0 + 14 * v1 + (3 * a0 - 2 * a1) * steps) / (2 * steps**3),
-        (12 * change / steps - 6 * (v0 + v1) - (a0 - a1) * steps) / (2 * steps**4),
-    ]  # fmt: skip
+    quintics = quintic((positions[:-1], v0, a0), (positions[1:], v1, a1), steps)
     has_both: Mask = np.isfinite(np.concatenate([a0, a1], axis=1)).all(axis=1)
-    rows = np.where(has_both[:, None, None], np.stack(quintic, axis=1), np.stack(cubic, axis=1))
+    rows = np.where(has_both[:, None, None], np.stack(quintics, axis=1), np.stack(cubic, axis=1))
     return Curve(frozen(times - times[0]), frozen(rows))
+
+
+def quintic(start: Ends, end: Ends, seconds: Array | float) -> list[Array]:
+    """The six coefficients (..., n) of polynomials from one end to another, the constant first."""
+    (x, v, a), (x_end, v_end, a_end) = start, end
+    left = x_end - (x + seconds * (v + seconds * a / 2.0))
+    faster = (v_end - (v + seconds * a)) * seconds
+    harder = (a_end - a) * seconds**2
+    return [
+        x,
+        v,
+        a / 2.0,
+        (10.0 * left - 4.0 * faster + harder / 2.0) / seconds**3,
+        (-15.0 * left + 7.0 * faster - harder) / seconds**4,
+        (6.0 * left - 3.0 * faster + harder / 2.0) / seconds**5,
+    ]
 
 
 def rounded_lines(times: Array, positions: Array, widths: Array) -> Curve:

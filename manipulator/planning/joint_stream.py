@@ -11,10 +11,10 @@ import numpy as np
 from manipulator.arrays import Array
 from manipulator.errors import NoSolution, Refused
 from manipulator.machine import Machine
-from manipulator.planning.flowing import Attempt, Ends, flowing_to
+from manipulator.planning.flowing import Attempt, flowing_to
 from manipulator.planning.goal import Flow
 from manipulator.planning.joint_curve import JointCurvePlan
-from manipulator.planning.plan import CoordinateCurve
+from manipulator.planning.plan import CoordinateCurve, Ends
 from manipulator.planning.point_to_point import quickest
 from manipulator.pose import Pose
 
@@ -35,29 +35,29 @@ class JointMoveInMotion(JointCurvePlan):
 
 
 @dataclass(frozen=True, eq=False)
-class JointState:
-    """Joints (n,) in motion, with two derivatives, and their pose."""
+class MovingJoints:
+    """Joints (n,) with two derivatives, in motion or at rest, and the pose that they make."""
 
     pose: Pose
     joints: Ends
 
 
 def plan_joint_move_in_motion(
-    machine: Machine, start: JointState, goal: Array, slowdown: float
+    machine: Machine, start: MovingJoints, goal: Array, slowdown: float
 ) -> JointMoveInMotion:
     """To rest at joints `goal` (n,); slowdown and errors: see `quickest`."""
     return _plan(machine, start, quickest(start.joints, goal, _bounds(machine, start), slowdown))
 
 
 def plan_joint_stream(
-    machine: Machine, start: JointState, goal: Array, flow: Flow, time: float, how: Attempt
+    machine: Machine, start: MovingJoints, goal: Array, flow: Flow, time: float, how: Attempt
 ) -> JointMoveInMotion | None:
     """At that time, to joints `goal` (n,) with their flow; errors: see `flowing_to`."""
     curve = flowing_to(start.joints, goal, flow, time, _bounds(machine, start), how)
     return None if curve is None else _plan(machine, start, curve)
 
 
-def _plan(machine: Machine, start: JointState, curve: CoordinateCurve) -> JointMoveInMotion:
+def _plan(machine: Machine, start: MovingJoints, curve: CoordinateCurve) -> JointMoveInMotion:
     rows = curve.at(np.linspace(0.0, curve.duration, KNOTS))[0]
     try:
         knots = machine.kinematics.forward_along(rows, start.pose)
@@ -66,9 +66,15 @@ def _plan(machine: Machine, start: JointState, curve: CoordinateCurve) -> JointM
     return JointMoveInMotion(machine.kinematics, curve, knots)
 
 
-def _bounds(machine: Machine, start: JointState) -> Ends:
-    """Speed, acceleration and jerk of each joint (n,): if it alone moved the platform or tool."""
-    jacobian = machine.kinematics.jacobian(start.pose, start.joints[0])
+def _bounds(machine: Machine, start: MovingJoints) -> Ends:
+    """Speed, acceleration and jerk of each joint (n,): if it alone moved the platform or tool.
+
+    Raises Refused in a posture where joint rates fix no twist.
+    """
+    try:
+        jacobian = machine.kinematics.jacobian(start.pose, start.joints[0])
+    except NoSolution as error:
+        raise Refused(f'on the joint move: {error}') from error
     shift = np.maximum(np.linalg.norm(jacobian[:3], axis=0), TINY)
     turn = np.maximum(np.linalg.norm(jacobian[3:], axis=0), TINY)
     limits = machine.motion.for_plans

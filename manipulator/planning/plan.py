@@ -6,6 +6,7 @@ from typing import Protocol
 import numpy as np
 
 from manipulator.arrays import Array, frozen
+from manipulator.kinematics import Kinematics
 from manipulator.pose import Pose
 
 
@@ -28,6 +29,10 @@ class MotionState:
         return bool(np.abs(self.twist).max() < 1e-6)
 
 
+Ends = tuple[Array, Array, Array]
+"""Coordinates (..., n) with two derivatives."""
+
+
 class CoordinateCurve(Protocol):
     """Coordinates over time: joints, or the local coordinates of poses."""
 
@@ -36,7 +41,7 @@ class CoordinateCurve(Protocol):
         """Seconds."""
         ...
 
-    def at(self, times: Array | float) -> tuple[Array, Array, Array]:
+    def at(self, times: Array | float) -> Ends:
         """Values and two derivatives (..., n) at each of the times (...), the ends' outside."""
         ...
 
@@ -64,6 +69,14 @@ class Plan(Protocol):
         Without them they follow from the poses, on the branch that the machine is on.
         """
         return None
+
+    def joints_along(self, kinematics: Kinematics, times: Array, near: Array) -> Array:
+        """The joints (k, n) at times (k,) in a row: its own, else those of its poses from `near`.
+
+        NaN where the inverse ends: see `Kinematics.inverse_along`.
+        """
+        own = self.joints_at(times)
+        return kinematics.inverse_along(self.at(times).pose, near) if own is None else own
 
     def where(self, time: float) -> str:
         """The place at a time, in words that follow what happens there: 'at 62 % of the line'."""

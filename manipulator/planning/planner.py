@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.errors import NoSolution, Refused, Unreachable
+from manipulator.errors import Refused, Unreachable
 from manipulator.machine import Machine
 from manipulator.planning.check import check_plan
 from manipulator.planning.cycle import Cycle
@@ -14,7 +14,7 @@ from manipulator.planning.goal import Flow, Goal, Motion
 from manipulator.planning.joint_move import KNOTS, plan_joint_move
 from manipulator.planning.joint_stream import KNOTS as JOINT_KNOTS
 from manipulator.planning.joint_stream import (
-    JointState,
+    MovingJoints,
     plan_joint_move_in_motion,
     plan_joint_stream,
 )
@@ -137,7 +137,7 @@ def plan_to(machine: Machine, start: Start, pose: Pose, effort: Effort | None = 
 def _plan_joints_in_motion(
     machine: Machine,
     start: Start,
-    begin: JointState,
+    begin: MovingJoints,
     joints: Array,
     flow: Flow | None,
     effort: Effort,
@@ -175,10 +175,7 @@ def _plan_joints(machine: Machine, start: Start, goal: Goal, effort: Effort) -> 
     def move(slowdown: float) -> Plan:
         return plan_joint_move(machine, start.state.pose, start.joints, joints, slowdown)
 
-    try:
-        plan = slowed_down(machine, start, move, effort)
-    except NoSolution as error:
-        raise Refused(f'on the joint move: {error}') from error
+    plan = slowed_down(machine, start, move, effort)
     _check_arrival(machine, goal, joints, start.dt, effort)
     return plan
 
@@ -212,7 +209,7 @@ def _plan_line(machine: Machine, start: Start, goal: Goal, effort: Effort) -> Pl
     plan = plan_to(machine, start, goal.pose, effort)
     if goal.joints is not None or goal.then is not None:
         times = np.append(np.arange(0.0, plan.duration, start.dt), plan.duration)
-        joints = machine.kinematics.inverse_along(plan.at(times).pose, start.joints)[-1]
+        joints = plan.joints_along(machine.kinematics, times, start.joints)[-1]
         _check_arrival(machine, goal, joints, start.dt, effort)
     return plan
 

@@ -6,17 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from manipulator.arrays import Array
-from manipulator.errors import Refused
+from manipulator.errors import NoSolution, Refused
 from manipulator.machine import Machine
 from manipulator.planning.check import LimitUtilisation, check_plan
 from manipulator.planning.flowing import ATTEMPTS, STILL, Attempt
 from manipulator.planning.goal import Flow
-from manipulator.planning.joint_stream import JointState
+from manipulator.planning.joint_stream import MovingJoints
 from manipulator.planning.plan import MotionState, Plan
 from manipulator.planning.worker import Effort
 
 MOST_ATTEMPTS = 8
 MARGIN = 1.01
+"""By which a plan is slowed down further than the last attempt needed."""
 MOST_SLOWDOWN = 30.0
 """Times that a move may take of what platform or tool alone would need: what joints that must turn
 faster near a singular posture may cost."""
@@ -38,15 +39,18 @@ class Start:
     before: Array | None = None
 
     def checked(self, machine: Machine, plan: Plan, effort: Effort) -> LimitUtilisation:
-        """`check_plan` from here."""
-        return check_plan(plan, machine, self.joints, self.dt, effort, self.before)
+        """`check_plan` from here; Refused, too, where the joints of a plan fix no pose."""
+        try:
+            return check_plan(plan, machine, self.joints, self.dt, effort, self.before)
+        except NoSolution as error:
+            raise Refused(f'on the joint move: {error}') from error
 
     @property
-    def joint_motion(self) -> JointState | None:
+    def joint_motion(self) -> MovingJoints | None:
         """The joints in motion or at rest; None in a motion of poses."""
         still = np.zeros_like(self.joints)
         rates = (still, still) if self.state.is_at_rest else self.rates
-        return None if rates is None else JointState(self.state.pose, (self.joints, *rates))
+        return None if rates is None else MovingJoints(self.state.pose, (self.joints, *rates))
 
 
 def plan_along_stream(

@@ -19,7 +19,7 @@ from manipulator.planning.goal import Flow, Goal
 Place = TypeVar('Place')
 """Of a goal: its pose, or its joints (n,)."""
 
-Way = Callable[[Place, Place], Array]
+Difference = Callable[[Place, Place], Array]
 """From one to another: a twist (6,), or the difference of joints (n,)."""
 
 LONGEST_GAP = 0.12
@@ -76,8 +76,8 @@ class Clock:
 class Track(Generic[Place]):
     """The newest goals of a stream at times by one clock, and how rough it is by that clock."""
 
-    def __init__(self, way: Way[Place]) -> None:
-        self._way = way
+    def __init__(self, difference: Difference[Place]) -> None:
+        self._difference = difference
         self.points = deque[tuple[float, Place]](maxlen=3)
         self.roughness = 0.0
 
@@ -85,7 +85,7 @@ class Track(Generic[Place]):
         """The newest: its distance from the parabola through the last three is the roughness."""
         if len(self.points) == 3 and time > self.points[-1][0]:
             times = np.array([t for t, _ in self.points])
-            away = np.array([self._way(place, at) for _, at in self.points])
+            away = np.array([self._difference(place, at) for _, at in self.points])
             missed = _extrapolation(times, time) @ away
             self.roughness = FORGET * self.roughness + float(missed @ missed)
         self.points.append((time, place))
@@ -94,7 +94,8 @@ class Track(Generic[Place]):
         """Twist (n,) and its derivative (n,) at the newest; the last two gaps, in seconds."""
         (first, begin), (middle, between), (last, newest) = self.points
         before, gap = middle - first, last - middle
-        start, end = self._way(begin, between) / before, self._way(between, newest) / gap
+        start = self._difference(begin, between) / before
+        end = self._difference(between, newest) / gap
         change = 2.0 * (end - start) / (before + gap)
         return end + change * gap / 2.0, change, before, gap
 
@@ -113,11 +114,11 @@ class Stream(Generic[Place]):
     times those count by which the stream is smoother.
     """
 
-    def __init__(self, delay: float, way: Way[Place]) -> None:
-        """delay: seconds from the request of a plan to its beginning; way: from place to place."""
-        self._delay, self._way = delay, way
+    def __init__(self, delay: float, difference: Difference[Place]) -> None:
+        """delay: seconds from the request of a plan to its beginning."""
+        self._delay, self._difference = delay, difference
         self._clock = Clock()
-        self._even, self._stamped = Track(way), Track(way)
+        self._even, self._stamped = Track(difference), Track(difference)
         self._last = -np.inf
         self._due = 0.0
 
@@ -131,7 +132,7 @@ class Stream(Generic[Place]):
             return goal
         even = self._clock.sent(noted)
         if place is None or not 0.0 < noted - self._last <= LONGEST_GAP:
-            self._even, self._stamped = Track(self._way), Track(self._way)
+            self._even, self._stamped = Track(self._difference), Track(self._difference)
         if place is not None:
             self._last = noted
             self._even.add(even, place)
@@ -152,5 +153,6 @@ class Stream(Generic[Place]):
         return Flow(twist, change, self._due, until)
 
     def _due_at(self, continued: float, anew: float, late: float) -> float:
+        """When the goal is due: one gap after the last, drifting to the time by its receipt."""
         away = anew - continued
         return anew if abs(away) > late / 2.0 else continued + DRIFT * away

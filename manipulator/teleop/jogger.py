@@ -89,6 +89,23 @@ STRAIGHT = frozen(np.zeros(6))
 
 
 @dataclass(frozen=True, eq=False)
+class LineState:
+    """Where an arm's tool is beside its commanded line, for the jogger's next step.
+
+    off_line (6,) is the twist that would bring it back onto the line within a second, base axes.
+    is_leaving: it moves out of a singular posture, off the line. is_under_way: it has moved along
+    the line, which it does not leave any more until it has been at rest.
+    """
+
+    off_line: Array = field(default_factory=lambda: STRAIGHT)
+    is_leaving: bool = False
+    is_under_way: bool = False
+
+
+ON_LINE = LineState()
+
+
+@dataclass(frozen=True, eq=False)
 class JogMotion:
     """Where a jog has come to. Poses and twists are of the pivot in work axes.
 
@@ -96,10 +113,7 @@ class JogMotion:
     m/s. scale is the part of the target twist that the machine allows, held_by what set it: '',
     'speed of joint 2', 'crank angle of leg 3', 'wrist singularity (…)'.
 
-    For the jogger's next step: off_line (6,) is the twist that would bring the tool back onto its
-    commanded line within a second, in base axes; is_leaving: it moves out of a singular
-    posture, off the line; is_under_way: it moves, or has stopped, on the line; along (6,) is what
-    of `twist` is along that line.
+    Of an arm, for the jogger's next step: line, and along (6,), what of `twist` is along it.
     """
 
     pose: Pose
@@ -108,9 +122,7 @@ class JogMotion:
     rates: Array
     scale: float = 1.0
     held_by: str = ''
-    off_line: Array = field(default_factory=lambda: STRAIGHT)
-    is_leaving: bool = False
-    is_under_way: bool = False
+    line: LineState = ON_LINE
     along: Array = field(default_factory=lambda: STRAIGHT)
 
     @classmethod

@@ -40,7 +40,13 @@ AHEAD, AHEAD_ROWS = 0.5, 26
 
 
 class Executor:
-    """Owns the commanded state of one machine from the moment that it is enabled."""
+    """Owns the commanded state of one machine from the moment that it is enabled.
+
+    status: what is reported. joints (n,): those of the last setpoint. expected: the stamp of a
+    path that is being planned, None without one; dropped: why the last one was given up.
+    awaits_arrival: whether a path or cycle waits for `begin_waiting` at its first pose, as where
+    joints are measured; is_waiting: whether one does.
+    """
 
     def __init__(
         self, machine: Machine, pose: Pose, joints: Array, dt: float, worker: Worker | None = None
@@ -141,10 +147,7 @@ class Executor:
         """The joints (AHEAD_ROWS, n) with which the active plan goes on for AHEAD seconds."""
         active = self._active
         times = active.time + np.linspace(0.0, AHEAD, AHEAD_ROWS)
-        rows = active.plan.joints_at(times)
-        if rows is None:
-            rows = self._machine.kinematics.inverse_along(active.plan.at(times).pose, self.joints)
-        return rows
+        return active.plan.joints_along(self._machine.kinematics, times, self.joints)
 
     @property
     def own_joints(self) -> Array | None:
@@ -203,8 +206,7 @@ class Executor:
         The active plan brakes along its path and is dropped.
         """
         if command is not None and self._jog_command is None and self.is_busy:
-            self._drop()
-            self._scaling.is_stopping = not self._active.is_hold
+            self.brake()
         if command is not None:
             self._drop_path(command.takeover)
         self._jog_command = command

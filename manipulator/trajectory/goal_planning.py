@@ -28,7 +28,7 @@ LEADS = (3, 12, 50)
 """Ticks after which a plan is to be joined in motion, at the first, second and third attempt."""
 
 TICK_POSES = 200
-"""Poses that may be solved for a plan within a tick: 2 ms of an arm, 0.2 ms of a platform."""
+"""Poses that may be solved for a plan within a tick: docs/motion.md, section 3."""
 
 NOTABLE = 5
 """Ticks of planning after which that is reported: most plans, and streams of goals, take less."""
@@ -228,17 +228,12 @@ class _Ahead:
         time = float(self.times[-1]) - dt
         if time < 0.0:
             return None
-        rows = self.plan.joints_at(np.array([time]))
-        if rows is None:
-            rows = machine.kinematics.inverse_along(self.plan.at(np.array([time])).pose, joints)
+        rows = self.plan.joints_along(machine.kinematics, np.array([time]), joints)
         return rows[0] if bool(np.isfinite(rows).all()) else None
 
     def joints_at_end(self, machine: Machine) -> Array:
         """The joints (n,) at the last of the times."""
         if len(self.times) == 1:
             return self.joints
-        rows = self.plan.joints_at(self.times)
-        if rows is None:
-            rows = machine.kinematics.inverse_along(self.plan.at(self.times).pose, self.joints)
-        last: Array = rows[-1]
+        last: Array = self.plan.joints_along(machine.kinematics, self.times, self.joints)[-1]
         return last

@@ -16,6 +16,7 @@ from manipulator.teleop.joint_jogger import JointJogger, JointMotion
 REPORT_INTERVAL = 0.5
 """Seconds between two changes of the reported obstacle."""
 NOTABLE = 0.995
+"""The part of a request below which the speed limits are reported."""
 PAUSED = 'paused, or speed override 0'
 STILL = np.zeros(6)
 
@@ -83,7 +84,7 @@ class Jog(Protocol):
         ...
 
 
-class Obstacle:
+class ObstacleReport:
     """What limits a jog, reported on change, at most every REPORT_INTERVAL."""
 
     def __init__(self, dt: float) -> None:
@@ -111,14 +112,14 @@ class JointJogging:
         """Begins at rest at `pose`, where the joints are."""
         self.motion = JointMotion.at_rest(pose, joints)
         self._jogger = JointJogger(machine)
-        self._obstacle = Obstacle(dt)
+        self._report = ObstacleReport(dt)
         self._still = np.zeros(len(joints))
         self._dt = dt
 
     @property
     def reason(self) -> str:
         """See `Jog`."""
-        return self._obstacle.reason
+        return self._report.reason
 
     def takes(self, command: AnyJogCommand) -> bool:
         """See `Jog`."""
@@ -129,7 +130,7 @@ class JointJogging:
         rates = request.rates if isinstance(request, JointJogCommand) else self._still
         self.motion = self._jogger.step(self.motion, rate * rates, self._dt)
         held_by = PAUSED if rate == 0.0 else self.motion.held_by
-        self._obstacle.report(held_by, rate * self.motion.scale)
+        self._report.report(held_by, rate * self.motion.scale)
 
 
 class Jogging:
@@ -140,7 +141,7 @@ class Jogging:
     def __init__(self, machine: Machine, pose: Pose, joints: Array, dt: float) -> None:
         """Begins at rest at `pose`, where the joints are."""
         self.motion = JogMotion.at_rest(pose, joints)
-        self._report = Obstacle(dt)
+        self._report = ObstacleReport(dt)
         self._machine = machine
         self._jogger = machine.make_jogger(machine)
         self._dt = dt

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from hexarm.machines import load
-from manipulator.errors import Refused, Unreachable
-from manipulator.planning.goal import Goal, Motion
+from manipulator.errors import NoSolution, Refused, Unreachable
+from manipulator.planning.goal import Flow, Goal, Motion
 from manipulator.planning.joint_move import plan_joint_move
-from manipulator.planning.plan import MotionState
+from manipulator.planning.plan import MotionState, Plan
 from manipulator.planning.planner import compared, plan_goal
-from manipulator.planning.start import Start
+from manipulator.planning.start import Start, plan_along_stream, slowed_down
 from manipulator.planning.worker import Effort
 from manipulator.pose import Pose
 from manipulator.setpoint_validator import SetpointValidator
@@ -179,3 +179,24 @@ def test_joint_goals_are_a_stream_only_if_they_come_in_a_row(stamps, is_stream):
             executor.step()
     assert executor.is_busy
     assert executor.is_streaming is is_stream
+
+
+class NoPose(Plan):
+    """A plan whose joints fix no pose on the way."""
+
+    duration = 0.1
+
+    def at(self, times):
+        raise NoSolution('forward kinematics found no pose')
+
+    def where(self, time):
+        return 'on the way'
+
+
+def test_a_plan_whose_joints_fix_no_pose_is_refused_and_a_stream_goes_on_without_it():
+    machine, begin, _, _ = planned('robocake')
+    start = Start(MotionState.at_rest(machine.kinematics.home), begin, DT)
+    with pytest.raises(Refused, match='on the joint move: forward kinematics found no pose'):
+        slowed_down(machine, start, lambda slowdown: NoPose(), Effort())
+    flow = Flow(np.full(6, 0.01), np.zeros(6), due=0.1, until=0.1)
+    assert plan_along_stream(machine, start, flow, Effort(), lambda attempt: NoPose()) is None
