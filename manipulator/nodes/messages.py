@@ -131,8 +131,9 @@ def named_joints(message: JointState, what: str) -> dict[str, float]:
     """
     names, values = [name[:80] for name in message.name], getattr(message, what)
     if len(names) != len(values):
-        plural = 'positions' if what == 'position' else 'velocities'
-        raise InvalidInput(f'{counted(len(names), "name")} but {len(values)} {plural}')
+        many = 'positions' if what == 'position' else 'velocities'
+        there = counted(len(values), what, many)
+        raise InvalidInput(f'{counted(len(names), "name")} but {there}')
     named = dict(zip(names, values, strict=True))
     if len(named) != len(names):
         twice = next(name for name in names if names.count(name) > 1)
