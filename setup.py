@@ -21,8 +21,20 @@ class BuildLibraries(build_ext):
 
 setup(
     name=NAME,
-    version='0.1.0',
+    version='0.2.0',
     description='Controls parallel platforms and serial arms, from a pose target to servo pulses',
+    long_description=(Path(__file__).resolve().parent / 'README.md').read_text(encoding='utf-8'),
+    long_description_content_type='text/markdown',
+    keywords='robotics ROS 2 hexapod Stewart platform 6-DOF arm kinematics servo',
+    classifiers=[
+        'Intended Audience :: Education',
+        'Intended Audience :: Science/Research',
+        'Operating System :: POSIX :: Linux',
+        'Programming Language :: C',
+        'Programming Language :: Python :: 3',
+        'Topic :: Scientific/Engineering',
+        'Typing :: Typed',
+    ],
     license='Apache-2.0',
     python_requires='>=3.10',
     packages=find_packages(include=[pattern for r in PACKAGES for pattern in (r, f'{r}.*')]),
@@ -32,7 +44,7 @@ setup(
     ],
     cmdclass={'build_ext': BuildLibraries},
     options={'bdist_wheel': {'py_limited_api': 'cp310'}},
-    package_data={'hexarm': ['*.xml', 'panel/page/*']},
+    package_data={'': ['py.typed', '*.pyi'], 'hexarm': ['*.xml', 'panel/page/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),

@@ -10,7 +10,7 @@ from arm_control.inverse_method import InverseMethod, fitting_method
 from arm_control.joint_limits import JointLimits
 from arm_control.numerical import arm_branches
 from manipulator import _kernel
-from manipulator.arrays import Array, frozen
+from manipulator.arrays import Array, adjacent, frozen
 from manipulator.errors import ConfigError, InvalidInput, NoSolution, Unreachable
 from manipulator.kinematics import ForwardSolution
 from manipulator.links import PLATFORM, Link, Stroke
@@ -129,7 +129,7 @@ class SerialArm:
 
         Raises NoSolution unless joints are six finite numbers.
         """
-        checked = np.asarray(joints, dtype=np.float64)
+        checked = adjacent(joints)
         if checked.shape != (JOINTS,) or not np.isfinite(checked).all():
             raise NoSolution(f'joints {checked.tolist()} are not six finite angles')
         pose = self.chain.forward(checked)
@@ -168,7 +168,7 @@ class SerialArm:
         )
 
     def _checked(self, joints: Array, finite: bool = True) -> Array:
-        array = np.ascontiguousarray(joints, np.float64)
+        array = adjacent(joints)
         if array.shape[-1:] != (JOINTS,):
             raise InvalidInput(f'joints have shape {array.shape}, needs (..., 6)')
         if finite and not np.isfinite(array).all():

@@ -19,6 +19,10 @@ START = 0.005
 """Seconds of motion at full speed within which a first command must be of the joints."""
 
 
+class Overtaken(Refused):
+    """A command of a stream that something has ended, as a stop: its sender cannot know yet."""
+
+
 class JumpValidator:
     """What every joint command must be: each joint named once, fresh, and no jump.
 
@@ -57,6 +61,11 @@ class JumpValidator:
     def restart(self) -> None:
         """The next command must start where the joints are."""
         self._last = None
+
+    def refusal(self, reason: str, receipt: float) -> Refused:
+        """Of a command that comes while none are taken: Overtaken where one just was."""
+        is_of_stream = receipt - self._last_at <= self._deadline
+        return Overtaken(reason) if is_of_stream else Refused(reason)
 
     def take(
         self, target: Array, stamp: float | None, receipt: float, present: Array | None

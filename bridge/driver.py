@@ -3,6 +3,7 @@
 No ROS, no thread, no port, no clock: decoded values and times in, values out.
 """
 
+import math
 from collections.abc import Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
@@ -25,7 +26,6 @@ from bridge.link_monitor import JointTable, LinkMonitor, MachineStatus
 from bridge.protocol import Arm, Clear, Command, Disarm, Stop
 from bridge.servo_config import BoardConfig
 from bridge.session import Session
-from manipulator.errors import Refused
 from manipulator.states import MachineState
 
 SERVOS_ON = (MachineState.HOLDING, MachineState.UNCLAIMED, MachineState.PLAYING)
@@ -104,7 +104,7 @@ class BoardDriver:
         stamp: by the sender's clock, s; None means "now". A gripper that it does not name goes on
         as it was requested.
         """
-        self._refuse_unless_enabled()
+        self._refuse_unless_enabled(now)
         present = None if self.monitor.joints is None else self.monitor.joints.positions
         names, positions = self._gripper.joined((names, positions), now, present)
         setpoint = self.validator.admit(names, positions, stamp, now + self._epoch, present)
@@ -153,15 +153,18 @@ class BoardDriver:
     def _request(self, command: Command, done: str) -> Request:
         return Request(done, self.link.request(command))
 
-    def _refuse_unless_enabled(self) -> None:
-        """What comes after a refusal, or after an answer, must start where the joints are."""
+    def _refuse_unless_enabled(self, now: float = math.inf) -> None:
+        """What comes after a refusal, or after an answer, must start where the joints are.
+
+        now: of a joint command, which may be Overtaken.
+        """
         is_enabled = self.monitor.is_enabled_here and self.session.accepts_setpoints
         if self._must_restart or not is_enabled:
             self._must_restart = False
             self.validator.restart()
             self._gripper.restart()
         if not is_enabled:
-            raise Refused(self._why_not_enabled())
+            raise self.validator.refusal(self._why_not_enabled(), now + self._epoch)
 
     def _why_not_enabled(self) -> str:
         current = self.monitor.status

@@ -70,7 +70,7 @@ class TopicDriver:
         """
         state = self.status(now).state
         if state not in (MachineState.ENABLED, MachineState.HOLDING):
-            raise Refused(str(state))
+            raise self.validator.refusal(str(state), now + self._epoch)
         target = self.validator.ordered(names, positions)
         self._check_range(target)
         self.validator.take(target, stamp, now + self._epoch, self.joints)

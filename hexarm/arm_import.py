@@ -28,6 +28,8 @@ CREDIBLE_SPEED, CREDIBLE_TORQUE = (0.1, 5000.0), (0.001, 10_000.0)
 """deg/s and N·m; others were filled in for form's sake."""
 ONSET = 0.08
 """The singular value below which a posture is near to singular."""
+FREE = 1e-9
+"""The singular value below which a posture is singular, but for roundings."""
 WELL = 0.6
 """Of the largest one, that of a posture that will do for home."""
 BENDS = tuple(math.radians(angle) for angle in (0, 30, -30, 60, -60, 90, -90))
@@ -239,6 +241,7 @@ def posture(chain: Chain, low: Array, high: Array, length: float) -> Array:
 
     Of those whose tool and joints are above the base plane, where there are any; within low and
     high (6,), and not at their ends. length (m): what one radian counts.
+    Raises ConfigError where all are singular.
     """
     ends = zip(low.tolist(), high.tolist(), strict=True)
     rest = np.array([0.0 if a <= 0.0 <= b else (a + b) / 2 for a, b in ends])
@@ -248,7 +251,15 @@ def posture(chain: Chain, low: Array, high: Array, length: float) -> Array:
     sigma = chain.sigma_min(postures, length)
     is_above = _lowest(chain, postures) >= min(0.0, float(chain.points[:, 2].min()))
     allowed = is_above if (sigma[is_above] >= ONSET).any() else np.ones_like(is_above)
-    fitting = allowed & (sigma >= WELL * sigma[allowed].max())
+    best = sigma[allowed].max()
+    if best < FREE:
+        raise ConfigError(
+            [
+                'geometry: some motion of the tool is impossible in every posture that was tried: '
+                'are axes that should turn apart, as by alpha, all parallel or in one line?'
+            ]
+        )
+    fitting = allowed & (sigma >= WELL * best)
     nearest: Array = postures[fitting][np.abs(bends[fitting]).sum(axis=1).argmin()]
     return nearest
 

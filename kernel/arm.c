@@ -2,6 +2,7 @@
 
 #include "general.h"
 #include "numerical.h"
+#include "se3.h"
 #include "vector.h"
 
 /* Of descent: from anywhere, and from the branches of the ideal arm. */
@@ -13,7 +14,7 @@ enum { MOST_SEARCHES = 50 };
 /* Radians between two solutions of one branch that were found from different starts. */
 #define SAME REAL(1e-6)
 
-/* Whether the links, all in one line, come to a place: section 6. */
+/* Whether the links, all in one line, come to a place: 6.2. */
 static int is_within_reach(const struct chain *chain, const real place[3])
 {
     real reach = 0, away[3];
@@ -28,6 +29,7 @@ static int is_within_reach(const struct chain *chain, const real place[3])
     return real_sqrt(dot3(away, away)) <= reach * (1 + REAL(1e-9));
 }
 
+/* Whether joints are those of a branch, whole turns aside. */
 static int is_known(real (*branches)[JOINTS], int count, const real joints[JOINTS])
 {
     for (int k = 0; k < count; k++) {
@@ -58,13 +60,13 @@ static int found_from(const struct arm *arm, const struct frame *pose, const rea
     return count + 1;
 }
 
-/* Branches come in pairs; of an arm that mirrors them in two pairs at once. */
-static int has_odd(const struct arm *arm, int count)
+/* Whether branches are missing for certain: they come in pairs, mirrored ones in fours: 6.1. */
+static int is_incomplete(const struct arm *arm, int count)
 {
     return count % (arm->mirror.joint < 0 ? 2 : 4) != 0;
 }
 
-/* Of every branch its mirror image, too. */
+/* Of every branch its mirror image, too: 6.1. */
 static int with_images(const struct arm *arm, const struct frame *pose,
                        real branches[MOST_BRANCHES][JOINTS], int count)
 {
@@ -79,6 +81,7 @@ static int with_images(const struct arm *arm, const struct frame *pose,
     return count;
 }
 
+/* Of every branch, those added here included, its partner beyond the fold, too: 6.1. */
 static int with_folds(const struct arm *arm, const struct frame *pose,
                       real branches[MOST_BRANCHES][JOINTS], int count)
 {
@@ -108,6 +111,7 @@ static void cold_start(const struct ranges *ranges, int k, real start[JOINTS])
     }
 }
 
+/* By damped steps from all over the ranges: 6.2. */
 static int from_spread_starts(const struct arm *arm, const struct frame *pose,
                               real branches[MOST_BRANCHES][JOINTS], int count)
 {
@@ -119,6 +123,7 @@ static int from_spread_starts(const struct arm *arm, const struct frame *pose,
     return count;
 }
 
+/* By damped steps from the branches of the arm that this one almost is: 6.4. */
 static int from_ideal(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
                       real branches[MOST_BRANCHES][JOINTS], int count)
 {
@@ -130,8 +135,8 @@ static int from_ideal(const struct arm *arm, const struct frame *pose, const rea
     return count;
 }
 
-/* From one loop after another, until one is certain, or adds nothing to what was found otherwise.
-   If none is, two branches that almost meet may have been taken for none. */
+/* From one loop after another, until one is certain, or adds nothing to what was found otherwise:
+   6.1. If none is, two branches that almost meet may have been taken for none. */
 static int from_elimination(const struct arm *arm, const struct frame *pose,
                             real branches[MOST_BRANCHES][JOINTS], int count)
 {
@@ -145,12 +150,13 @@ static int from_elimination(const struct arm *arm, const struct frame *pose,
             count = found_from(arm, pose, candidates[k], FEW_STEPS, branches, count);
         count = with_images(arm, pose, branches, count);
         is_done = (are_certain || ((n > 0 || has_others) && count == before))
-                  && !has_odd(arm, count);
+                  && !is_incomplete(arm, count);
     }
     int is_sure = is_done && (are_certain || has_others);
     return is_sure ? count : with_folds(arm, pose, branches, count);
 }
 
+/* All branches of an arm without a closed form: 6.1, 6.2 and 6.4. */
 static int from_anywhere(const struct arm *arm, const struct frame *pose, const real near[JOINTS],
                          real branches[MOST_BRANCHES][JOINTS])
 {
@@ -160,7 +166,7 @@ static int from_anywhere(const struct arm *arm, const struct frame *pose, const 
     if ((int)arm->closes == ALMOST_CLOSED)
         count = from_ideal(arm, pose, near, branches, count);
     count = from_elimination(arm, pose, branches, count);
-    return arm->loops[0] < 0 || has_odd(arm, count)
+    return arm->loops[0] < 0 || is_incomplete(arm, count)
                ? from_spread_starts(arm, pose, branches, count)
                : count;
 }
@@ -200,7 +206,7 @@ void arm_miss(const struct arm *arm, const struct frame *pose, real miss[6])
             posture there;
             least = left;
             chain_posture(&arm->chain, joints, &there);
-            twist_to_pose(&there.tool, pose, miss);
+            se3_twist(&there.tool, pose, miss);
         }
     }
 }
@@ -209,7 +215,7 @@ void arm_along(const struct arm *arm, const real (*positions)[3], const real (*r
                long count, const real near[JOINTS], real (*joints)[JOINTS])
 {
     real last[JOINTS], ahead[JOINTS], branches[MOST_BRANCHES][JOINTS];
-    int searches = 0, moves = 0;
+    int searches = 0, has_speed = 0;
     for (int i = 0; i < JOINTS; i++)
         last[i] = ahead[i] = near[i];
     for (long n = 0; n < count; n++) {
@@ -218,21 +224,21 @@ void arm_along(const struct arm *arm, const real (*positions)[3], const real (*r
             pose.rotation[i] = rotations[n][i];
         for (int i = 0; i < 3; i++)
             pose.position[i] = positions[n][i];
-        int closes = (int)arm->closes != CLOSED && searches <= MOST_SEARCHES
+        int is_found = (int)arm->closes != CLOSED && searches <= MOST_SEARCHES
                      && continue_nearby(&arm->chain, arm->length, &pose, ahead, joints[n]);
-        if (!closes && ((int)arm->closes == CLOSED || searches++ < MOST_SEARCHES)) {
-            int found = arm_branches(arm, &pose, last, branches);
-            closes = continued(branches, found, ahead, joints[n]);
+        if (!is_found && ((int)arm->closes == CLOSED || searches++ < MOST_SEARCHES)) {
+            int known = arm_branches(arm, &pose, last, branches);
+            is_found = continued(branches, known, ahead, joints[n]);
         }
         /* Where joints go on to at their speed: beside postures where two branches meet only the
            motion tells them apart. What precedes the row, or a gap in it, may be far: no speed. */
         for (int i = 0; i < JOINTS; i++) {
-            if (!closes)
+            if (!is_found)
                 joints[n][i] = (real)NAN;
-            real step = closes && moves ? joints[n][i] - last[i] : 0;
-            last[i] = closes ? joints[n][i] : last[i];
+            real step = is_found && has_speed ? joints[n][i] - last[i] : 0;
+            last[i] = is_found ? joints[n][i] : last[i];
             ahead[i] = last[i] + step;
         }
-        moves = closes;
+        has_speed = is_found;
     }
 }

@@ -2,7 +2,7 @@
 
 #include "trigonometry.h"
 
-/* What a radian outside the range costs against a squared radian of distance. */
+/* What a radian outside the range costs against a squared radian of distance: (11.1). */
 #define OUTSIDE_COST REAL(1e6)
 /* So much beyond its range, in rad, an angle counts as at its end. */
 #define ROUNDING REAL(1e-12)

@@ -1,5 +1,5 @@
 /* Choosing among the branches of an inverse, by whole turns, joint ranges and nearness:
-   docs/arm-kinematics.md, 4 to 6. */
+   docs/arm-kinematics.md, 11. */
 #pragma once
 #include "chain.h"
 
@@ -18,7 +18,7 @@ int are_within(const struct ranges *ranges, const real joints[JOINTS]);
 
 /* Which of the unwrapped branches to take, -1 where all are NaN: those within the ranges come
    first, then the nearest. Joints beyond their range by no more than `near` is count as inside: an
-   arm that stands there stays on its branch. */
+   arm that stands there stays on its branch. (11.1). */
 int nearest_branch(const struct ranges *ranges, const real near[JOINTS],
                    real (*branches)[JOINTS], int count);
 

@@ -38,7 +38,7 @@ static real point_distance(const real point[3], const real segment[6])
     return gap(point, foot);
 }
 
-/* Between the lines where they come nearest within both segments; else infinite. */
+/* Between the lines where they come nearest within both segments, (11.1); else infinite. */
 static real crossing_distance(const real first[6], const real second[6])
 {
     real u[3], v[3], w[3], a[3], b[3];

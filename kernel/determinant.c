@@ -105,7 +105,7 @@ void determinant_series(six_equations six, struct series *series)
 }
 
 /* Newton's method on "the matrix is singular": with M v = 0 wanted, M u = M' v gives the step
-   -1/(v.u), and u is the next v. */
+   -1/(v.u), and u is the next v. Step 0 only finds v, by inverse iteration. */
 void refine(six_equations six, real room, real *q3, real v[SIZE])
 {
     const int steps = room < REAL(0.1) ? 3 : 2;
@@ -169,7 +169,8 @@ static void null_pair(six_equations six, real q3, real pair[2][SIZE])
 }
 
 /* Where two branches have almost the same q3, each one's powers are a mixture w of the pair: those
-   from x on are x times those from 1 on, so that w is an eigenvector of G^-1 H. How many are. */
+   from x = tan(q4/2) on are x times those from 1 on, so that w is an eigenvector of A = G^-1 H, at
+   right angles to the rows of A - x 1, of which the longer is taken. How many there are. */
 int separated(six_equations six, real q3, real powers[2][SIZE])
 {
     real pair[2][SIZE], g[2][2], h[2][2], a[2][2];

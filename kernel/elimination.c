@@ -1,23 +1,12 @@
 #include "elimination.h"
 
+#include "se3.h"
 #include "subproblems.h"
 
 static void displaced(const struct frame *moved, const struct axis *axis, struct axis *there)
 {
     rotate3(moved->rotation, axis->direction, there->direction);
     moved_point(moved, axis->point, there->point);
-}
-
-static void turn_round(struct frame *moved)
-{
-    const struct frame there = *moved;
-    for (int i = 0; i < 3; i++) {
-        moved->position[i] = 0;
-        for (int k = 0; k < 3; k++) {
-            moved->rotation[3 * i + k] = there.rotation[3 * k + i];
-            moved->position[i] -= there.rotation[3 * k + i] * there.position[k];
-        }
-    }
 }
 
 int loop_joint(int loop, int n)
@@ -35,7 +24,7 @@ static void make_loop(const struct chain *chain, real length, int which, const s
     for (int i = 0; i < 3; i++)
         loop->moved.position[i] /= length;
     if (which >= JOINTS)
-        turn_round(&loop->moved);
+        loop->moved = inverted(&loop->moved);
     for (int n = 0; n < JOINTS; n++) {
         int k = loop_joint(which, n);
         struct axis axis;

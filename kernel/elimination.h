@@ -1,7 +1,5 @@
-/* Six equations for three of six joints: docs/arm-kinematics.md, (6.1) to (6.3). */
-#ifndef KERNEL_ELIMINATION_H
-#define KERNEL_ELIMINATION_H
-
+/* Six equations for three of six joints: docs/arm-kinematics.md, 6.1, (6.1) to (6.3). */
+#pragma once
 #include "chain.h"
 
 enum { EQUATIONS = 14, UNKNOWN = 8, REMAINING = EQUATIONS - UNKNOWN, POWERS = 9 };
@@ -38,5 +36,3 @@ int loop_joint(int loop, int n);
    the rows before a triangle for them; and those six. */
 void eliminate_two(const struct chain *chain, real length, int which, const struct frame *pose,
                    struct loop *loop, struct equations *equations, six_equations six);
-
-#endif

@@ -1,4 +1,4 @@
-/* All branches of any six joints, by elimination: docs/arm-kinematics.md, 6. */
+/* All branches of any six joints, by elimination: docs/arm-kinematics.md, 6.1. */
 #pragma once
 #include "chain.h"
 

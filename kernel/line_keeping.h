@@ -13,7 +13,7 @@ struct decomposed {
 void decompose(const struct chain *chain, real length, const real joints[JOINTS],
                struct decomposed *at);
 
-/* The tool's acceleration at constant joint rates, the J' q' of 8.1. */
+/* The tool's acceleration at constant joint rates, the J' q' of 8.1: (8.2). */
 void turning(const struct decomposed *at, const real rates[JOINTS], real acceleration[6]);
 
 /* What a twist needs of the joints: see `LineRates` in arm_control/line_keeping.py. */

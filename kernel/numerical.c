@@ -9,14 +9,12 @@
 #define FARTHEST REAL(0.3)
 #define CONVERGED REAL(1e-12)
 #define ARRIVED REAL(1e-11)
+/* Damping at the target, where equations may be singular, and the most, far from it. */
+#define LEAST_DAMPING REAL(1e-12)
+#define MOST_DAMPING REAL(0.1)
 /* A start whose error is still more than this part of what it was ten steps ago is given up. */
 #define STALLED REAL(0.9)
 enum { NEARBY_STEPS = 4, DAMPED_STEPS = 12, LOOK_BACK = 10 };
-
-void twist_to_pose(const struct frame *here, const struct frame *pose, real twist[6])
-{
-    se3_twist(here, pose, twist);
-}
 
 static real largest(const real a[JOINTS], const real b[JOINTS])
 {
@@ -45,7 +43,7 @@ static int newton_nearby(const struct chain *chain, const struct frame *pose,
         real error[6], jacobian[6][JOINTS];
         posture here;
         chain_posture(chain, joints, &here);
-        twist_to_pose(&here.tool, pose, error);
+        se3_twist(&here.tool, pose, error);
         real away = largest(error, NOTHING);
         if (away < CONVERGED)
             return 1;
@@ -68,7 +66,7 @@ real descend_joints(const struct chain *chain, const struct frame *pose, real le
         real error[6], jacobian[6][JOINTS], change[JOINTS], square = 0;
         posture here;
         chain_posture(chain, joints, &here);
-        twist_to_pose(&here.tool, pose, error);
+        se3_twist(&here.tool, pose, error);
         for (int i = 0; i < 6; i++) {
             error[i] /= i < 3 ? length : 1;
             square += error[i] * error[i];
@@ -81,8 +79,8 @@ real descend_joints(const struct chain *chain, const struct frame *pose, real le
             last = size;
         chain_jacobian(&here, jacobian);
         scale_jacobian(length, jacobian);
-        real damping = square / 2 < REAL(0.1) ? square / 2 : REAL(0.1);
-        damped6(jacobian, damping + CONVERGED, error, change);
+        real damping = square / 2 < MOST_DAMPING ? square / 2 : MOST_DAMPING;
+        damped6(jacobian, damping + LEAST_DAMPING, error, change);
         for (int i = 0; i < JOINTS; i++)
             joints[i] += change[i];
     }
@@ -97,13 +95,14 @@ static void scaled_jacobian(const struct chain *chain, real length, const real j
     scale_jacobian(length, jacobian);
 }
 
-/* Along the lost direction the error is sigma t + c t^2/2: zero here, and again at -2 sigma/c. */
+/* Along the lost direction v the error is sigma t + c t^2/2: zero here, and again at -2 sigma/c.
+   c = u . J'(v) v by central differences of J, u the direction of the twist that is lost. */
 void beyond_fold(const struct chain *chain, real length, const real joints[JOINTS],
                  real beyond[JOINTS])
 {
-    const real h = REAL(1e-3);
+    const real h = REAL(1e-3); /* rad */
     struct svd6 parts;
-    real jacobian[6][JOINTS], curve = 0;
+    real jacobian[6][JOINTS], c = 0;
     scaled_jacobian(chain, length, joints, jacobian);
     svd6(jacobian, &parts);
     for (int side = -1; side <= 1; side += 2) {
@@ -111,9 +110,9 @@ void beyond_fold(const struct chain *chain, real length, const real joints[JOINT
             beyond[i] = joints[i] + (real)side * h * parts.right[5][i];
         scaled_jacobian(chain, length, beyond, jacobian);
         for (int i = 0; i < 6; i++)
-            curve += parts.left[i][5] * dot6(jacobian[i], parts.right[5]) * (real)side / (2 * h);
+            c += parts.left[i][5] * dot6(jacobian[i], parts.right[5]) * (real)side / (2 * h);
     }
-    real along = -2 * parts.sigma[5] / curve;
+    real along = -2 * parts.sigma[5] / c;
     for (int i = 0; i < JOINTS; i++)
         beyond[i] = joints[i] + along * parts.right[5][i];
 }

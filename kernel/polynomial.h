@@ -1,4 +1,4 @@
-/* The roots of a sum of sines and cosines: docs/arm-kinematics.md, 6. */
+/* The roots of a sum of sines and cosines: docs/arm-kinematics.md, 6.1. */
 #pragma once
 #include "real.h"
 

@@ -1,6 +1,8 @@
 /* The kernel as the Python module manipulator._kernel. */
 #include "python.h"
 
+#include <stdint.h>
+
 enum { RELEASE_FROM = 64 /* items from which on other threads may run */ };
 
 static const PyObject *numpy_ndarray;
@@ -18,7 +20,7 @@ static int is_plain(const struct ndarray *array, int is_written)
 {
     const int flags = is_written ? ARRAY_IS_DENSE | ARRAY_IS_WRITABLE : ARRAY_IS_DENSE;
     return array->object.type == numpy_ndarray && (array->flags & flags) == flags
-           && array->type->letter == 'd' && array->type->byte_order == '=';
+           && array->type->letter == 'd' && array->type->byte_order != BYTES_ARE_SWAPPED;
 }
 
 /* The array's length in bytes; -1 where it is of no use. What is no plain array is asked for its
@@ -41,10 +43,11 @@ static Py_ssize_t open_array(const struct function *f, int index, PyObject *obje
         return -1;
     to->held++;
     to->arrays[index] = buffer->buf;
-    if (buffer->format[0] == 'd' && buffer->format[1] == 0)
+    if (buffer->format[0] == 'd' && buffer->format[1] == 0
+        && (uintptr_t)buffer->buf % sizeof(real) == 0)
         return buffer->len;
-    PyErr_Format(PyExc_TypeError, "%s: array %d holds '%s', not float64", f->method.name, index + 1,
-                 buffer->format);
+    PyErr_Format(PyExc_TypeError, "%s: array %d holds '%s', not aligned float64", f->method.name,
+                 index + 1, buffer->format);
     return -1;
 }
 
@@ -53,8 +56,8 @@ static int fits(const struct function *f, int index, Py_ssize_t length, Py_ssize
 {
     Py_ssize_t needed = f->arrays[index].numbers, size = (Py_ssize_t)sizeof(real);
     if (f->arrays[index].kind != WHOLE) {
-        if (*items < 0) /* a division takes longer than all the rest */
-            *items = length == needed * size ? 1 : length / (needed * size);
+        if (*items < 0) /* part of one needs all of it; a division takes longer than all the rest */
+            *items = length == needed * size ? 1 : (length / size + needed - 1) / needed;
         needed *= *items;
     }
     if (length == needed * size)

@@ -29,6 +29,8 @@ struct ndarray {
 };
 
 enum { ARRAY_IS_DENSE = 0x101 /* C-contiguous and aligned */, ARRAY_IS_WRITABLE = 0x400 };
+/* Bytes in the other order than this computer's; its own is '=', or named. */
+enum { BYTES_ARE_SWAPPED = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? '>' : '<' };
 
 typedef struct {
     void *buf;

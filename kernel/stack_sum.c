@@ -83,7 +83,7 @@ real stack_sum(const struct stack *stack, const struct frame *end, const real *f
 }
 
 /* How the last section's platform moves on its base, in the base's axes, as a free twist of section
-   i carries that base; the platform stands still with the end. */
+   i carries that base; the platform stands still with the end: (9.3). */
 static void put_carried(const struct stack *stack, const struct stack_placed *p, int i,
                         const real *free, real carried[6][FREE])
 {

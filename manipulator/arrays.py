@@ -16,10 +16,14 @@ def frozen(values: ArrayLike) -> Array:
     return array
 
 
-def stretched(values: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """float64 values broadcast to a shape, C-contiguous and aligned as the kernel needs them."""
+def adjacent(values: ArrayLike) -> Array:
+    """float64 values, C-contiguous and aligned as the kernel needs them: copied if not so."""
     array = np.asarray(values, dtype=np.float64)
-    if array.shape != shape:
-        array = np.broadcast_to(array, shape)
     flags = array.flags
     return array if flags.c_contiguous and flags.aligned else array.copy(order='C')
+
+
+def stretched(values: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """As `adjacent`, broadcast to a shape."""
+    array = np.asarray(values, dtype=np.float64)
+    return adjacent(array if array.shape == shape else np.broadcast_to(array, shape))

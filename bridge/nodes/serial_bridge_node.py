@@ -17,6 +17,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 from bridge.calibration import Calibration
+from bridge.command_validator import Overtaken
 from bridge.driver import BoardDriver, Request
 from bridge.link_thread import LinkThread, SerialPort
 from bridge.nodes.board_topics import LEVELS, BoardTopics
@@ -146,6 +147,8 @@ class SerialBridge(Node):
             message, self._command_at = self._commands.popleft()
             try:
                 self._take_command(message, self._command_at)
+            except Overtaken as error:
+                self.get_logger().debug(f'joint_command refused: {error}')
             except ManipulatorError as error:
                 self._refuse_command(error)
 

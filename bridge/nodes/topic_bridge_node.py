@@ -14,6 +14,7 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 
+from bridge.command_validator import Overtaken
 from bridge.driver import MachineReport
 from bridge.link_monitor import JointTable, MachineStatus
 from bridge.nodes.board_topics import LEVELS, BoardTopics
@@ -109,6 +110,8 @@ class TopicBridge(Node):
                     command = joint_message(joints, self._driver.names, message.header.stamp)
                     self._sent.publish(command)
                 self._publish_state(now)
+        except Overtaken as error:
+            self.get_logger().debug(f'joint_command refused: {error}')
         except ManipulatorError as error:
             self._on_bad_command(error)
 

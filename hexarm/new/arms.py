@@ -58,10 +58,9 @@ def _geometry(m: Measures, ends: Array) -> tuple[dict[str, Any], float]:
     geometry = {key: table, 'tool_mm': m['tool_mm'], 'home_deg': [0.0] * 6}
     chain = placed(build(schema, geometry, 'geometry').chain())
     length = LENGTH_SHARE * reach_of(chain)
-    home = m['home_deg']
-    if home == 'auto':
-        low, high = np.radians(ends).T
-        home = np.round(np.degrees(posture(chain, low, high, length)), 3).tolist()
+    low, high = np.radians(ends).T
+    chosen = np.round(np.degrees(posture(chain, low, high, length)), 3).tolist()
+    home = chosen if m['home_deg'] == 'auto' else m['home_deg']
     return {**geometry, 'home_deg': home}, length
 
 

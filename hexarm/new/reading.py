@@ -29,7 +29,7 @@ def table(parse_row: Parse, count: int) -> Parse:
         rows = value.strip().strip(';').split(';') if isinstance(value, str) else value
         if not isinstance(rows, Sequence) or len(rows) != count:
             found = f'{len(rows)} rows' if isinstance(rows, Sequence) else shown(value)
-            raise InvalidInput(f'{found}, needs {count} rows: x y z; x y z; …')
+            raise InvalidInput(f'{found}, needs {count}, in a list or with semicolons')
         return [_row(parse_row, k, row) for k, row in enumerate(rows, start=1)]
 
     return parse

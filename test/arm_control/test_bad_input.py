@@ -31,12 +31,14 @@ def test_arrays_in_any_order_of_memory_give_what_contiguous_ones_give(arm):
     assert np.array_equal(one, all_of_them[1], equal_nan=True)
 
 
-def test_integers_lists_and_read_only_arrays_are_joints_too(arm):
+def test_integers_lists_read_only_and_misaligned_arrays_are_joints_too(arm):
     zeros = np.zeros(6)
     zeros.flags.writeable = False
-    for joints in (np.zeros(6, dtype=np.int64), [0] * 6, np.zeros(6, dtype=np.float32), zeros):
+    misaligned = np.frombuffer(bytes(49), offset=1)
+    singles, integers = np.zeros(6, dtype=np.float32), np.zeros(6, dtype=np.int64)
+    for joints in (integers, [0] * 6, singles, zeros, misaligned):
         assert np.array_equal(arm.forward(joints).pose.position, arm.chain.home.position)
-        assert np.array_equal(arm.chain.jacobian(joints), arm.chain.jacobian(np.zeros(6)))
+        assert np.array_equal(arm.jacobian(arm.home, joints), arm.chain.jacobian(np.zeros(6)))
         assert np.isfinite(arm.inverse(arm.home, joints)).all()
 
 

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from bridge.command_validator import Overtaken
 from bridge.driver import BoardDriver
 from bridge.fake.board_thread import FakeMachine
 from bridge.framing import FrameReader
@@ -134,6 +135,21 @@ def test_a_command_while_a_stop_is_in_progress_reports_that(enabled):
     enabled.driver.session.is_stop_requested = True
     with pytest.raises(Refused, match=r'^a STOP is in progress$'):
         enabled.command(enabled.park)
+
+
+def test_what_a_stop_overtakes_is_told_from_what_is_sent_after_it(enabled):
+    rig = enabled
+    rig.command(rig.park)
+    rig.driver.stop()
+    with pytest.raises(Overtaken, match=r'^a STOP is in progress$'):
+        rig.command(rig.park)
+    rig.run(0.1)
+    with pytest.raises(Overtaken, match=r'^stopped '):
+        rig.command(rig.park)
+    rig.run(0.2)
+    with pytest.raises(Refused) as refusal:
+        rig.command(rig.park)
+    assert refusal.type is Refused
 
 
 def test_from_the_moment_a_stop_is_asked_for_no_command_is_admitted(enabled):

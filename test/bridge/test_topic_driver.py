@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bridge.command_validator import Overtaken
 from bridge.topic_driver import TopicDriver
 from hexarm.machines import load
 from manipulator.errors import InvalidInput, ManipulatorError, Refused
@@ -81,8 +82,12 @@ def test_a_stop_is_latched_until_it_is_cleared_whatever_comes(bridged):
     bridged.command(START)
     bridged.driver.stop()
     assert bridged.state == 'stopped'
-    with pytest.raises(Refused, match='stopped'):
+    with pytest.raises(Overtaken, match='stopped'):
         bridged.command(START)
+    bridged.wait(0.5)
+    with pytest.raises(Refused, match='stopped') as refusal:
+        bridged.command(START)
+    assert refusal.type is Refused
     with pytest.raises(Refused, match='stopped: until'):
         bridged.enable()
     bridged.driver.clear_fault(bridged.now)

@@ -49,6 +49,17 @@ def test_every_command_is_in_bin(scratch, executables):
     assert executables <= {file.name for file in (scratch / 'bin').iterdir()}
 
 
+def test_a_type_checker_is_told_that_the_packages_are_typed(scratch):
+    (packages,) = scratch.glob('lib/python3*/site-packages')
+    marked = {file.parent.name for file in packages.glob('*/py.typed')}
+    assert marked == {'manipulator', 'hexapod_control', 'arm_control', 'bridge', 'hexarm'}
+
+
+def test_the_page_of_a_package_index_is_the_readme(scratch, source):
+    (metadata,) = scratch.glob('lib/python3*/site-packages/hexarm-*.dist-info/METADATA')
+    assert metadata.read_text().endswith((source / 'README.md').read_text())
+
+
 def test_machine_files_are_found_in_the_environment(scratch, machines, run, nowhere):
     answer = json.loads(run(scratch / 'bin' / 'hexarm', 'machines', '--json', **nowhere))
     assert {entry['name'] for entry in answer['machines']} == machines

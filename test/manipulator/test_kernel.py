@@ -47,6 +47,7 @@ def test_every_function_takes_as_many_arrays_as_are_declared():
         np.zeros((3, 6))[:, ::2],
         np.zeros((3, 4)).T[:3],
         misaligned(9),
+        memoryview(bytes(73))[1:].cast('d'),
         np.zeros(8),
         np.zeros(18),
         [0.0] * 9,
@@ -62,7 +63,13 @@ def test_what_is_not_nine_adjacent_doubles_is_rejected(array):
 
 
 @pytest.mark.parametrize(
-    'matrix', [packed('d', np.eye(3).ravel()), np.eye(3).view(np.recarray), memoryview(np.eye(3))]
+    'matrix',
+    [
+        packed('d', np.eye(3).ravel()),
+        np.eye(3).view(np.recarray),
+        memoryview(np.eye(3)),
+        np.eye(3).view(np.dtype('f8').newbyteorder('little')),
+    ],
 )
 def test_other_buffers_of_doubles_are_read_as_arrays_are(matrix):
     vector = np.full(3, 7.0)
@@ -70,6 +77,12 @@ def test_other_buffers_of_doubles_are_read_as_arrays_are(matrix):
     assert (vector == 0.0).all()
     with pytest.raises(ValueError, match='array 2 has 9 numbers, needs 27'):
         _kernel.rotation_exp(matrix, np.zeros(9))
+
+
+def test_part_of_an_item_lacks_the_rest_of_it():
+    for numbers, needed in ((1, 3), (5, 6)):
+        with pytest.raises(ValueError, match=f'array 1 has {numbers} numbers, needs {needed}'):
+            _kernel.rotation_exp(np.zeros(numbers), np.zeros(9))
 
 
 def test_nothing_is_written_where_nothing_may_be():

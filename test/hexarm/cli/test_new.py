@@ -214,6 +214,9 @@ def test_everything_that_is_wrong_is_named_at_once():
         (STEWART | {'retracted_mm': 10, 'stroke_mm': 20}, 'leg 1 has 69.6 mm from joint to joint'),
         (STEWART | {'platform_angles_deg': 50}, 'no leg lengths fix a pose'),
         (UR5 | {'servo': 'SG90', 'servo_speed_deg_s': None}, 'the servo turns 180° at most'),
+        (UR5 | {'dh_table': TABLE[:5]}, 'dh_table: 5 rows, needs 6, in a list or with semicolons'),
+        (UR5 | {'dh_table': [[a, 0, d] for a, _, d in TABLE]}, 'in every posture .* all parallel'),
+        (UR5 | {'dh_table': [[0, 0, 9]] * 6, 'home_deg': [0] * 6}, 'in every posture that was'),
     ],
     ids=lambda value: value if isinstance(value, str) else '',
 )
