@@ -10,8 +10,7 @@ from typing import TypeAlias
 
 PROTOCOL_VERSION = 1
 MAX_JOINTS = 18
-"""As many as a STATE of 63 bytes holds. The chip has fewer, as
-hexarm/board/header.py says."""
+"""As many as a STATE of 63 bytes holds. The chip has fewer channels: hexarm/board/header.py."""
 MIN_DEADLINE_MS, MAX_DEADLINE_MS = 1, 2000
 
 

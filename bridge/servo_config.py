@@ -70,7 +70,9 @@ class ServoConfig:
 class ServosConfig:
     """All servos of a machine; lists follow the order of `joints`."""
 
-    joints: tuple[ServoConfig, ...] = key('one for each channel, 1 to 8')
+    joints: tuple[ServoConfig, ...] = key(
+        f'one for each channel, 1 to {MAX_JOINTS}; the Mega has 8'
+    )
     speed_deg_s: float | None = quantity(*RATE, 'of the servos without load', default=None)
     speed_mm_s: float | None = quantity(*RATE, 'likewise, of linear ones', default=None)
     park_deg: tuple[float, ...] | None = quantity(-720, 720, PARK, default=None)
@@ -136,8 +138,7 @@ class LinkConfig:
 
 @dataclass(frozen=True)
 class SimulationConfig:
-    """What the fake board's servos and battery do; joints: what the board
-    reports of them.
+    """What the fake board's servos and battery do; joints: what the board reports of them.
 
     drives: servos, each at its own full speed, or steppers, which interpolate together.
     """
