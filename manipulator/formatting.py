@@ -22,7 +22,7 @@ def length(metres: float, digits: int = 4) -> str:
 
 def plain(value: float, digits: int = 4) -> str:
     """With so many digits that count, without powers of ten and zeros at the end."""
-    return f'{float(f"{value:.{digits}g}"):.10f}'.rstrip('0').rstrip('.')
+    return f'{round(float(f"{value:.{digits}g}"), 10) + 0.0:.10f}'.rstrip('0').rstrip('.')
 
 
 def told_apart(numbers: Iterable[float], fewest: int = 6) -> list[str]:

@@ -19,8 +19,8 @@ SixNumbers: TypeAlias = tuple[float, float, float, float, float, float]
 
 
 SPEED_NAMES = (
-    *('platform speed', 'turning speed'),
-    *(f'{kind} {axis} speed' for kind in ('platform', 'turning') for axis in 'xyz'),
+    *('linear speed', 'turning speed'),
+    *(f'{kind} {axis} speed' for kind in ('linear', 'turning') for axis in 'xyz'),
 )
 """Of all of the platform or tool, then along and about each axis."""
 

@@ -116,7 +116,7 @@ def limit_utilisation(
     readings = {
         **dict(zip(SPEED_NAMES, limits.speed_shares(part.state.twist).T, strict=True)),
         **_of_joints('speed', names, speed, limits.joint.speed),
-        'platform acceleration': np.sqrt(
+        'linear acceleration': np.sqrt(
             _norms(part.state.acceleration[:, :3]) / limits.linear.acceleration
         ),
         'turning acceleration': np.sqrt(

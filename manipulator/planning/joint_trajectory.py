@@ -10,6 +10,7 @@ import numpy as np
 
 from manipulator.arrays import Array, frozen
 from manipulator.errors import NoSolution, Refused
+from manipulator.formatting import plain
 from manipulator.machine import Machine
 from manipulator.planning.check import check_plan
 from manipulator.planning.joint_curve import (
@@ -103,8 +104,8 @@ def _check_begin(machine: Machine, start: JointStart, points: JointPoints) -> No
     k = int(np.argmax(away))
     if away[k] > 0.0:
         raise Refused(
-            f'{kinematics.joint_names[k]} is at {start.joints[k]:.4g} {kinematics.joint_unit}, '
-            f'the trajectory begins at {points.positions[0, k]:.4g} {kinematics.joint_unit}: '
+            f'{kinematics.joint_names[k]} is at {plain(start.joints[k])} {kinematics.joint_unit}, '
+            f'the trajectory begins at {plain(points.positions[0, k])} {kinematics.joint_unit}: '
             f'at most {start.tolerance[k]:.2g} {kinematics.joint_unit} away'
         )
     moving = np.zeros(1) if points.velocities is None else np.abs(points.velocities[0])

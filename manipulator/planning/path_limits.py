@@ -119,7 +119,7 @@ def path_limits(machine: Machine, path: Path, nodes: Array, near: Array) -> Path
     names = machine.kinematics.joint_names
     bounded: tuple[_AxisLimit | _NormLimit, ...] = (
         _AxisLimit(rates, names, limits.joint),
-        _NormLimit(twist[:, :3], 'platform', limits.linear),
+        _NormLimit(twist[:, :3], 'linear', limits.linear),
         _NormLimit(twist[:, 3:], 'turning', limits.angular),
         *_axis_limits(twist, limits),
     )

@@ -22,6 +22,7 @@ def test_lengths_are_reported_in_the_unit_that_fits(metres, said):
 
 def test_no_length_is_written_with_a_power_of_ten():
     assert plain(60000.0, 2) == '60000'
+    assert plain(-1.7e-18) == '0'
     assert length(45264.3, 3) == '45300 m'
     assert length(1.234e-9, 3) == '0.00000123 mm'
 

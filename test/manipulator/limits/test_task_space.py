@@ -224,7 +224,7 @@ def test_a_cycle_that_is_too_fast_along_an_axis_is_refused_with_its_name():
     machine = boxed('robocake', **SPEEDS)
     home = machine.kinematics.home
     cycle = Cycle(home, np.eye(6)[2] * 2e-3, np.full(6, 0.8), np.zeros(6))
-    with pytest.raises(Refused, match=r'platform z speed is 2\.01 times too fast'):
+    with pytest.raises(Refused, match=r'linear z speed is 2\.01 times too fast'):
         check_cycle(machine, cycle, machine.kinematics.inverse(home), DT)
 
 

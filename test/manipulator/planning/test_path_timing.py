@@ -100,7 +100,7 @@ def said_by_rows(limits, squares, name):
     return rows[:, columns].max(axis=1)
 
 
-@pytest.mark.parametrize(('name', 'part'), [('platform', slice(0, 3)), ('turning', slice(3, 6))])
+@pytest.mark.parametrize(('name', 'part'), [('linear', slice(0, 3)), ('turning', slice(3, 6))])
 def test_rows_of_a_path_report_how_much_the_platform_accelerates(on_a_path, name, part):
     """At either end of a step, within the polygon of directions: 15° from corner to corner."""
     limits, state, squares = on_a_path
@@ -181,7 +181,7 @@ def test_stamped_path_keeps_its_stamps_but_for_the_ends():
 
 def test_path_stamped_too_fast_is_refused_with_place_limit_and_factor():
     stamps = np.linspace(0.0, 0.5, 50)
-    with pytest.raises(Refused, match=r'pose \d+, .* platform speed would be 2.* times too fast'):
+    with pytest.raises(Refused, match=r'pose \d+, .* linear speed would be 2.* times too fast'):
         planned(ROBOCAKE, circle_at_home(ROBOCAKE, 0.008, 50), stamps=stamps)
 
 

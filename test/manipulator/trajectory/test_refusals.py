@@ -115,7 +115,7 @@ def test_a_cycle_reports_how_many_times_it_is_faster_than_platform_or_tool_may_b
     if peak < limit:
         assert reason == ''
     else:
-        name = 'platform speed' if part == 'linear' else 'turning speed'
+        name = 'linear speed' if part == 'linear' else 'turning speed'
         assert f'{name} is {peak / limit:.2f} times too fast' in reason
 
 
@@ -130,7 +130,7 @@ def test_a_cycle_reports_how_many_times_it_must_be_slower_for_the_acceleration_o
     other = 'angular' if part == 'linear' else 'linear'
     assert refusal(executor(limited(**{other: Derivatives(1e-3, 1e-3, 1e9)})), cycle) == ''
     strict = Derivatives(1e3, peak / 9.0 / (1.0 - BRAKING_SHARE))
-    name = 'platform acceleration' if part == 'linear' else 'turning acceleration'
+    name = 'linear acceleration' if part == 'linear' else 'turning acceleration'
     reason = refusal(executor(limited(**{part: strict})), cycle)
     assert re.search(rf'{name} is [23]\.\d\d times too fast', reason)
 
