@@ -81,7 +81,7 @@ class GraphClient:
             left = end - time.monotonic()
             if left <= 0:
                 return
-            with _interrupt_after():
+            with _interrupt_after() if self._owns_context else contextlib.nullcontext():
                 self._executor.spin_once(timeout_sec=min(left, 0.05))
 
     def wait(
@@ -205,7 +205,8 @@ def _interrupt_after() -> Iterator[None]:
     """What Ctrl-C does (KeyboardInterrupt, or a handler of the program) happens after the block.
 
     In the middle of rclpy a KeyboardInterrupt may be lost (Python drops what `Future.__del__`
-    raises), turn into a RuntimeError, or leave the node without any more callbacks.
+    raises), turn into a RuntimeError, or leave the node without any more callbacks. For a context
+    of our own: rclpy's handler for another one is none of Python's, and could not be put back.
     """
     handler = signal.getsignal(signal.SIGINT)
     if not callable(handler) or threading.current_thread() is not threading.main_thread():

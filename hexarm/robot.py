@@ -167,7 +167,7 @@ class Robot:
         timeout: float = PATIENCE,
         **named: float,
     ) -> None:
-        """Moves joints by name (rad, m), all in proportion; the others stay as commanded."""
+        """Moves joints by name (rad, m), from rest in proportion; the others stay as commanded."""
         goal = numbers_by_name(joints, named, 'joint')
         self._begin(lambda: self._client.send_joints(goal), wait, timeout)
 

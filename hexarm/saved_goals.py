@@ -47,6 +47,8 @@ def check_line(machine: Machine, start: Pose, near: Array, saved: SavedPose) -> 
     line = start.moved(shares * start.twist_to(saved.pose))
     end = machine.kinematics.inverse_along(line, near)[-1]
     for name, arrival in zip(named, end.tolist(), strict=True):
+        if np.isnan(arrival):
+            raise Refused('the line leaves the reach: without a speed a joint move goes there')
         if abs(arrival - named[name]) > SAME_JOINTS:
             raise Refused(
                 f'along a line {name} arrives at {np.degrees(arrival):.1f}°, and is saved at '

@@ -1,4 +1,4 @@
-/* How much of wanted joint rates the joints can drive: docs/arm-kinematics.md, 8. */
+/* How much of requested joint rates the joints can drive: docs/arm-kinematics.md, 8. */
 #pragma once
 #include "branches.h"
 

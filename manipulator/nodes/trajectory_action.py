@@ -67,7 +67,11 @@ class _Active:
         """The joints' speeds (n,) at rest, by their last reports; NaN until there are two."""
         if self.speed is None:
             self.measured, self.speed = (now, actual), np.full(len(actual), np.nan)
-        elif self.measured is not None and now - self.measured[0] >= SPEED_PERIOD:
+        elif (
+            self.measured is not None
+            and actual is not self.measured[1]
+            and now - self.measured[0] >= SPEED_PERIOD
+        ):
             before, joints = self.measured
             self.speed = np.abs(actual - joints) / (now - before)
             self.measured = now, actual

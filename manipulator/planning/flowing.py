@@ -24,7 +24,7 @@ from manipulator.planning.point_to_point import (
 from manipulator.pose import Pose
 
 SHORTEST = 0.05
-"""Seconds in which a goal is reached, at least."""
+"""Seconds from a goal's receipt to when it is due, at least; half of them may be left."""
 
 EXPECTED = 0.8
 """The part of the time to a goal in which the next one must come, or the next but one by
@@ -115,14 +115,16 @@ def quintic_to(
     v = flow.twist + beyond * flow.acceleration
     end = goal + beyond * (flow.twist + v) / 2.0
     coefficients = np.array(quintic(start, (end, v, flow.acceleration), seconds + beyond))
-    if (np.abs(_jerk(coefficients, seconds + beyond)) > jerks[:, None]).any():
+    if (_most_jerk(coefficients, seconds + beyond) > jerks).any():
         return None
     return Curve(frozen([0.0, span]), frozen(coefficients[None]))
 
 
-def _jerk(coefficients: Array, seconds: float) -> Array:
-    """Of each coordinate at begin, middle and end, (n, 3): between them it bends but once."""
-    times = seconds * np.array([0.0, 0.5, 1.0])
-    powers = times[:, None] ** np.arange(3)
-    jerk: Array = (powers @ (coefficients[3:] * np.array([6.0, 24.0, 60.0])[:, None])).T
-    return jerk
+def _most_jerk(coefficients: Array, seconds: float) -> Array:
+    """Of each coordinate (n,): at begin or end, or where the parabola in between turns."""
+    first, second, third = coefficients[3:] * np.array([6.0, 24.0, 60.0])[:, None]
+    steep = np.where(third == 0.0, 1.0, third)
+    turns = np.clip(-second / (2.0 * steep), 0.0, seconds)
+    times = np.array([np.zeros_like(turns), turns, np.full_like(turns, seconds)])
+    most: Array = np.abs(first + times * (second + times * third)).max(axis=0)
+    return most

@@ -31,7 +31,8 @@ class JointMoveInMotion(JointCurvePlan):
 
     def where(self, time: float) -> str:
         """See `Plan`."""
-        return f'at {100 * min(time / self.duration, 1.0):.0f} % of the time of the joint move'
+        share = min(time / max(self.duration, 1e-9), 1.0)
+        return f'at {100 * share:.0f} % of the time of the joint move'
 
 
 @dataclass(frozen=True, eq=False)

@@ -197,7 +197,8 @@ class MoveInMotion(Plan):
 
     def where(self, time: float) -> str:
         """See `Plan`."""
-        return f'at {100 * min(time / self.duration, 1.0):.0f} % of the time to the goal'
+        share = min(time / max(self.duration, 1e-9), 1.0)
+        return f'at {100 * share:.0f} % of the time to the goal'
 
 
 def plan_move_in_motion(

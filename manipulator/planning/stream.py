@@ -131,7 +131,9 @@ class Stream(Generic[Place]):
         if noted == self._last:  # the same one, once the machine has braked
             return goal
         even = self._clock.sent(noted)
-        if place is None or not 0.0 < noted - self._last <= LONGEST_GAP:
+        points = self._even.points
+        is_back = bool(points) and even <= points[-1][0]
+        if place is None or is_back or not 0.0 < noted - self._last <= LONGEST_GAP:
             self._even, self._stamped = Track(self._difference), Track(self._difference)
         if place is not None:
             self._last = noted

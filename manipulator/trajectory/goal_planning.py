@@ -113,10 +113,15 @@ class Planning:
         self._newest = self._continued(goal)
 
     def _continued(self, goal: Goal) -> Goal:
-        """The goal, with its flow where it continues a stream of poses, or of joints."""
+        """The goal, with its flow where it continues a stream of poses, or of joints.
+
+        It ends the other one.
+        """
         is_simple = goal.then is None or isinstance(goal.then, Goal)
         if is_simple and goal.motion is Motion.JOINT and goal.joints is not None:
+            self._stream.continued(goal, None, self._now)
             return self._joint_stream.continued(goal, goal.joints, self._now)
+        self._joint_stream.continued(goal, None, self._now)
         is_of_poses = is_simple and goal.motion is not Motion.JOINT and goal.joints is None
         return self._stream.continued(goal, goal.pose if is_of_poses else None, self._now)
 

@@ -191,3 +191,26 @@ def test_ctrl_c_in_any_place_of_a_callback_ends_a_wait_and_the_client_goes_on(ct
         with pytest.raises(KeyboardInterrupt):
             client.wait('Ctrl-C', lambda: len(ticks) > 1, 10.0)
         client.wait('another callback', lambda: len(ticks) > 1, 10.0)
+
+
+@pytest.mark.processes
+def test_a_client_in_a_program_s_own_context_leaves_it_its_ctrl_c():
+    """rclpy's handler is none of Python's: it could not be put back."""
+    program = (
+        'import os, signal, threading, rclpy\n'
+        'signal.signal(signal.SIGINT, signal.default_int_handler)\n'
+        'from rclpy.executors import ExternalShutdownException\n'
+        'from hexarm.client import Client\n'
+        'rclpy.init()\n'
+        'node = rclpy.create_node("mine")\n'
+        'with Client("simulated") as client:\n'
+        '    client.spin(0.2)\n'
+        'threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n'
+        'try:\n'
+        '    rclpy.spin(node)\n'
+        'except (KeyboardInterrupt, ExternalShutdownException):\n'
+        '    print("ended")\n'
+    )
+    command = [sys.executable, '-c', program]
+    done = subprocess.run(command, check=False, timeout=120, capture_output=True, text=True)
+    assert done.stdout == 'ended\n', done.stderr

@@ -60,10 +60,12 @@ def add_driving(
     act: Act,
     epilog: str | None = None,
     names_follow: bool = False,
+    moves: bool = True,
 ) -> argparse.ArgumentParser:
     """Declares a subcommand of one running machine, whose answer is that of `act`.
 
     names_follow: of poses, among which a namespace that is left out could not be recognized.
+    moves: the machine, so that a refusal ends with what lets it move.
     """
     parser = commands.add_parser(name, epilog=epilog)
     if names_follow:
@@ -74,14 +76,14 @@ def add_driving(
         )
     parser.add_argument('--json', action='store_true', help='answer for programs')
     add_units(parser)
-    parser.set_defaults(run=running(act))
+    parser.set_defaults(run=running(act, moves))
     return parser
 
 
-def running(act: Act) -> Callable[[argparse.Namespace], int]:
+def running(act: Act, moves: bool = True) -> Callable[[argparse.Namespace], int]:
     """A subcommand's `run`, with the machine of its namespace; Ctrl-C brakes it.
 
-    A refusal ends with the command that comes first: `hexarm enable`, `hexarm clear`.
+    If it moves, a refusal ends with the command that comes first: `hexarm enable`, `hexarm clear`.
     """
 
     def answer(arguments: argparse.Namespace) -> Answer:
@@ -91,7 +93,7 @@ def running(act: Act) -> Callable[[argparse.Namespace], int]:
             try:
                 return act(robot, arguments)
             except Refused as error:
-                first = first_step(robot.state, arguments.namespace)
+                first = first_step(robot.state, arguments.namespace) if moves else ''
                 raise Refused(f'{error}{first}') from error
 
     return answering(answer)

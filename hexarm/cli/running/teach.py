@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 def add_parser(commands: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
     """Declares the subcommands."""
-    parser = add_driving(commands, 'save', save)
+    parser = add_driving(commands, 'save', save, moves=False)
     parser.add_argument('name', nargs='?', default='', help='default: pose_1, pose_2, …')
-    add_driving(commands, 'poses', poses)
-    parser = add_driving(commands, 'delete', delete, names_follow=True)
+    add_driving(commands, 'poses', poses, moves=False)
+    parser = add_driving(commands, 'delete', delete, names_follow=True, moves=False)
     parser.add_argument('name', metavar='NAME', help='of a saved pose')
     parser = add_driving(commands, 'replay', replay, names_follow=True)
     parser.add_argument('names', nargs='+', metavar='NAME', help='of saved poses and sequences')
