@@ -6,8 +6,6 @@ BIN := $(ENV)/bin
 # (test/conftest.py). In a worker numpy has one thread. Tests are compiled once, and not by every worker of every run.
 PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q -n auto --dist loadfile
 
-# Tests that start others wait more than they compute: three workers on two cores.
-MORE := $(shell expr $$(nproc) \* 3 / 2)
 
 ALL_SLOW := test/graph test/install test/firmware
 LIBRARIES := manipulator/_kernel.abi3.so bridge/_board.abi3.so
@@ -27,7 +25,7 @@ quick: $(ENV)/ready $(LIBRARIES)
 
 test: check
 	@echo 'Tests that start graphs, a browser, installations, or are long: 6 minutes on two quiet cores.'
-	@$(PYTEST) -n $(MORE) -m 'processes or long'
+	@$(PYTEST) -m 'processes or long'
 
 lint: $(ENV)/ready $(LIBRARIES)
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy
