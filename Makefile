@@ -6,7 +6,6 @@ BIN := $(ENV)/bin
 # (test/conftest.py). In a worker numpy has one thread. Tests are compiled once, and not by every worker of every run.
 PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q -n auto --dist loadfile
 
-
 ALL_SLOW := test/graph test/install test/firmware
 LIBRARIES := manipulator/_kernel.abi3.so bridge/_board.abi3.so
 
