@@ -16,14 +16,14 @@ demo: $(ENV)/demo $(LIBRARIES)
 	@$(BIN)/hexarm demo
 
 check: $(ENV)/ready $(LIBRARIES)
-	@echo 'Lint, types, and the quick tests, which start no other program: 80 s on two quiet cores.'
+	@echo 'Lint, types, and the quick tests, which start no other program: 70 s on two quiet cores.'
 	@$(MAKE) --no-print-directory -j 2 --output-sync=line lint quick
 
 quick: $(ENV)/ready $(LIBRARIES)
 	@$(PYTEST) -m 'not processes and not long' $(ALL_SLOW:%=--ignore=%)
 
 test: check
-	@echo 'Tests that start graphs, a browser, installations, or are long: 6 minutes on two quiet cores.'
+	@echo 'Tests that start graphs, a browser, installations, or are long: 7 minutes on two quiet cores.'
 	@$(PYTEST) -m 'processes or long'
 
 lint: $(ENV)/ready $(LIBRARIES)
