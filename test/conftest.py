@@ -62,8 +62,6 @@ def pytest_collection_modifyitems(items):
             item.add_marker('processes')
         elif 'chip_tools' in item.fixturenames:
             item.add_marker('long')
-    # First what waits for others and takes longest: the rest fills up the workers at the end.
-    items.sort(key=lambda item: item.get_closest_marker('processes') is None)
 
 
 def pytest_collection_finish():
@@ -80,7 +78,6 @@ def pytest_xdist_make_scheduler(config, log):
         def _split_scope(self, nodeid):
             return shared_place(Path(super()._split_scope(nodeid)))
 
-    config.option.loadscopereorder = False  # not by the number of tests, but as collected
     return Scheduling(config, log) if config.getvalue('dist') == 'loadfile' else None
 
 
