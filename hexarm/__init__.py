@@ -64,7 +64,8 @@ def use_sockets() -> None:
     os.environ.setdefault('FASTDDS_BUILTIN_TRANSPORTS', 'UDPv4')
     is_local = os.environ.get(_RANGE) == 'LOCALHOST' and not os.environ.get('ROS_STATIC_PEERS')
     is_fast_dds = os.environ.get('RMW_IMPLEMENTATION', '') in _FAST_DDS
-    own = os.environ.get(_PROFILES) not in (None, _profile('fastdds.xml'))
+    ours = _profile('fastdds.xml'), _profile('fastdds_loopback.xml')
+    own = os.environ.get(_PROFILES) not in (None, *ours)
     own = own or Path(_FOUND_HERE).exists()  # Fast DDS reads it after the other one
     if is_local and is_fast_dds and not own:
         os.environ[_PROFILES] = _profile('fastdds_loopback.xml')

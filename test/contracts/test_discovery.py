@@ -57,6 +57,7 @@ def chosen(**variables):
         ({RANGE: 'LOCALHOST'}, (LOOPBACK, 'SUBNET')),
         ({RANGE: 'SUBNET', PROFILE: LOOPBACK}, (LOOPBACK, 'SUBNET')),
         ({RANGE: 'LOCALHOST', PROFILE: EVERYWHERE}, (LOOPBACK, 'SUBNET')),
+        ({RANGE: 'LOCALHOST', PROFILE: LOOPBACK}, (LOOPBACK, 'SUBNET')),
         ({RANGE: 'LOCALHOST', PROFILE: '/mine.xml'}, ('/mine.xml', 'LOCALHOST')),
         ({PROFILE: '/mine.xml'}, ('/mine.xml', 'None')),
         ({RANGE: 'LOCALHOST', 'ROS_STATIC_PEERS': '10.0.0.2'}, (EVERYWHERE, 'LOCALHOST')),

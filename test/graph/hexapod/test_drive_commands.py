@@ -45,12 +45,15 @@ def test_a_machine_is_moved_and_measured_from_the_command_line(says):
     assert 'x, y, z' in says('park')
 
 
-def test_state_and_reports_are_there_for_programs(says):
-    enabled = json.loads(says('enable', '--json'))
-    assert (enabled['namespace'], enabled['state']) == ('/hexapod', 'enabled')
-    monitored = json.loads(says('monitor', '--json'))
-    assert monitored['state'] == 'enabled'
-    assert monitored['nodes']['trajectory']['values']['result']
+def test_state_and_reports_are_there_for_programs(says, enabled):
+    def reports():
+        answer = json.loads(says('enable', '--json'))
+        assert (answer['namespace'], answer['state']) == ('/hexapod', 'enabled')
+        monitored = json.loads(says('monitor', '--json'))
+        assert monitored['state'] == 'enabled'
+        assert monitored['nodes']['trajectory']['values']['result']
+
+    enabled.persist(reports)
 
 
 def test_out_of_reach_is_status_3_and_what_is_not_understood_2(says):
