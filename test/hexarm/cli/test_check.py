@@ -2,38 +2,31 @@
 
 import json
 import re
-from dataclasses import replace
 from itertools import combinations
-from pathlib import Path
-from unittest.mock import ANY
 
 import numpy as np
 import pytest
+from machine_texts import ARM, CONFIG, ROBOCAKE, STACK, STEWART, UR5, changed
 
-from hexapod_control.geometry import HexagonConfig
 from hexarm.cli.main import main
 from hexarm.machine_check import problems_of, report_of
-from hexarm.machines import content_of, find, load
-from leg_kinds import TILTED_CRANKS
-from manipulator.config import build, parse_yaml
+from hexarm.machines import content_of, load
+from manipulator.config import parse_yaml
 from manipulator.errors import ConfigError
 from sampling import some
 
-CONFIG = Path(__file__).parents[3] / 'config'
-REAL = Path(__file__).parents[1] / 'machines'
-ROBOCAKE = (CONFIG / 'robocake.yaml').read_text()
-ARM = (CONFIG / 'arm_6r.yaml').read_text()
-STEWART = (CONFIG / 'stewart_6_3.yaml').read_text()
-UR5 = (CONFIG / 'ur5.yaml').read_text()
-STACK = (CONFIG / 'stack_6_6.yaml').read_text()
-BY_COORDINATES = (CONFIG / 'reachy_mini.yaml').read_text()
-
-
-def changed(text, *replacements):
-    for old, new in replacements:
-        assert old in text, old
-        text = text.replace(old, new)
-    return text
+MISTAKES = (
+    ('kind: rotary_hexapod', 'kind: rotry_hexapod'),
+    ('rod_length_mm: 58.0', 'rod_lenght_mm: 58.0'),
+    ('singularity_margin: 0.3', 'singularity_margin: 2.0'),
+    ('name: crank_3', 'name: crnk_3'),
+    ('on_link_loss: hold', 'on_link_loss: hope'),
+    ('hysteresis_deg', 'histeresis_deg'),
+    ('joint_speed_deg_s: 480', 'joint_speed_deg_s: 700'),
+    ('thickness_mm: 4.0', 'thicknes_mm: 4.0'),
+    ('speed_deg_s: 600.0', 'sped_deg_s: 600.0'),
+    ('link:\n', 'lnk:\n'),
+)
 
 
 def without(text, key):
@@ -99,59 +92,6 @@ def test_rod_shorter_than_its_gap_reports_by_how_much():
     assert 'mm' in found
 
 
-@pytest.mark.parametrize(
-    ('text', 'key', 'value'),
-    [
-        (ROBOCAKE, 'body_radius_mm: 71.492', 0.071492),
-        (ROBOCAKE, 'rod_length_mm: 58.0', 0.058),
-        (ROBOCAKE, 'rod_length_mm: 58.0', 58000.0),
-        (ROBOCAKE, 'home_height_mm: 41.19', 41190.0),
-        (BY_COORDINATES, 'home_height_mm: 177.0', 0.177),
-        (ROBOCAKE, 'characteristic_length_mm: 70.0', 0.07),
-        (STEWART, 'base_radius_mm: 100.0', 0.1),
-        (STEWART, 'stroke_range_mm: [142.0, 238.0]', [0.142, 0.238]),
-        (ARM, 'L3_mm: 400.0', 0.4),
-    ],
-)
-def test_a_length_that_contradicts_the_machines_size_is_asked_about_its_unit(text, key, value):
-    name = key.split(':')[0]
-    (found,) = problems_of(changed(text, (key, f'{name}: {value}')))
-    assert re.match(rf'(geometry|limits)\.{name}: \S+ in a machine of about [\d.]+ mm', found)
-    assert found.endswith(': is it in another unit?')
-
-
-@pytest.mark.parametrize('name', ['robocake', 'stewart_6_6'])
-def test_a_whole_machine_in_metres_is_asked_about_its_unit(name):
-    content = parse_yaml((CONFIG / f'{name}.yaml').read_text())
-    for section in ('geometry', 'limits'):
-        for key, value in content[section].items():
-            if key.endswith('_mm'):
-                content[section][key] = (1e-3 * np.array(value)).tolist()
-    (found,) = report_of(content).problems
-    assert re.match(r'geometry: its lengths are about 0\.\d+ mm: is it in another unit\?', found)
-
-
-@pytest.mark.parametrize(
-    ('key', 'value'),
-    [
-        ('linear_speed_mm_s: 50.0', 0.05),
-        ('linear_acceleration_mm_s2: 2942.0', 2.942),
-        ('angular_speed_deg_s: 60.0', 60000.0),
-    ],
-)
-def test_speeds_that_contradict_each_other_are_a_warning(key, value):
-    report = report_of(parse_yaml(changed(ROBOCAKE, (key, f'{key.split(":")[0]}: {value}'))))
-    (warning,) = report.warnings
-    assert warning.startswith(f'motion: linear {key.split("_")[1]} ')
-    assert warning.endswith('is one of them in another unit?')
-
-
-@pytest.mark.parametrize('file', sorted(REAL.glob('*.yaml')), ids=lambda file: file.stem)
-def test_large_slow_heavy_and_hanging_machines_are_asked_nothing(file):
-    report = report_of(parse_yaml(file.read_text()))
-    assert (report.problems, report.warnings) == ((), ())
-
-
 def test_problems_of_all_sections_come_at_once():
     found = problems_of(
         changed(
@@ -176,14 +116,6 @@ def test_problems_of_all_sections_come_at_once():
     ):
         assert sum(problem.startswith(words) for problem in found) == 1, (words, found)
     assert len(found) == 7
-
-
-def test_home_beyond_a_limit_is_found_beside_a_faulty_section():
-    found = problems_of(
-        changed(ROBOCAKE, ('[30.0, 210.0]', '[130.0, 210.0]'), ('baud: 250000', 'baud: fast'))
-    )
-    assert 'limits: home has crank angle 120° on all legs, outside [130, 210]°' in found
-    assert "link.baud: holds the text 'fast', needs a whole number" in found
 
 
 @pytest.mark.parametrize('text', ['', '- 1', 'kind: [', 'kind: 7', 'geometry: 5\nservos: none'])
@@ -327,47 +259,6 @@ def test_file_that_is_no_machine_file_is_one_line_with_its_name(tmp_path, capsys
             assert len(said) - len(str(path)) < 300, said
 
 
-def hobby_platform(is_hanging):
-    """By docs/machine-files.md: horns that point along a hexagon's sides, level at home."""
-    content = parse_yaml(BY_COORDINATES)
-    at, joint = (np.radians(a) for a in ([40.0, 80.0, 160.0, 200.0, 280.0, 320.0],
-                                         [10.0, 110.0, 130.0, 230.0, 250.0, 350.0]))  # fmt: skip
-    along = at + np.radians([90.0, -90.0] * 3)  # β, where each leg's horn points
-    axes, ends = (radius * np.stack([np.cos(a), np.sin(a), 0 * a], 1)
-                  for radius, a in ((80.0, at), (50.0, joint)))  # fmt: skip
-    horns = np.stack([np.cos(along), np.sin(along), 0 * along], 1)
-    across = np.linalg.norm(axes + 20.0 * horns - ends, axis=1)
-    height = float(np.sqrt(140.0**2 - across[0] ** 2))
-    content['geometry'] = {
-        'crank_centres_mm': axes.tolist(),
-        'crank_tangents': (horns if is_hanging else -horns).tolist(),
-        'platform_joints_mm': ends.tolist(),
-        'crank_length_mm': 20.0,
-        'rod_length_mm': 140.0,
-        'home_height_mm': -height if is_hanging else height,
-    }
-    level = 0.0 if is_hanging else 180.0
-    content['limits'] |= {
-        'crank_range_deg': [level - 80.0, level + 80.0],
-        'minimum_height_mm': -1000.0,
-        'characteristic_length_mm': 50.0,
-    }
-    content['servos']['park_deg'] = [level] * 6
-    for servo in content['servos']['joints']:
-        servo['centre_deg'] = level
-    return content, axes + 20.0 * horns
-
-
-@pytest.mark.parametrize('is_hanging', [False, True])
-def test_a_hobby_platform_by_the_page_has_its_horns_where_they_are(is_hanging):
-    content, tips = hobby_platform(is_hanging)
-    report = report_of(content)
-    assert (report.problems, report.warnings) == ((), ())
-    kinematics = report.machine.kinematics
-    found = kinematics.crank_tips(kinematics.inverse(kinematics.home))
-    np.testing.assert_allclose(1e3 * found, tips, atol=1e-6)
-
-
 def test_long_values_and_names_are_not_repeated_whole():
     long = 'x' * 1000
     text = changed(
@@ -390,94 +281,6 @@ def test_path_that_is_too_long_is_refused_in_words(capsys):
     assert len(said) < 300
 
 
-def with_level_cranks(is_mirrored):
-    """RoboCake with longer cranks whose angles at home are 0 and about 110°, either the wrong one.
-
-    The rods are as long as it takes from the tips of level cranks.
-    """
-    config = build(HexagonConfig, parse_yaml(ROBOCAKE)['geometry'])
-    joints = replace(config, home_height_mm=51.0, crank_length_mm=30.0).geometry()
-    tips = joints.crank_centres + joints.crank_lengths[:, None] * joints.tangents
-    rod = np.linalg.norm(joints.platform_points[0] + [0.0, 0.0, 0.051] - tips[0])
-    middle = 45.0 if is_mirrored else 120.0
-    return changed(
-        ROBOCAKE,
-        ('crank_length_mm: 17.5', 'crank_length_mm: 30.0'),
-        ('home_height_mm: 41.19', 'home_height_mm: 51.0'),
-        ('rod_length_mm: 58.0', f'rod_length_mm: {1e3 * rod:.6f}'),
-        ('[30.0, 210.0]', f'[{middle - 90.0}, {middle + 90.0}]'),
-        ('centre_deg: 120.0', f'centre_deg: {middle}'),
-        ('minimum_height_mm: 23.39', 'minimum_height_mm: 20.0'),
-        ('park_deg: [120.0, 120.0, 120.0, 120.0, 120.0, 120.0]', f'park_deg: {[110.0] * 6}'),
-    )
-
-
-@pytest.mark.parametrize('value', [1.5708, -1.57, 3.14, 6.283])
-def test_an_angle_that_is_a_right_one_in_radians_is_a_warning(value):
-    text = changed(UR5, ('a_mm: -425.0, alpha_deg: 0.0', f'a_mm: -425.0, alpha_deg: {value}'))
-    (doubt,) = report_of(parse_yaml(text)).warnings
-    assert doubt.startswith(f'geometry.dh.alpha_deg: {value}° would be ')
-    assert doubt.endswith('in radians: is it in another unit?')
-
-
-def test_an_arm_whose_joints_hardly_turn_is_asked_whether_in_radians():
-    content = parse_yaml(UR5)
-    content['geometry']['home_deg'] = [0.5, -1.2, 1.2, -1.2, -1.4, 0.0]
-    for joint in content['limits']['joints']:
-        joint['range_deg'] = [-2.8, 2.8]
-    report = report_of(content)
-    assert 'limits: no joint goes beyond 2.8°: are the ranges in radians?' in report.warnings
-
-
-def test_home_on_the_wrong_bend_is_a_warning_with_both_values():
-    report = report_of(parse_yaml(with_level_cranks(is_mirrored=True)))
-    (warning,) = report.warnings
-    assert 'crank_1, crank_2, crank_3, crank_4, crank_5, crank_6 at 109.9°' in warning
-    assert 'on the other branch: 0.0°, 0.0°' in warning
-
-
-def test_tangents_that_rise_without_axes_are_a_warning_that_says_which_plane_was_taken():
-    text = Path(TILTED_CRANKS).read_text()
-    assert report_of(parse_yaml(text)).warnings == ()
-    content = parse_yaml(text)
-    del content['geometry']['crank_axes']
-    (warning,) = report_of(content).warnings
-    assert warning.startswith('geometry.crank_tangents: crank_1, crank_2')
-    assert '14.1°' in warning
-    assert 'vertical plane' in warning
-
-
-def test_tilted_home_in_the_middle_of_its_range_is_no_warning():
-    report = report_of(parse_yaml(with_level_cranks(is_mirrored=False)))
-    assert (report.problems, report.warnings) == ((), ())
-
-
-@pytest.mark.parametrize(('text', 'scale'), [(ROBOCAKE, 10.5), (UR5, 2.7), (ARM, 8.0)])
-def test_half_a_pulse_scale_is_a_warning_and_none_of_the_file_itself(text, scale):
-    assert report_of(parse_yaml(text)).warnings == ()
-    halved = changed(text, (f'us_per_deg: {scale}', f'us_per_deg: {scale / 2}'))
-    report = report_of(parse_yaml(halved))
-    (warning,) = report.warnings
-    assert f'{scale / 2:.3g} µs/deg' in warning
-
-
-def test_pulses_beyond_what_servos_take_are_a_warning():
-    wide = changed(
-        ROBOCAKE,
-        ('us_per_deg: 10.5', 'us_per_deg: 15.0'),
-        ('[550.0, 2450.0]', '[100.0, 2900.0]'),
-    )
-    report = report_of(parse_yaml(wide))
-    (warning,) = report.warnings
-    assert '150 to 2850 µs' in warning
-
-
-def test_counts_of_other_drives_than_servos_are_not_judged():
-    text = (CONFIG / 'arm_6r_stepper.yaml').read_text()
-    halved = changed(text, ('us_per_deg: 60.0', 'us_per_deg: 30.0'))
-    assert report_of(parse_yaml(halved)) == replace(report_of(parse_yaml(text)), machine=ANY)
-
-
 def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
     path = tmp_path / 'mine.yaml'
     path.write_text(changed(ROBOCAKE, ('us_per_deg: 10.5', 'us_per_deg: 5.25')))
@@ -496,63 +299,6 @@ def test_command_prints_home_and_warnings_and_succeeds(tmp_path, capsys):
     assert margins.startswith('smallest margins at home: rod shortfall 12.43 mm (leg ')
     assert main(['check', 'stewart_6_6']) == 0
     assert '0.190000  0.190000 m' in capsys.readouterr().out
-
-
-def bent_the_other_way(content, legs=range(6)):
-    """The same machine with its tangents along the horns, as they are published; undoes itself."""
-    ranges, park = content['limits']['crank_range_deg'], content['servos']['park_deg']
-    tangents, joints = content['geometry']['crank_tangents'], content['servos']['joints']
-    for leg in legs:
-        low, high = ranges[leg]
-        ranges[leg], park[leg] = [180.0 - high, 180.0 - low], 180.0 - park[leg]
-        tangents[leg] = [-c for c in tangents[leg]]
-        joint = joints[leg]
-        joint['centre_deg'], joint['sign'] = 180.0 - joint['centre_deg'], -joint['sign']
-    return content
-
-
-def test_horns_as_hobbyists_enter_them_are_told_what_to_write():
-    naive = bent_the_other_way(parse_yaml(BY_COORDINATES))
-    (problem,) = report_of(naive).problems
-    assert problem.startswith('limits: home has crank angle ')
-    assert 'on legs 1, 3, 4, 6, outside [-48, 80]°; bent the other way it is 31.34°, ' in problem
-    assert 'on all legs: negate their crank_tangents' in problem
-    assert 'crank_range_deg: [[100, 228], [100, 250], ' in problem
-    assert ', centre_deg and park_deg of these legs 180 minus' in problem
-    assert report_of(bent_the_other_way(naive)).problems == ()
-
-
-def test_keys_of_joints_in_the_other_unit_are_named():
-    """Read as metres, 10° a second would be 0.17 m/s."""
-    mixed = changed(
-        STEWART,
-        ('  joint_speed_mm_s:', '  joint_speed_deg_s: 10.0\n  joint_speed_mm_s:'),
-        ('  park_mm:', '  speed_deg_s: 60.0\n  park_mm:'),
-    )
-    assert sorted(problems_of(mixed)) == [
-        'motion.joint_speed_deg_s: the joints are in mm, needs joint_speed_mm_s',
-        'servos: speed_deg_s: the joints are in mm',
-    ]
-
-
-def test_parts_that_meet_the_same_thing_at_home_are_one_line():
-    floor = changed(STEWART, ('servos:\n', 'surroundings: {floor_mm: 150}\nservos:\n'))
-    assert problems_of(floor) == ['home: rods 1, 2, 3, 4, 5, 6 meet the floor by 145 mm']
-
-
-def test_some_horns_entered_the_other_way_are_named():
-    naive = bent_the_other_way(parse_yaml(BY_COORDINATES), (1, 4))
-    (problem,) = report_of(naive).problems
-    assert 'outside [-70, 80]°; bent the other way it is 39.6° on legs 2, 5: negate' in problem
-    assert 'crank_range_deg: [[100, 228], [100, 250], [100, 228], ' in problem
-    assert report_of(bent_the_other_way(naive, (1, 4))).problems == ()
-
-
-def test_ranges_of_each_leg_are_turned_each():
-    naive = bent_the_other_way(parse_yaml(BY_COORDINATES))
-    naive['limits']['crank_range_deg'] = [[-80.0, 80.0]] * 5 + [[-80.0, 70.0]]
-    (problem,) = report_of(naive).problems
-    assert f'crank_range_deg: [{"[100, 260], " * 5}[110, 260]], ' in problem
 
 
 def test_one_wrong_word_in_every_entry_of_a_list_is_one_line():
@@ -585,20 +331,6 @@ def test_what_else_is_wrong_is_found_whatever_the_kind_says(kind):
     assert found[1:] == ['limits: home has crank angle 120° on all legs, outside [130, 210]°']
 
 
-MISTAKES = (
-    ('kind: rotary_hexapod', 'kind: rotry_hexapod'),
-    ('rod_length_mm: 58.0', 'rod_lenght_mm: 58.0'),
-    ('singularity_margin: 0.3', 'singularity_margin: 2.0'),
-    ('name: crank_3', 'name: crnk_3'),
-    ('on_link_loss: hold', 'on_link_loss: hope'),
-    ('hysteresis_deg', 'histeresis_deg'),
-    ('joint_speed_deg_s: 480', 'joint_speed_deg_s: 700'),
-    ('thickness_mm: 4.0', 'thicknes_mm: 4.0'),
-    ('speed_deg_s: 600.0', 'sped_deg_s: 600.0'),
-    ('link:\n', 'lnk:\n'),
-)
-
-
 def test_no_mistake_hides_another():
     alone = {mistake: set(problems_of(changed(ROBOCAKE, mistake))) for mistake in MISTAKES}
     for first, second in combinations(MISTAKES, 2):
@@ -606,16 +338,6 @@ def test_no_mistake_hides_another():
         assert set(found) == alone[first] | alone[second], (first, second)
     whole = problems_of(changed(ROBOCAKE, *MISTAKES))
     assert set(whole) == set().union(*alone.values())
-
-
-def test_faults_of_servos_and_a_home_beyond_limits_come_together():
-    found = problems_of(
-        changed(ROBOCAKE, ('[30.0, 210.0]', '[130.0, 210.0]'), ('crank_3, ch', 'crank3, ch'))
-    )
-    assert found == [
-        'limits: home has crank angle 120° on all legs, outside [130, 210]°',
-        "servos.joints: none is called 'crank_3', but 'crank3'",
-    ]
 
 
 def test_reach_and_margins_are_there_for_programs(capsys):
@@ -631,12 +353,3 @@ def test_reach_and_margins_are_there_for_programs(capsys):
         assert not machine.constraints.admits(beyond, machine.kinematics.inverse(beyond))
     margins = {m['quantity']: m['margin'] for m in found['smallest_margins']}
     assert margins['leg length'] == pytest.approx(0.048, abs=1e-6)
-
-
-def test_an_arm_whose_home_is_singular_is_asked_about_it():
-    content = content_of(find('arm_6r'))
-    assert report_of(content).warnings == ()
-    content['geometry']['home_deg'][4] = 0.0
-    content['servos']['park_deg'] = content['geometry']['home_deg']
-    (warning,) = report_of(content).warnings
-    assert warning.startswith('geometry: home is a singular posture (singularity margin 0.000)')
