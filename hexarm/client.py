@@ -173,13 +173,16 @@ class Client(GraphClient):
         self._pursued.note(self.motion_status)
 
     def reaches(self, publisher: Any) -> bool:
-        """Whether all who subscribe to it are connected, the trajectory node among them."""
-        found = [
-            one
-            for one in self.node.get_subscriptions_info_by_topic(publisher.topic_name)
-            if one.qos_profile.durability == DurabilityPolicy.VOLATILE
-        ]
-        is_there = any(one.node_name == 'trajectory' for one in found)
+        """Whether all who subscribe to it are connected, the trajectory node among them.
+
+        It is known by the process that publishes motion_status, not by its name: that is not
+        told again where the two lost each other for a while (DDS's lease of 20 s).
+        """
+        info = self.node.get_subscriptions_info_by_topic(publisher.topic_name)
+        found = [one for one in info if one.qos_profile.durability == DurabilityPolicy.VOLATILE]
+        status = self.node.resolve_topic_name('motion_status')
+        there = {_participant(one) for one in self.node.get_publishers_info_by_topic(status)}
+        is_there = any(_participant(one) in there for one in found)
         return is_there and bool(publisher.get_subscription_count() >= len(found))
 
     def _on_motion_status(self, message: DiagnosticStatus) -> None:
@@ -188,6 +191,11 @@ class Client(GraphClient):
 
     def _on_setpoint(self, message: PoseStamped) -> None:
         self.setpoint = message.pose
+
+
+def _participant(endpoint: Any) -> tuple[int, ...]:
+    """The first 12 bytes of a DDS identifier: the process, or the context, that it is part of."""
+    return tuple(endpoint.endpoint_gid[:12])
 
 
 def time_message(seconds: float) -> Time:

@@ -65,7 +65,7 @@ class PatientUser(Client):
                 return ask()
             except (Refused, Stopped, TimedOut, AssertionError) as error:
                 self.spin(SOON)  # a motion is reported as stopped before its reason is
-                if not self._has_lost(before) and not isinstance(error, TimedOut):
+                if not self._has_lost(before) and not _is_late(error):
                     raise
             self.make_ready()
         return ask()
@@ -106,6 +106,11 @@ class PatientUser(Client):
     def _on_motion_status(self, message):
         super()._on_motion_status(message)
         self.losses += self.motion('mode') == 'disabled'
+
+
+def _is_late(error):
+    """Nothing came in time, or a message came so late that the machine ignored it."""
+    return isinstance(error, TimedOut) or ' s old, at most ' in str(error)
 
 
 SERVOS_ON = ('enabled', 'holding')

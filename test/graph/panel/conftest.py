@@ -12,7 +12,7 @@ from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
 from hexarm.panel_process import panel_address
-from manipulator.errors import Refused
+from manipulator.errors import Refused, Stopped
 from manipulator.nodes.messages import pose_of, seconds
 
 SMALL = 0.1
@@ -82,6 +82,10 @@ class PanelPage:
     def says(self, words):
         """Waits until the joystick says so."""
         self.page.frame_locator('#joystick').get_by_text(words).wait_for()
+
+    def show(self, tab):
+        """Opens one of the tabs."""
+        self.page.get_by_role('tab', name=tab).click()
 
     def field(self, label):
         """The number beside the slider of this label."""
@@ -161,6 +165,11 @@ class Seen:
     def has_moved(self, axis, metres):
         return self.way()[axis] * np.sign(metres) > abs(metres)
 
+    def go_to(self, pose):
+        """Asks the machine to; a page that is behind may ask it for something else."""
+        with contextlib.suppress(Refused, Stopped):
+            self.client.reach(pose)
+
     def jog(self, page, pad, push, axis, metres):
         """Holds the page's joystick until it has moved so far.
 
@@ -210,7 +219,7 @@ class Seen:
         """Asks the page again every few seconds: one that is behind takes it back."""
         end = time.monotonic() + 120.0
         while not is_so():
-            assert time.monotonic() < end, self.client.summary
+            assert time.monotonic() < end, f'{self.client.summary}; it moved by {self.way()}'
             self.client.make_ready()
             ask()
             until = time.monotonic() + 5.0

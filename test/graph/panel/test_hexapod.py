@@ -65,6 +65,7 @@ def page(open_page, panel, user):
 @pytest.fixture
 def machine(user, page, seen):
     """The hexapod as seen from outside; at home and able to move."""
+    page.show('Drive')
     with seen(user) as hexapod:
         yield hexapod
     if not page.page.is_closed():
@@ -73,34 +74,30 @@ def machine(user, page, seen):
 
 def test_sliders_move_the_machine_and_follow_the_goals_of_others(page, machine):
     thumb = page.page.get_by_role('slider', name=X)
-    thumb.focus()
 
     def press():
+        thumb.focus()  # a page that has heard nothing for a while has disabled it
         for _ in range(30):
             page.page.keyboard.press('ArrowRight')
 
     machine.asked_until(press, lambda: machine.has_moved(0, 0.002))
-    machine.asked_until(
-        lambda: machine.client.reach(ELSEWHERE), lambda: abs(page.value(X) + 2.0) < 0.2
-    )
+    machine.asked_until(lambda: machine.go_to(ELSEWHERE), lambda: abs(page.value(X) + 2.0) < 0.2)
 
 
 def test_a_pose_is_saved_on_the_page_and_gone_to_again(page, machine):
-    page.page.get_by_role('tab', name='Poses').click()
+    page.show('Poses')
     page.page.get_by_placeholder('name').fill('left')
     machine.asked_until(
         lambda: page.page.get_by_role('button', name='Save pose').click(),
         lambda: page.page.get_by_role('button', name='go to').count() > 0,
     )
+    machine.client.spin(0.3)
     saved = machine.poses[-1].position
-    machine.asked_until(
-        lambda: machine.client.reach(ELSEWHERE), lambda: machine.has_moved(0, -0.001)
-    )
+    machine.asked_until(lambda: machine.go_to(ELSEWHERE), lambda: machine.has_moved(0, -0.001))
     machine.asked_until(
         page.page.get_by_role('button', name='go to').first.click,
         lambda: np.abs(machine.poses[-1].position - saved).max() < 2e-4,
     )
-    page.page.get_by_role('tab', name='Drive').click()
 
 
 def test_stop_stops_the_machine_and_nothing_resumes(page, machine):
