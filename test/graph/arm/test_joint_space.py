@@ -88,7 +88,7 @@ def publish(arm):
         if is_stamped:
             message.header.stamp = time_message(stamp)
         publisher.publish(message)
-        arm.spin(0.05)
+        publisher.wait_for_all_acked()  # what is not yet received vanishes with its publisher
         arm.node.destroy_publisher(publisher)
 
     return send
