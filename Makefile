@@ -2,9 +2,11 @@
 SHELL := /bin/bash
 ENV := .venv
 BIN := $(ENV)/bin
-# One worker a core; the tests of a file stay together, for its fixtures' sake, and those of a folder that share a graph
-# (test/conftest.py). In a worker numpy has one thread. Tests are compiled once, and not by every worker of every run.
-PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q -n auto --dist loadfile
+# One worker a core, and two a core for tests that mostly wait for other processes. The tests of a file stay together, for
+# its fixtures' sake, and those of a folder that share a graph (test/conftest.py). In a worker numpy has one thread.
+# Tests are compiled once, and not by every worker of every run.
+PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q --dist loadfile
+CORES := $(shell nproc)
 
 ALL_SLOW := test/graph test/install test/firmware
 LIBRARIES := manipulator/_kernel.abi3.so bridge/_board.abi3.so
@@ -16,15 +18,15 @@ demo: $(ENV)/demo $(LIBRARIES)
 	@$(BIN)/hexarm demo
 
 check: $(ENV)/ready $(LIBRARIES)
-	@echo 'Lint, types, and the quick tests, which start no other program: 70 s on two quiet cores.'
+	@echo 'Lint, types, and the quick tests, which start no other program: a minute on two quiet cores.'
 	@$(MAKE) --no-print-directory -j 2 --output-sync=line lint quick
 
 quick: $(ENV)/ready $(LIBRARIES)
-	@$(PYTEST) -m 'not processes and not long' $(ALL_SLOW:%=--ignore=%)
+	@$(PYTEST) -n $(CORES) -m 'not processes and not long' $(ALL_SLOW:%=--ignore=%)
 
 test: check
-	@echo 'Tests that start graphs, a browser, installations, or are long: 7 minutes on two quiet cores.'
-	@$(PYTEST) -m 'processes or long'
+	@echo 'Tests that start graphs, a browser, installations, or are long: 4 minutes on two quiet cores.'
+	@$(PYTEST) -n $$((2 * $(CORES))) -m 'processes or long'
 
 lint: $(ENV)/ready $(LIBRARIES)
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy
@@ -33,7 +35,7 @@ bench: $(ENV)/peers $(LIBRARIES)   # a quiet computer, please: some ten minutes
 	@$(BIN)/python -m bench $(if $(WRITE),--write $(WRITE))
 
 soak: $(ENV)/ready $(LIBRARIES)
-	@SOAK_SECONDS=600 $(PYTEST) --dist load -s test/world/test_soak.py && $(BIN)/python -m bench.soak
+	@SOAK_SECONDS=600 $(PYTEST) -n $(CORES) --dist load -s test/world/test_soak.py && $(BIN)/python -m bench.soak
 
 # The libraries that the bench compares with; without them their rows say so.
 $(ENV)/peers: $(ENV)/ready

@@ -36,6 +36,7 @@ FLAGS = [
 ]
 
 FOLDER = Path(__file__).parent
+LONGEST = ('firmware', 'graph', 'install')
 STARTS_OTHERS = {'browser', 'sit_down'}
 DOMAINS = range(1, 101)
 
@@ -65,6 +66,8 @@ def pytest_collection_modifyitems(items):
             item.add_marker('processes')
         elif 'chip_tools' in item.fixturenames:
             item.add_marker('long')
+    # First what takes longest: the rest fills up the workers at the end.
+    items.sort(key=lambda item: item.path.relative_to(FOLDER).parts[0] not in LONGEST)
 
 
 def pytest_collection_finish():
@@ -81,6 +84,7 @@ def pytest_xdist_make_scheduler(config, log):
         def _split_scope(self, nodeid):
             return shared_place(Path(super()._split_scope(nodeid)))
 
+    config.option.loadscopereorder = False  # not by the number of tests, but as collected
     return Scheduling(config, log) if config.getvalue('dist') == 'loadfile' else None
 
 
