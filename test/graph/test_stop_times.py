@@ -53,15 +53,6 @@ def make_ready(rig):
     raise TimedOut(f'not ready in {TRIES} tries: {rig.user.summary}')
 
 
-def make_ready_after_restart(rig, name):
-    """A process that Fast DDS does not join to all others, rarely, is started once more."""
-    try:
-        make_ready(rig)
-    except TimedOut:
-        rig.start(name)
-        make_ready(rig)
-
-
 def check_that_it_drives_again(rig):
     """Home and onto the circle again, never faster than the servos."""
     since = rig.tap.frames()[-1][0]
@@ -92,7 +83,7 @@ def test_a_killed_process_stops_the_machine_and_nothing_jumps_when_it_is_started
     if name == 'serial_bridge':
         rig.user.wait('word', lambda: rig.user.machine_state.message == 'unclaimed', PATIENCE)
         assert not rig.tap.frames(Setpoint, before)
-    make_ready_after_restart(rig, name)
+    make_ready(rig)
     assert rig.recorder.way(before) <= QUIET
     check_that_it_drives_again(rig)
 
