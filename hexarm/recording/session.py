@@ -111,10 +111,16 @@ class Recorder:
         return self._is_settled and self._is_matched(every)
 
     def _is_matched(self, every: bool) -> bool:
+        met = self.met
+        published = {n for n in self._subscriptions if self._node.count_publishers(n)}
+        own = {name for name in published if self._selection.is_own(name)}
+        return bool(met) and (own <= met or not every)
+
+    @property
+    def met(self) -> set[str]:
+        """The topics of the machine of which we have met a publisher."""
         own = {n: s for n, s in self._subscriptions.items() if self._selection.is_own(n)}
-        met = {name for name, subscription in own.items() if subscription.get_publisher_count()}
-        published = {name for name in own if self._node.count_publishers(name)}
-        return bool(met) and (published <= met or not every)
+        return {name for name, subscription in own.items() if subscription.get_publisher_count()}
 
     def warn(self) -> None:
         """Logs the requested topics that do not exist."""
@@ -220,15 +226,17 @@ def record(
 def _spin(
     executor: EventsExecutor, recorder: Recorder, sink: Sink, control: Control, domain: int
 ) -> None:
-    begin = update_at = flush_at = time.monotonic()
+    begin = update_at = flush_at = met_at = time.monotonic()
     until = begin + PATIENCE if control.until == math.inf else control.until
-    is_met = is_told = False
+    is_met, is_told, met = False, False, 0
     while (now := time.monotonic()) < until:
         control.interrupt()
         if now >= update_at:
             recorder.update(now)
             update_at = now + UPDATE_PERIOD
-            if not is_met and recorder.is_ready(every=now < begin + DISCOVERY):
+            if len(recorder.met) > met:
+                met, met_at = len(recorder.met), now
+            if not is_met and recorder.is_ready(every=now < met_at + DISCOVERY):
                 is_met, until = True, control.until
                 control.on_listening()
         if now >= begin + DISCOVERY and not is_told:
