@@ -32,8 +32,6 @@ PATIENCE = 10.0
 JOG_PERIOD = 0.02
 ACCEPTED_WITHIN = 0.5
 """Seconds until a jog command that is accepted shows in the motion mode."""
-REPORTED_WITHIN = 1.1
-"""Seconds until the diagnostics, which come once a second, count a refusal."""
 
 
 class RobotClient(Client):
@@ -262,7 +260,7 @@ class RobotClient(Client):
         return is_jogged
 
     def _jog_refusal(self) -> str:
-        self.spin(REPORTED_WITHIN)
+        self.diagnostics.clear()  # the next report names it
         values = {pair.key: pair.value for pair in self.report_of('trajectory').values}
         return values.get('last_twist_refusal') or f'the jog is not accepted ({self.summary})'
 
