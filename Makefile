@@ -6,7 +6,7 @@ BIN := $(ENV)/bin
 # its fixtures' sake, and those of a folder that share a graph (test/conftest.py). In a worker numpy has one thread.
 # Tests are compiled once, and not by every worker of every run.
 PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q --dist loadfile
-CORES := $(shell nproc)
+CORES := $(shell n=$$(nproc); echo $$((n < 8 ? n : 8)))
 
 ALL_SLOW := test/graph test/install test/firmware
 LIBRARIES := manipulator/_kernel.abi3.so bridge/_board.abi3.so
