@@ -57,6 +57,15 @@ def setpoints(enabled):
     enabled.node.destroy_subscription(subscription)
 
 
+def pose_at(robot, *position):
+    """The measured pose, once it is there: the board of a busy computer is behind."""
+    for _ in range(100):
+        pose = robot.pose
+        if np.abs(pose.position - position).max() < 5e-4:
+            return pose
+    raise AssertionError(pose)
+
+
 def has_stopped(user):
     return user.motion('mode') == 'hold' and user.motion('result') == 'stopped'
 
@@ -65,10 +74,9 @@ def test_named_coordinates_move_and_the_others_stay(robot):
     def move():
         robot.move_to((0.0, 0.002, 0.045, 0.03, 0.0, 0.0))
         robot.move(x=0.003, yaw=0.05)
-        return robot.pose
+        return pose_at(robot, 0.003, 0.002, 0.045)
 
     pose = robot.persist(move)
-    assert pose.position == pytest.approx([0.003, 0.002, 0.045], abs=5e-4)
     assert pose.rpy == pytest.approx([0.03, 0.0, 0.05], abs=0.01)
     assert robot.joints.keys() == {f'crank_{leg}' for leg in range(1, 7)}
 
@@ -149,7 +157,7 @@ def test_a_motion_that_is_not_waited_for_can_be_polled_awaited_and_replaced(robo
             pass
         robot.move(z=0.045, wait=False)
         asyncio.run(robot.done())
-        assert robot.pose.position[2] == pytest.approx(0.045, abs=5e-4)
+        pose_at(robot, *CENTRE)
 
     robot.persist(replace)
 
@@ -250,9 +258,8 @@ def test_an_emergency_stop_refuses_everything_until_it_is_cleared(robot):
 def test_home_and_park_return_when_the_machine_is_there(robot):
     def go():
         robot.home()
-        home = robot.pose
+        pose_at(robot, 0.0, 0.0, 0.04119)
         robot.park(wait=False)
         robot.home()
-        return home
 
-    assert robot.persist(go).position == pytest.approx([0, 0, 0.04119], abs=5e-4)
+    robot.persist(go)
