@@ -124,7 +124,8 @@ class BoardThread(threading.Thread):
     def close(self) -> None:
         """Ends the thread and removes the port."""
         self._is_stopping = True
-        self.join()
+        if self.is_alive():
+            self.join()
         self.plug(None)
 
     def run(self) -> None:

@@ -92,8 +92,13 @@ class FakeHardware(Node):
         self._faults = self._declare_faults()
         line = FakeLine(self._path)
         self._thread = BoardThread(machine, line, self._publish, self._faults)
-        self._thread.start()
+        self._begin = self.create_timer(0.0, self._on_begin)
         self.get_logger().info(f'board on {self._path}')
+
+    def _on_begin(self) -> None:
+        """Only once the node is spun: what is done before would leave a host without answers."""
+        self._begin.cancel()
+        self._thread.start()
 
     def close(self) -> None:
         """Removes the port."""
