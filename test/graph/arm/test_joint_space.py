@@ -124,6 +124,7 @@ def test_cmd_joints_turns_a_joint_while_it_is_published(arm):
         arm.wait('joint 1', lambda: are_at(arm, joint_1=HOME[0]))
 
     arm.persist(jog)
+    arm.node.destroy_publisher(publisher)  # only one may jog
 
 
 def test_joint_trajectory_is_executed_and_a_bad_one_is_refused(arm, publish):

@@ -88,7 +88,8 @@ def test_it_records_from_the_first_goal_after_it_says_so(user, hexarm, tmp_path)
     lines = iter(recorder.stdout.readline, '')
     assert any(line.startswith('recording ') for line in lines)
     with Robot('/hexapod') as robot:
-        user.wait('who records goals', lambda: user.node.count_subscribers('goal_pose') > 1)
+        known = robot._client.node.count_subscribers
+        user.wait('who records goals', lambda: known('goal_pose') > 1)
         user.persist(lambda: robot.move_to((0.0, 0.0, 0.047)))
     recorder.send_signal(signal.SIGINT)
     ends_with(recorder, 0)
