@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
@@ -92,7 +93,9 @@ class FakeHardware(Node):
         self._faults = self._declare_faults()
         line = FakeLine(self._path)
         self._thread = BoardThread(machine, line, self._publish, self._faults)
-        self._begin = self.create_timer(0.0, self._on_begin)
+        self._begin = self.create_timer(
+            0.0, self._on_begin, clock=Clock(clock_type=ClockType.STEADY_TIME)
+        )
         self.get_logger().info(f'board on {self._path}')
 
     def _on_begin(self) -> None:

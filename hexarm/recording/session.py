@@ -112,9 +112,9 @@ class Recorder:
 
     def _is_matched(self, every: bool) -> bool:
         met = self.met
-        published = {n for n in self._subscriptions if self._node.count_publishers(n)}
-        own = {name for name in published if self._selection.is_own(name)}
-        return bool(met) and (own <= met or not every)
+        own = filter(self._selection.is_own, self._subscriptions)
+        published = {name for name in own if self._node.count_publishers(name)}
+        return bool(met) and (published <= met or not every)
 
     @property
     def met(self) -> set[str]:
