@@ -260,6 +260,7 @@ def test_a_program_and_the_command_line_move_and_jog_joints(arm, capsys):
             arm.wait('the joints', lambda: abs(robot.joints['joint_1'] + 0.1) < NEAR)
             with pytest.raises(Refused, match='joint_2: joint angle 3 rad outside'):
                 robot.move_joints(joint_2=3.0)
+        capsys.readouterr()  # of an earlier try
         assert main(['joints', 'arm', '--set', 'joint_6=10', '--units', 'mm', '--json']) == 0
         measured = json.loads(capsys.readouterr().out)['joints']
         assert measured['positions'][5] == pytest.approx(np.radians(10.0), abs=NEAR)
