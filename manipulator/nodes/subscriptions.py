@@ -62,8 +62,8 @@ CLOCK_START = time.time() - time.monotonic()
 class FilteredCallback:
     """The messages of one topic, as its MessageFilter lets them through.
 
-    accept is called with each message that is fresh; a ManipulatorError that it raises is logged
-    (throttled), remembered for /diagnostics and handed to `refuse`, if there is one.
+    accept is called with each message that is fresh; a ManipulatorError that it raises is
+    remembered for /diagnostics, and reported by `refuse`, or else logged (throttled).
     """
 
     def __init__(
@@ -116,10 +116,11 @@ class FilteredCallback:
         return self._filter.age(time.monotonic())
 
     def _report(self, message: Any, error: ManipulatorError) -> None:
-        text = f'{self.topic}: {self.last_refusal}'
-        self._node.get_logger().warning(text, throttle_duration_sec=1.0)
         if self._refuse is not None:
             self._refuse(message, error)
+            return
+        text = f'{self.topic}: {self.last_refusal}'
+        self._node.get_logger().warning(text, throttle_duration_sec=1.0)
 
     def _report_offset(self) -> None:
         offset = self._filter.clock_offset
