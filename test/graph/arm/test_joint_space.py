@@ -256,7 +256,7 @@ def test_a_program_and_the_command_line_move_and_jog_joints(arm, capsys):
             robot.move_joints({'joint_6': 0.2}, joint_1=-0.1)
             arm.wait('the joints', lambda: abs(robot.joints['joint_6'] - 0.2) < NEAR)
             robot.jog_joints(joint_6=-0.3, seconds=0.5)
-            assert robot.joints['joint_6'] < 0.15
+            arm.wait('the jog', lambda: robot.joints['joint_6'] < 0.2 - 2 * NEAR)
             arm.wait('the joints', lambda: abs(robot.joints['joint_1'] + 0.1) < NEAR)
             with pytest.raises(Refused, match='joint_2: joint angle 3 rad outside'):
                 robot.move_joints(joint_2=3.0)

@@ -138,15 +138,14 @@ def test_a_move_with_a_speed_goes_along_a_line(robot, setpoints, enabled):
     assert z - 0.045 == pytest.approx(x / 2, abs=1e-5)
 
 
-def test_jogging_moves_while_it_lasts_and_leaves_a_machine_that_takes_goals(robot):
+def test_jogging_moves_while_it_lasts_and_leaves_a_machine_that_takes_goals(robot, enabled):
     def jog():
         robot.move_to(CENTRE)
         robot.jog(vy=0.01, seconds=0.5)
-        y = robot.pose.position[1]
+        enabled.wait('the jog', lambda: robot.pose.position[1] > 1e-3)
         robot.move(y=0.0)
-        return y
 
-    assert robot.persist(jog) > 0.002
+    robot.persist(jog)
 
 
 def test_a_motion_that_is_not_waited_for_can_be_polled_awaited_and_replaced(robot, override):
