@@ -106,14 +106,15 @@ class Recorder:
     def is_ready(self, every: bool) -> bool:
         """Whether we have met a publisher of each topic, or of any, and no topic is new.
 
-        A machine's topics are discovered one after another.
+        A machine's topics are discovered one after another, many by a subscriber first.
         """
         return self._is_settled and self._is_matched(every)
 
     def _is_matched(self, every: bool) -> bool:
         met = self.met
         own = filter(self._selection.is_own, self._subscriptions)
-        published = {name for name in own if self._node.count_publishers(name)}
+        is_command, publishers = self._selection.is_command, self._node.count_publishers
+        published = {name for name in own if not is_command(name) or publishers(name)}
         return bool(met) and (published <= met or not every)
 
     @property

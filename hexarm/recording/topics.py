@@ -52,6 +52,10 @@ class TopicSelection:
         """Whether the topic is what the recording is made for: not one that all machines share."""
         return topic in self.names if self.names else topic.startswith(self._space)
 
+    def is_command(self, topic: str) -> bool:
+        """Whether users publish the topic, and not the machine."""
+        return topic.removeprefix(self._space) in COMMANDS
+
     def may_join(self, topic: str, publishers: Collection[str], now: float) -> bool:
         """Whether to subscribe to the topic from now (s, monotonic) on; `publishers`: nodes."""
         if self.names:
@@ -60,14 +64,14 @@ class TopicSelection:
             return True
         if not topic.startswith(self._space):
             return False
-        name = topic.removeprefix(self._space)
-        if self.with_commands or name not in COMMANDS:
+        if self.with_commands or not self.is_command(topic):
             return True
         if not publishers:
             self._since.pop(topic, None)
             return False
         has_found_all = now - self._since.setdefault(topic, now) >= ALL_FOUND_AFTER
-        return has_found_all or (name in GOALS and CAREFUL.issuperset(publishers))
+        is_goal = topic.removeprefix(self._space) in GOALS
+        return has_found_all or (is_goal and CAREFUL.issuperset(publishers))
 
 
 NEAREST = 3
