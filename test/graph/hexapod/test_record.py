@@ -212,6 +212,7 @@ def test_it_reports_that_it_records_only_once_it_has_met_publishers(user, hexarm
     assert said.endswith('; still waiting, Ctrl-C ends it\n')
     publisher = user.node.create_publisher(Float64, '/later/voltage', 10)
     assert recorder.stdout.readline().startswith('recording /later into ')
+    user.wait('the recorder', publisher.get_subscription_count)
     for _ in range(3):
         publisher.publish(Float64(data=7.4))
     user.spin(1.0)
