@@ -133,7 +133,10 @@ def test_stop_ends_the_motion_of_another_program(start, enabled):
 
 
 def test_emergency_stop_holds_until_it_is_cleared(start, enabled, run):
-    assert enabled.end_of(start('stop', '--emergency')) == (0, 'stopped\n')
+    def stop():
+        assert enabled.end_of(start('stop', '--emergency')) == (0, 'stopped\n')
+
+    enabled.persist(stop)
     enabled.wait_for_state('stopped')
     status, said = enabled.end_of(start('axis_tour'))
     assert status == 1

@@ -263,7 +263,7 @@ def test_recorder_of_commands_is_not_taken_for_the_machine(user, hexarm, tmp_pat
     user.wait('the recorder', lambda: user.node.count_subscribers('goal_pose') > 1)
     for z in (0.043, 0.045, 0.047):
         user.persist(lambda z=z: run_program(user, f'robot.move_to((0, 0, {z}))'))
-    run_program(user, 'robot.emergency_stop()')
+    user.persist(lambda: run_program(user, 'robot.emergency_stop()'))
     recorder.send_signal(signal.SIGINT)
     ends_with(recorder, 0)
     user.trigger('serial_bridge/clear_fault')

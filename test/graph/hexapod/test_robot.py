@@ -242,7 +242,7 @@ def test_limits_and_reach_come_from_the_machine_file_of_the_graph(robot):
 
 
 def test_an_emergency_stop_refuses_everything_until_it_is_cleared(robot):
-    robot.emergency_stop()
+    robot.persist(robot.emergency_stop)
     assert robot.state == 'stopped'
     with pytest.raises(Refused, match='stopped'):
         robot.move_to(CENTRE)
