@@ -79,6 +79,8 @@ class FilteredCallback:
         self._refuse = refuse
         self._filter = MessageFilter(CLOCK_START)
         self._was_offset_reported = False
+        self.refused_at = float('-inf')
+        """When a message was not accepted for the last time (s, monotonic)."""
 
     def __call__(self, message: Any) -> None:
         """The subscription's callback."""
@@ -116,6 +118,7 @@ class FilteredCallback:
         return self._filter.age(time.monotonic())
 
     def _report(self, message: Any, error: ManipulatorError) -> None:
+        self.refused_at = time.monotonic()
         if self._refuse is not None:
             self._refuse(message, error)
             return

@@ -48,12 +48,12 @@ class TeleopTopics:
 
     def report(self) -> dict[str, object]:
         """The values of /diagnostics about jogging."""
-        worst = max(self._callbacks, key=lambda callback: callback.refused)
+        newest = max(self._callbacks, key=lambda callback: callback.refused_at)
         return {
             'jogged_by': self._teleop.owner(time.monotonic()),
             'jog_mode': self._teleop.mode,
             'twists_refused': sum(callback.refused for callback in self._callbacks),
-            'last_twist_refusal': worst.last_refusal,
+            'last_twist_refusal': newest.last_refusal,
         }
 
     def _subscribe(self, source: str) -> SoleSubscription:

@@ -108,3 +108,17 @@ def test_twists_of_two_publishers_move_nothing_until_there_was_silence(graph, cl
     clock.now += 0.3
     user.send(first)
     assert topics.report()['jogged_by'] == source
+
+
+def test_the_newest_refusal_of_any_source_is_reported(graph, clock):
+    topics = TeleopTopics(graph.node('machine'), Teleop(IdleSupervisor(), 0.06))
+    node, sent = graph.node('user'), 0
+    for source, frame in (('cmd_vel/joy', 'moon'), ('cmd_vel/joy', 'moon'), ('cmd_vel', 'mars')):
+        publisher = node.create_publisher(TwistStamped, source, MEASUREMENT)
+        graph.wait('a listener', lambda made=publisher: made.get_subscription_count() > 0)
+        message = TwistStamped()
+        message.header.frame_id = frame
+        clock.now, sent = clock.now + 0.04, sent + 1
+        publisher.publish(message)
+        graph.wait('a refusal', lambda n=sent: topics.report()['twists_refused'] == n)
+    assert 'mars' in topics.report()['last_twist_refusal']
