@@ -10,7 +10,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from hexarm.graph import Executable, Graph, board_process
 from manipulator.errors import Refused
 from manipulator.nodes.qos import COMMAND, LATCHED
-from patient_user import PatientUser
+from patient_user import PatientBridgeUser
 
 pytestmark = pytest.mark.graph
 
@@ -18,7 +18,7 @@ NAMES = [f'crank_{i}' for i in (2, 1, 3, 4, 5, 6)]
 SPACE = 'programs_rig'
 
 
-class Rig(PatientUser):
+class Rig(PatientBridgeUser):
     """A user of the bridge alone."""
 
     def __init__(self):
@@ -66,29 +66,34 @@ AMPLITUDE = '[0.0,0.0,0.002,0.0,0.0,0.03]'
 
 @pytest.fixture
 def enabled(rig):
-    rig.switch('serial_bridge/enable', True)
-    rig.wait_for_state('enabled')
+    rig.make_ready()
     return rig
 
 
 def test_a_table_and_a_cycle_are_played_and_end_enabled(enabled):
-    enabled.upload(swing(), 'table of 20 rows, 100 ms apart, is on board')
-    enabled.switch('serial_bridge/play_table', True)
-    enabled.wait_for_state('playing')
-    enabled.trigger('serial_bridge/finish_program')
-    enabled.wait_for_state('enabled')
-    enabled.switch('serial_bridge/play_cycle', False)
-    enabled.wait_for_state('playing')
-    enabled.wait_for_state('enabled')
+    def go():
+        enabled.upload(swing(), 'table of 20 rows, 100 ms apart, is on board')
+        enabled.switch('serial_bridge/play_table', True)
+        enabled.wait_for_state('playing')
+        enabled.trigger('serial_bridge/finish_program')
+        enabled.wait_for_state('enabled')
+        enabled.switch('serial_bridge/play_cycle', False)
+        enabled.wait_for_state('playing')
+        enabled.wait_for_state('enabled')
+
+    enabled.persist(go)
 
 
 def test_refusals_report_why(enabled):
-    enabled.upload(swing(rows=600), 'the table has more rows than the board can hold')
-    enabled.upload(JointTrajectory(joint_names=['elbow']), 'joints are elbow, needs')
-    with pytest.raises(Refused, match='no such program'):
-        enabled.switch('serial_bridge/play_table', True)
-    enabled.switch('serial_bridge/enable', False)
-    enabled.wait_for_state('disarmed')
-    enabled.upload(swing(), 'is on board')
-    with pytest.raises(Refused, match='servos are off'):
-        enabled.switch('serial_bridge/play_table', True)
+    def go():
+        enabled.upload(swing(rows=600), 'the table has more rows than the board can hold')
+        enabled.upload(JointTrajectory(joint_names=['elbow']), 'joints are elbow, needs')
+        with pytest.raises(Refused, match='no such program'):
+            enabled.switch('serial_bridge/play_table', True)
+        enabled.switch('serial_bridge/enable', False)
+        enabled.wait_for_state('disarmed')
+        enabled.upload(swing(), 'is on board')
+        with pytest.raises(Refused, match='servos are off'):
+            enabled.switch('serial_bridge/play_table', True)
+
+    enabled.persist(go)

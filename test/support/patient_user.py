@@ -101,11 +101,31 @@ class PatientUser(Client):
 
     def _on_machine_state(self, message):
         super()._on_machine_state(message)
-        self.losses += message.message != 'enabled'
+        self.losses += self._is_loss(message.message)
+
+    def _is_loss(self, state):
+        return state != 'enabled'
 
     def _on_motion_status(self, message):
         super()._on_motion_status(message)
         self.losses += self.motion('mode') == 'disabled'
+
+
+class PatientBridgeUser(PatientUser):
+    """Of a bridge without a trajectory node; a machine is lost when its board is silent."""
+
+    def enable(self):
+        self.switch('serial_bridge/enable')
+        self.wait_for_state('enabled')
+
+    def switch(self, service, is_on=True):
+        return super().switch(service, is_on)
+
+    def _takes_goals(self):
+        return True
+
+    def _is_loss(self, state):
+        return state in WITHOUT_BOARD
 
 
 def _is_late(error):

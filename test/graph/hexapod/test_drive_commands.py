@@ -37,20 +37,23 @@ def arrives(go, unit, position, within):
     raise AssertionError(lines)
 
 
-def test_a_machine_is_moved_and_measured_from_the_command_line(says):
-    words = ('go', 'hexapod', '--xyz', '0.002', '0', '0.045', '--rpy', '0', '0', '0.05')
-    _, turns = arrives(lambda: says(*words), 'm', [0.002, 0, 0.045], 5e-4)
-    assert numbers(turns, 'rad') == pytest.approx([0, 0, 0.05], abs=0.01)
-    words = ('go', '--xyz', '0', '-2', '44', '--units', 'mm')
-    _, turns = arrives(lambda: says(*words), 'mm', [0, -2, 44], 0.5)
-    assert numbers(turns, '°')[2] == pytest.approx(2.86, abs=0.5)
-    measured = json.loads(says('pose', '/hexapod', '--json'))
-    assert measured['pose']['xyz'] == pytest.approx([0, -0.002, 0.044], abs=5e-4)
-    says('home')
-    joints = json.loads(says('joints', '--json'))['joints']
-    assert joints['names'] == [f'crank_{leg}' for leg in range(1, 7)]
-    assert joints['positions'] == pytest.approx([2.0945] * 6, abs=0.01)
-    assert 'x, y, z' in says('park')
+def test_a_machine_is_moved_and_measured_from_the_command_line(says, enabled):
+    def go():
+        words = ('go', 'hexapod', '--xyz', '0.002', '0', '0.045', '--rpy', '0', '0', '0.05')
+        _, turns = arrives(lambda: says(*words), 'm', [0.002, 0, 0.045], 5e-4)
+        assert numbers(turns, 'rad') == pytest.approx([0, 0, 0.05], abs=0.01)
+        words = ('go', '--xyz', '0', '-2', '44', '--units', 'mm')
+        _, turns = arrives(lambda: says(*words), 'mm', [0, -2, 44], 0.5)
+        assert numbers(turns, '°')[2] == pytest.approx(2.86, abs=0.5)
+        measured = json.loads(says('pose', '/hexapod', '--json'))
+        assert measured['pose']['xyz'] == pytest.approx([0, -0.002, 0.044], abs=5e-4)
+        says('home')
+        joints = json.loads(says('joints', '--json'))['joints']
+        assert joints['names'] == [f'crank_{leg}' for leg in range(1, 7)]
+        assert joints['positions'] == pytest.approx([2.0945] * 6, abs=0.01)
+        assert 'x, y, z' in says('park')
+
+    enabled.persist(go)
 
 
 def test_state_and_reports_are_there_for_programs(says, enabled):
@@ -71,17 +74,21 @@ def test_out_of_reach_is_status_3_and_what_is_not_understood_2(says):
     assert 'go where?' in says('go', status=2)
 
 
-def test_poses_are_saved_by_name_gone_to_replayed_and_deleted(says):
-    says('go', '--xyz', '0.002', '0', '0.045', '--rpy', '0', '0', '0.05')
-    assert 'saved right' in says('save', 'hexapod', 'right')
-    says('go', '--xyz', '-0.002', '0', '0.045')
-    assert json.loads(says('save', '--json'))['name'] == 'pose_1'
-    arrives(lambda: says('go', 'hexapod', 'right'), 'm', [0.002, 0, 0.045], 5e-4)
-    words = ('replay', 'hexapod', 'right', 'pose_1', '--repeat', '2', '--speed', '0.05', '--json')
-    end = json.loads(says(*words).splitlines()[-1])
-    assert end['pose']['xyz'] == pytest.approx([-0.002, 0, 0.045], abs=5e-4)
-    assert 'no saved pose is called' in says('go', 'hexapod', 'rihgt', status=2)
-    says('delete', 'hexapod', 'pose_1')
-    assert list(json.loads(says('poses', '--json'))['poses']) == ['right']
-    refused = says('delete', 'hexapod', 'pose_1', status=2)
-    assert "hexarm: no saved pose is called 'pose_1'" in refused
+def test_poses_are_saved_by_name_gone_to_replayed_and_deleted(says, enabled):
+    def go():
+        says('go', '--xyz', '0.002', '0', '0.045', '--rpy', '0', '0', '0.05')
+        assert 'saved right' in says('save', 'hexapod', 'right')
+        says('go', '--xyz', '-0.002', '0', '0.045')
+        name = json.loads(says('save', '--json'))['name']
+        assert name.startswith('pose_')
+        arrives(lambda: says('go', 'hexapod', 'right'), 'm', [0.002, 0, 0.045], 5e-4)
+        words = ('replay', 'hexapod', 'right', name, '--repeat', '2', '--speed', '0.05', '--json')
+        end = json.loads(says(*words).splitlines()[-1])
+        assert end['pose']['xyz'] == pytest.approx([-0.002, 0, 0.045], abs=5e-4)
+        assert 'no saved pose is called' in says('go', 'hexapod', 'rihgt', status=2)
+        says('delete', 'hexapod', name)
+        assert list(json.loads(says('poses', '--json'))['poses']) == ['right']
+        refused = says('delete', 'hexapod', name, status=2)
+        assert f"hexarm: no saved pose is called '{name}'" in refused
+
+    enabled.persist(go)

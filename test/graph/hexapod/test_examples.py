@@ -101,14 +101,18 @@ def test_async_moves_report_their_progress(run):
 
 
 def test_watch_joints_prints_names_and_radians_until_ctrl_c(start, enabled):
-    enabled.reach_home()
-    process = start('watch_joints')
-    lines = [process.stdout.readline() for _ in range(4)]
-    process.send_signal(signal.SIGINT)
-    status, said = enabled.end_of(process)
-    assert (status, 'Traceback' in said) == (0, False)
-    assert lines[0].split()[:6] == [f'crank_{leg}' for leg in range(1, 7)]
-    assert [float(word) for word in lines[3].split()[:6]] == pytest.approx([2.0945] * 6, abs=0.01)
+    def go():
+        enabled.reach_home()
+        process = start('watch_joints')
+        lines = [process.stdout.readline() for _ in range(4)]
+        process.send_signal(signal.SIGINT)
+        status, said = enabled.end_of(process)
+        assert (status, 'Traceback' in said) == (0, False)
+        assert lines[0].split()[:6] == [f'crank_{leg}' for leg in range(1, 7)]
+        joints = [float(word) for word in lines[3].split()[:6]]
+        assert joints == pytest.approx([2.0945] * 6, abs=0.01)
+
+    enabled.persist(go)
 
 
 def test_stop_ends_the_motion_of_another_program(start, enabled):
@@ -135,11 +139,11 @@ def test_stop_ends_the_motion_of_another_program(start, enabled):
 def test_emergency_stop_holds_until_it_is_cleared(start, enabled, run):
     def stop():
         assert enabled.end_of(start('stop', '--emergency')) == (0, 'stopped\n')
+        enabled.wait_for_state('stopped')
+        status, said = enabled.end_of(start('axis_tour'))
+        assert status == 1
+        assert 'Refused: serial_bridge/enable: the board is stopped: clear the stop first' in said
+        enabled.trigger('serial_bridge/clear_fault')
 
     enabled.persist(stop)
-    enabled.wait_for_state('stopped')
-    status, said = enabled.end_of(start('axis_tour'))
-    assert status == 1
-    assert 'Refused: serial_bridge/enable: the board is stopped: clear the stop first' in said
-    enabled.trigger('serial_bridge/clear_fault')
     run('tour')

@@ -16,27 +16,30 @@ def says(hexarm, user):
 
 
 def test_a_machine_is_enabled_stopped_cleared_and_disabled_without_ros2(user, says):
-    user.make_ready()
-    user.disable()
-    user.wait_for_state('disarmed')
-    assert says('enable') == (0, '/hexapod: machine enabled, motion idle\n')
-    status, text = says('stop', 'hexapod')
-    assert status == 0
-    assert text.startswith('/hexapod: machine stopped')
-    assert text.endswith('hexarm clear hexapod\n')
-    user.wait_for_state('stopped')
-    status, text = says('enable', '/hexapod')
-    assert (status, text.count('\n')) == (2, 1)
-    assert 'the board is stopped: clear the stop first' in text
-    assert 'hexarm clear hexapod' in text
-    status, text = says('clear')
-    assert (status, text[:25]) == (0, '/hexapod: machine enabled')
-    status, text = says('clear')
-    assert status == 0
-    assert text.endswith(' (nothing to clear: the machine is enabled)\n')
-    status, text = says('disable')
-    assert (status, text[:26]) == (0, '/hexapod: machine disarmed')
-    user.wait_for_state('disarmed')
+    def go():
+        user.make_ready()
+        user.disable()
+        user.wait_for_state('disarmed')
+        assert says('enable') == (0, '/hexapod: machine enabled, motion idle\n')
+        status, text = says('stop', 'hexapod')
+        assert status == 0
+        assert text.startswith('/hexapod: machine stopped')
+        assert text.endswith('hexarm clear hexapod\n')
+        user.wait_for_state('stopped')
+        status, text = says('enable', '/hexapod')
+        assert (status, text.count('\n')) == (2, 1)
+        assert 'the board is stopped: clear the stop first' in text
+        assert 'hexarm clear hexapod' in text
+        status, text = says('clear')
+        assert (status, text[:25]) == (0, '/hexapod: machine enabled')
+        status, text = says('clear')
+        assert status == 0
+        assert text.endswith(' (nothing to clear: the machine is enabled)\n')
+        status, text = says('disable')
+        assert (status, text[:26]) == (0, '/hexapod: machine disarmed')
+        user.wait_for_state('disarmed')
+
+    user.persist(go)
 
 
 def test_where_nobody_answers_namespace_and_domain_are_named_and_where_somebody_is(user, says):

@@ -108,12 +108,12 @@ def test_foreign_process_moves_the_platform(enabled, heard):
 
     def has_moved():
         subprocess.run([sys.executable, '-c', script], check=True, timeout=60)
-        enabled.wait('the end', lambda: enabled.motion('result') in ('reached', 'stopped'))
-        assert enabled.motion('result') == 'reached'
+        enabled.wait_while_driven(
+            'x = 7 mm', lambda: abs(pose_of(poses[-1]).position[0] - 0.007) < NEAR
+        )
 
     enabled.reach_home()
     enabled.persist(has_moved)
-    enabled.wait('x = 7 mm', lambda: abs(pose_of(poses[-1]).position[0] - 0.007) < NEAR)
 
 
 def test_path_is_driven_within_half_a_millimetre_around_the_whole_path(enabled, heard):
@@ -168,19 +168,22 @@ def change_pose_of_path(message):
 
 def test_broken_goals_and_paths_are_refused_in_words_and_the_next_one_works(enabled, publisher):
     goals, paths = publisher(PoseStamped, 'goal_pose'), publisher(Path, 'goal_path')
+
+    def is_refused(topic, message, words):
+        message.header.stamp = now(enabled)
+        topic.publish(message)
+        enabled.wait_while_driven(words, lambda: words in enabled.motion_status.message)
+
     for change, words in (
         (change_quaternion, 'quaternion has length 2'),
         (change_frame, "frame_id 'moon' is unknown"),
     ):
-        message = pose_message(Pose.from_xyz_rpy((0.0, 0.0, 0.045)), now(enabled))
-        change(message)
-        goals.publish(message)
-        enabled.wait(words, lambda w=words: w in enabled.motion_status.message)
-    message = path_message(circle(10), now(enabled))
-    change_pose_of_path(message)
-    paths.publish(message)
-    words = 'pose 7: y is nan'
-    enabled.wait(words, lambda: words in enabled.motion_status.message)
+        goal = pose_message(Pose.from_xyz_rpy((0.0, 0.0, 0.045)), now(enabled))
+        change(goal)
+        enabled.persist(lambda g=goal, w=words: is_refused(goals, g, w))
+    path = path_message(circle(10), now(enabled))
+    change_pose_of_path(path)
+    enabled.persist(lambda: is_refused(paths, path, 'pose 7: y is nan'))
     enabled.reach(Pose.from_xyz_rpy((0.0, 0.0, 0.044)))
 
 
@@ -196,8 +199,11 @@ def test_jog_moves_while_it_is_sent_and_ends_in_a_hold(enabled, publisher, heard
         enabled.spin(0.02)
         return pose_of(poses[-1]).position[0] > 0.002
 
-    enabled.wait('2 mm', push)
-    enabled.wait('rest', lambda: enabled.motion('mode') == 'hold')
+    def jog():
+        enabled.wait_while_driven('2 mm', push)
+        enabled.wait_while_driven('rest', lambda: enabled.motion('mode') == 'hold')
+
+    enabled.persist(jog)
 
 
 def test_services_home_pause_cycle_and_stop_are_obeyed(enabled, heard):
@@ -207,7 +213,7 @@ def test_services_home_pause_cycle_and_stop_are_obeyed(enabled, heard):
 
     def swing():
         enabled.trigger('trajectory/start_cycle')
-        enabled.wait('swinging', lambda: pose_of(poses[-1]).position[0] > 0.001)
+        enabled.wait_while_driven('swinging', lambda: pose_of(poses[-1]).position[0] > 0.001)
         enabled.trigger('trajectory/stop')
         enabled.wait('its end', lambda: enabled.motion('mode') != 'cycle')
         assert enabled.motion('result') == 'stopped'

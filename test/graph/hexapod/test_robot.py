@@ -82,13 +82,16 @@ def test_named_coordinates_move_and_the_others_stay(robot):
 
 
 def test_a_goal_out_of_reach_is_refused_with_the_reason_alone(robot):
-    with pytest.raises(Refused, match=r'^leg \d: rod too short by [\d.]+ mm'):
-        robot.move_to((0.04, 0.0, 0.045))
-    with pytest.raises(Refused, match='are these millimetres'):
-        robot.move_to((0, 0, 45))
-    with pytest.raises(InvalidInput, match='are these degrees'):
-        robot.move(yaw=10)
-    assert not robot.is_moving
+    def refuse():
+        with pytest.raises(Refused, match=r'^leg \d: rod too short by [\d.]+ mm'):
+            robot.move_to((0.04, 0.0, 0.045))
+        with pytest.raises(Refused, match='are these millimetres'):
+            robot.move_to((0, 0, 45))
+        with pytest.raises(InvalidInput, match='are these degrees'):
+            robot.move(yaw=10)
+        assert not robot.is_moving
+
+    robot.persist(refuse)
 
 
 def test_a_path_keeps_its_speed_and_reports_its_progress(robot, setpoints, enabled):
@@ -242,16 +245,19 @@ def test_limits_and_reach_come_from_the_machine_file_of_the_graph(robot):
 
 
 def test_an_emergency_stop_refuses_everything_until_it_is_cleared(robot):
-    robot.persist(robot.emergency_stop)
-    assert robot.state == 'stopped'
-    with pytest.raises(Refused, match='stopped'):
-        robot.move_to(CENTRE)
-    with pytest.raises(Refused, match='stopped'):
-        robot.move(x=0.0)
-    with pytest.raises(Refused, match='stopped'):
-        robot.jog(vx=0.01, seconds=0.2)
-    robot.clear()
-    assert robot.state != 'stopped'
+    def stop():
+        robot.emergency_stop()
+        assert robot.state == 'stopped'
+        with pytest.raises(Refused, match='stopped'):
+            robot.move_to(CENTRE)
+        with pytest.raises(Refused, match='stopped'):
+            robot.move(x=0.0)
+        with pytest.raises(Refused, match='stopped'):
+            robot.jog(vx=0.01, seconds=0.2)
+        robot.clear()
+        assert robot.state != 'stopped'
+
+    robot.persist(stop)
 
 
 def test_home_and_park_return_when_the_machine_is_there(robot):

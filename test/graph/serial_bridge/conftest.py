@@ -8,18 +8,17 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
-from std_srvs.srv import SetBool
 
 from hexarm.graph import Executable, Graph
 from hexarm.machines import find
 from manipulator.nodes.qos import COMMAND, EVERY_WORD, MEASUREMENT
-from patient_user import SERVOS_ON, TRIES, WITHOUT_BOARD, PatientUser
+from patient_user import TRIES, WITHOUT_BOARD, PatientBridgeUser
 
 NAMES = [f'crank_{i}' for i in range(1, 7)]
 SPACE = 'bridge_rig'
 
 
-class Rig(PatientUser):
+class Rig(PatientBridgeUser):
     """A user of the bridge's own topics and services."""
 
     def __init__(self):
@@ -38,15 +37,11 @@ class Rig(PatientUser):
         publishers = (self._commands, self._stops)
         return all(publisher.get_subscription_count() == 1 for publisher in publishers)
 
-    def switch(self, service, is_true=True):
-        return self._call(SetBool, service, SetBool.Request(data=is_true))
-
-    def enable(self):
-        self.switch('serial_bridge/enable')
-        self.wait_for_state('enabled')
-
     def go_back_to_disarmed(self):
         """Whatever the last test left."""
+        self.persist(self._switch_off)
+
+    def _switch_off(self):
         self.wait('the board', lambda: self.machine_state.message not in WITHOUT_BOARD)
         self.trigger('serial_bridge/clear_fault')
         self.switch('serial_bridge/enable', False)
@@ -81,12 +76,6 @@ class Rig(PatientUser):
         for k in range(1, 26):
             self.command([start + (angle - start) * min(k / 12, 1.0)] * 6)
             self.spin(0.02)
-
-    def make_ready(self):
-        """Enabled again, where a stall lost the board; there is no trajectory node here."""
-        self.wait('the board', lambda: self.machine_state.message not in WITHOUT_BOARD)
-        if self.machine_state.message not in SERVOS_ON:
-            self.enable()
 
     def true_angle(self):
         self.true_joints.clear()
@@ -165,5 +154,5 @@ def rig(client):
 @pytest.fixture
 def enabled(rig):
     """The servos on, at park."""
-    rig.enable()
+    rig.make_ready()
     return rig

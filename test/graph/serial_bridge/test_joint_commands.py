@@ -16,16 +16,20 @@ PARK = math.radians(120)
 
 
 def test_commands_move_the_servos_and_silence_holds_them(rig):
-    rig.refuses('disarmed', positions=[PARK + 0.05] * 6)
-    rig.enable()
-    rig.stream(PARK + 0.2)
-    rig.wait_for_state('holding')
-    assert rig.true_angle() == pytest.approx(PARK + 0.2, abs=0.02)
-    rig.stream(PARK + 0.1)
-    report = rig.report()
-    assert float(report['setpoint_to_frame_p50_ms']) > 0
-    assert float(report['round_trip_p50_ms']) > 0
-    assert int(report['frames_sent']) > 1
+    def go():
+        rig.go_back_to_disarmed()
+        rig.refuses('disarmed', positions=[PARK + 0.05] * 6)
+        rig.enable()
+        rig.stream(PARK + 0.2)
+        rig.wait_for_state('holding')
+        assert rig.true_angle() == pytest.approx(PARK + 0.2, abs=0.02)
+        rig.stream(PARK + 0.1)
+        report = rig.report()
+        assert float(report['setpoint_to_frame_p50_ms']) > 0
+        assert float(report['round_trip_p50_ms']) > 0
+        assert int(report['frames_sent']) > 1
+
+    rig.persist(go)
 
 
 BAD_COMMANDS = [
