@@ -19,6 +19,14 @@ def commanded(deflection: StaticDeflection | None, pose: Pose, joints: Array) ->
     return joints if deflection is None else joints + deflection(pose, joints)
 
 
+def joints_under(deflection: StaticDeflection | None, pose: Pose, command: Array) -> Array:
+    """The joints (n,) that a command (n,) leads to, near a pose.
+
+    The deflection there is taken for that at the command: a difference of second order.
+    """
+    return command if deflection is None else command - deflection(pose, command)
+
+
 def deflected(
     deflection: StaticDeflection | None,
     kinematics: Kinematics,
@@ -27,9 +35,8 @@ def deflected(
 ) -> ForwardSolution:
     """The pose under a command (n,) whose own forward solution is `solution`.
 
-    The deflection there is taken for that at the command: a difference of second order. NoSolution
-    as `Kinematics.forward`.
+    NoSolution as `Kinematics.forward`.
     """
     if deflection is None:
         return solution
-    return kinematics.forward(command - deflection(solution.pose, command), solution.pose)
+    return kinematics.forward(joints_under(deflection, solution.pose, command), solution.pose)

@@ -52,7 +52,7 @@ TOLERANCE = (
     '0: 6 % of its range, at most 0.2 rad'
 )
 GOAL_TOLERANCE = (
-    'how far a measured joint may be from a goal that is reached (rad or m); '
+    'how far a reported joint may be from a goal that is reached (rad or m); '
     '0: 1 % of its range, at most 0.5 degrees'
 )
 POSE_TOLERANCE = (

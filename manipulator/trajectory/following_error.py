@@ -32,7 +32,7 @@ FOLLOWING_SHARE, MOST_FOLLOWING = 0.06, 0.2
 """Of a joint's range (and rad, for joints that turn) that it may be from its commands."""
 
 GOAL_SHARE, MOST_AT_GOAL = 0.01, radians(0.5)
-"""Of a joint's range (and rad) that a measured joint may be from where a goal sent it."""
+"""Of a joint's range (and rad) that a reported joint may be from where a goal sent it."""
 
 DISTANCE_SHARE = 0.001
 """Of the characteristic length that a measured pose may be from the goal."""
@@ -143,15 +143,13 @@ class FollowingError:
         # Compared with the last command: between two earlier ones no single joint is at fault.
         self._away = away[-1]
 
-    def deviation(self, is_measured: bool) -> str:
-        """The joint that is farthest from the last command, in words; '' within tolerance.
-
-        Measured joints have the goal's tolerance; of others only the commands are known.
-        """
+    @property
+    def deviation(self) -> str:
+        """The joint that is farthest from the last command, in words; '' within the tolerance."""
         if self._measured is None or not self._commanded:
             return ''
-        tolerance = self._tolerances.goal if is_measured else self._tolerances.following
         away = np.abs(self._commanded[-1] - self._measured)
+        tolerance = self._tolerances.goal
         return self._furthest(away, tolerance, 'the goal') if (away > tolerance).any() else ''
 
     @property

@@ -16,6 +16,7 @@ from manipulator.machine import Machine
 from manipulator.planning.worker import Worker
 from manipulator.pose import Pose
 from manipulator.states import MachineState, MotionMode, MotionResult
+from manipulator.static_deflection import joints_under
 from manipulator.trajectory.active_plan import ActivePlan
 from manipulator.trajectory.closed_loop import ClosedLoop
 from manipulator.trajectory.executor import Executor
@@ -155,6 +156,8 @@ class MotionSupervisor:
 
     def note_joints(self, joints: Array) -> None:
         """The reported joints (n,): they select the branch at takeover, and must follow."""
+        if self._pose is not None:
+            joints = joints_under(self._bare.deflection, self._pose, joints)
         self._joints = joints
         if self._following_error is None:
             return
@@ -271,7 +274,7 @@ class MotionSupervisor:
 
     def _deviation(self, executor: Executor, following: FollowingError) -> str:
         """How far the machine is from the commanded pose, in words; '' within tolerance."""
-        joint = following.deviation(self._is_measured)
+        joint = following.deviation
         if not self._is_measured or self._pose is None:
             return joint
         gap = executor.state.pose.twist_to(self.machine.frames.pivot(self._pose))

@@ -131,12 +131,19 @@ def drive(user, line, pulses, namespace, interface, config):
     user.make_ready()
     user.reach(GOAL)
     reported = cut_and_mend(user, line, pulses, namespace, interface)
-    user.make_ready()
-    user.reach(GOAL)
-    user.spin(0.3)
     joints = machines.load(MACHINE).kinematics.inverse(GOAL)
     wanted = Calibration.from_config(config.servos).counts(joints)
-    reported['away_from_goal_in_counts'] = float(np.abs(np.array(pulses.now) - wanted).max())
+
+    def away():
+        return float(np.abs(np.array(pulses.now) - wanted).max())
+
+    def arrive():
+        user.go_to(GOAL)
+        user.wait_while_driven('the goal', lambda: away() <= 2.0)
+
+    user.make_ready()
+    user.persist(arrive)
+    reported['away_from_goal_in_counts'] = away()
     return reported
 
 

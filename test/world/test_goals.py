@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bridge.protocol import Setpoint
+from hexarm import machines
 from manipulator.pose import Pose
 
 NEAR = {
@@ -110,3 +111,20 @@ def test_speed_override_zero_stands_still_and_one_goes_on(world):
     world.controller.supervisor.override(1.0)
     world.wait('goal', lambda: world.status.result == 'reached')
     assert world.status.goal_stamp == stamp
+
+
+def test_a_goal_of_a_compensated_machine_is_reached(make_world, tmp_path):
+    """The board reports joints with what compensation adds: here more than a goal's tolerance."""
+    path = tmp_path / 'loaded.yaml'
+    text = machines.text_of(machines.find('robocake'))
+    changes = ('compensation: false', 'compensation: true'), ('mass_g: ', 'mass_g: 2')
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+    world = make_world(str(path))
+    goal = near_home(world, 0.03)
+    there = world.machine.kinematics.inverse(goal)
+    added = world.machine.deflection(goal, there)
+    assert np.abs(added).max() > np.radians(0.5)
+    assert world.go_to(goal).result == 'reached'

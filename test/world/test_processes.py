@@ -52,6 +52,20 @@ def test_a_frozen_process_breaks_no_limit(world, name, seconds):
     assert world.go_to(HIGHER).result == 'reached'
 
 
+@pytest.mark.parametrize('name', ['inverse', 'bridge'])
+@pytest.mark.parametrize('seconds', enough([0.15, 0.3], [0.15, 0.25, 0.35, 0.45]))
+def test_a_goal_whose_last_commands_are_lost_is_not_reported_as_reached(world, name, seconds):
+    world.send_goal(FAR)
+    world.run(0.2)
+    getattr(world, name).freeze(seconds)
+    world.wait('result', lambda: world.status.result in ('reached', 'stopped'))
+    there = world.calibration.counts(world.machine.kinematics.inverse(FAR))
+    gap = np.abs(world.pulses()[-1] - there).max()
+    assert world.status.result == ('reached' if gap <= 2.0 else 'stopped')
+    world.wait('controller that holds', lambda: world.status.mode == 'hold')
+    assert world.go_to(HIGHER).result == 'reached'
+
+
 @pytest.mark.parametrize('name', PROCESSES)
 @pytest.mark.parametrize('step', [-3600.0, 3600.0])
 def test_the_clock_of_one_computer_is_set_and_the_motion_goes_on(world, ask, name, step):
