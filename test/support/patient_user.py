@@ -128,9 +128,18 @@ class PatientBridgeUser(PatientUser):
         return state in WITHOUT_BOARD
 
 
+STALLS = (
+    ' s old, at most ',
+    'no pose received for ',
+    'the control loop stalled for ',
+    'machine_state timed out',
+)
+"""Reasons of a computer that stood still; the machine may drive again before that is heard."""
+
+
 def _is_late(error):
-    """Nothing came in time, or a message came so late that the machine ignored it."""
-    return isinstance(error, TimedOut) or ' s old, at most ' in str(error)
+    """Nothing came in time, or too late."""
+    return isinstance(error, TimedOut) or any(words in str(error) for words in STALLS)
 
 
 SERVOS_ON = ('enabled', 'holding')
