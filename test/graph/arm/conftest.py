@@ -123,7 +123,7 @@ def user(arm_graph):
 def arm(user):
     """The enabled arm at home, in the plain jog mode."""
     user.make_ready()
-    user.wait('standing still', lambda: user.motion('mode') == 'hold')
+    user.wait_driven('standing still', lambda: user.motion('mode') == 'hold')
     user.reach_home()
     return user
 

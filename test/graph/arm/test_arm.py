@@ -54,19 +54,22 @@ def test_a_goal_that_is_a_point_holds_the_orientation_where_the_parameter_says_s
     refused = choose('straight')
     assert not refused.successful
     assert 'is not one of given, hold_orientation, parallel, look_at' in refused.reason
-    arm.reach_home()
-    assert choose('hold_orientation').successful
-    try:
-        arm.reach(Pose(HOME.position + np.array([0.05, 0.0, 0.05]), np.eye(3)))
-    finally:
-        assert choose('given').successful
     received = listen()
 
     def is_there():
         error = received.poses[-1].twist_to(HOME) if received.messages else np.ones(6)
         return abs(error[0] + 0.05) < 5e-4 and np.abs(error[3:]).max() < np.radians(0.05)
 
-    arm.wait('the joints', is_there)
+    def go():
+        arm.home()
+        assert choose('hold_orientation').successful
+        try:
+            arm.go_to(Pose(HOME.position + np.array([0.05, 0.0, 0.05]), np.eye(3)))
+        finally:
+            assert choose('given').successful
+        arm.wait_while_driven('the joints', is_there)
+
+    arm.persist(go)
 
 
 def test_path_is_driven_within_a_millimetre(arm, listen):
@@ -194,7 +197,7 @@ def test_emergency_stop_ends_a_motion_and_nothing_resumes_after_the_clear(arm, l
     stops.publish(Bool(data=True))
     arm.wait_for_state('stopped')
     arm.trigger('serial_bridge/clear_fault')
-    arm.wait('goals', lambda: arm.motion('mode') == 'hold')
+    arm.wait_driven('goals', lambda: arm.motion('mode') == 'hold')
     received = listen('joint_command')
     arm.wait_driven('commands', lambda: len(received.messages) > 50)
     assert np.ptp(received.joints, axis=0).max() < 1e-3

@@ -184,9 +184,9 @@ def test_an_action_reports_feedback_and_succeeds_at_its_end(arm, actions):
         if status != SUCCEEDED:
             raise Refused(result.error_string)
         assert (result.error_code, result.error_string) == (actions.kind.Result.SUCCESSFUL, '')
+        arm.wait_while_driven('the joints', lambda: are_at(arm, joint_1=0.2, joint_6=0.1))
 
     arm.persist(go)
-    arm.wait('the joints', lambda: are_at(arm, joint_1=0.2, joint_6=0.1))
     assert len(actions.feedback) > 5
     for one in actions.feedback:
         assert one.joint_names == list(NAMES)

@@ -151,7 +151,7 @@ class Seen:
     def begin(self):
         """Home again; what was heard before is forgotten."""
         self.client.make_ready()
-        self.client.wait('rest', lambda: self.client.motion('mode') == 'hold')
+        self.client.wait_driven('rest', lambda: self.client.motion('mode') == 'hold')
         self.client.reach_home()
         self.client.spin(0.3)
         self.twists.clear()

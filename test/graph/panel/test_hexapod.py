@@ -151,7 +151,7 @@ def test_the_page_is_worth_a_picture(open_page, page, panel, machine, tmp_path):
     machine.start_cycle()
     machine.client.spin(3.0)
     machine.client.trigger('trajectory/stop')
-    machine.client.wait('rest', lambda: machine.client.motion('mode') == 'hold')
+    machine.client.wait_driven('rest', lambda: machine.client.motion('mode') == 'hold')
     machine.client.reach(PICTURED)
     machine.client.spin(2.0)
     shown.page.screenshot(path=path)
