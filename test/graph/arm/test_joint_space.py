@@ -118,10 +118,11 @@ def test_cmd_joints_turns_a_joint_while_it_is_published(arm):
         return arm.motion('mode') == 'jog' and joints(arm)[5] > 0.05
 
     def jog():
+        arm.home()
         arm.wait_while_driven('the joint', has_turned)
         arm.wait_while_driven('rest', lambda: arm.motion('mode') == 'hold')
         assert joints(arm)[5] > 0.05
-        arm.wait('joint 1', lambda: are_at(arm, joint_1=HOME[0]))
+        arm.wait_while_driven('joint 1', lambda: are_at(arm, joint_1=HOME[0]))
 
     arm.persist(jog)
     arm.node.destroy_publisher(publisher)  # only one may jog
