@@ -114,8 +114,8 @@ class Recorder:
         met = self.met
         own = filter(self._selection.is_own, self._subscriptions)
         is_command, publishers = self._selection.is_command, self._node.count_publishers
-        published = {name for name in own if not is_command(name) or publishers(name)}
-        return bool(met) and (published <= met or not every)
+        expected = {name for name in own if not is_command(name) or publishers(name)}
+        return bool(met) and (expected <= met or not every)
 
     @property
     def met(self) -> set[str]:

@@ -127,7 +127,7 @@ class MotionSupervisor:
 
     @property
     def reported_joints(self) -> Array | None:
-        """The joints (n,) that were reported last."""
+        """The joints (n,) that were reported last, without the drives' deflection."""
         return self._joints
 
     def executed(self, stamp: float) -> ActivePlan | None:
@@ -155,7 +155,10 @@ class MotionSupervisor:
             self.status = self._executor.status
 
     def note_joints(self, joints: Array) -> None:
-        """The reported joints (n,): they select the branch at takeover, and must follow."""
+        """The reported joints (n,): they select the branch at takeover, and must follow.
+
+        Where they are commands, the drives' deflection at the last pose is subtracted.
+        """
         if self._pose is not None:
             joints = joints_under(self._bare.deflection, self._pose, joints)
         self._joints = joints
