@@ -3,7 +3,7 @@
 import re
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from bridge.protocol import Mode
 from bridge.servo_config import ServoConfig
@@ -58,6 +58,11 @@ FOUND = {
     Mode.HOLDING: 'The servos have power already and stay where they are.\n',
 }
 """Printed before anything is energised, by the board's mode."""
+
+LOST = """\
+\r\x1b[K{problem}: pull the plug of the servos.
+w: write what was found so far, q: leave
+"""
 
 POSITIVE = {
     'rotary_hexapod': ' (the crank turns from its tangent upwards)',
@@ -120,7 +125,8 @@ class CalibrationSession:
     def run(self) -> ServoWizard | None:
         """The wizard at its end, None where the user did not begin.
 
-        TerminalGone, LinkError: it cannot go on; Refused: the board does not energise.
+        TerminalGone: it cannot go on; LinkError: nor can it, and nothing was found so far;
+        Refused: the board does not energise.
         """
         if not self._has_consent():
             return None
@@ -134,9 +140,24 @@ class CalibrationSession:
         while not wizard.is_over:
             time.sleep(TICK)
             now = time.monotonic()
-            before, wizard = wizard, self._turn(wizard, min(now - last, LONGEST_TICK))
+            try:
+                before, wizard = wizard, self._turn(wizard, min(now - last, LONGEST_TICK))
+            except LinkError as error:
+                if wizard.servos == self.servos:
+                    raise
+                return self._review(wizard, str(error))
             last = now
             self._show(before, wizard)
+        return wizard
+
+    def _review(self, wizard: ServoWizard, problem: str) -> ServoWizard:
+        """The board is lost; what was found is not, where the user wants it."""
+        self.terminal.show(LOST.format(problem=problem))
+        wizard = replace(wizard, stage=Stage.REVIEW, typed=None)
+        while not wizard.is_over:
+            time.sleep(TICK)
+            for key in key_names(self._characters()):
+                wizard = wizard.press(key)
         return wizard
 
     def _has_consent(self) -> bool:
@@ -171,14 +192,18 @@ class CalibrationSession:
 
     def _keys(self) -> tuple[str, ...]:
         """The keys since the last call; raises where terminal or board have gone."""
-        characters = self.terminal.read()
-        if characters is None:
-            raise TerminalGone('the terminal was closed')
+        characters = self._characters()
         if self.line.problem:
             raise LinkError(self.line.problem)
         if self.line.has_released:
             raise LinkError('the board has taken the power from the servos')
         return key_names(characters)
+
+    def _characters(self) -> bytes:
+        characters = self.terminal.read()
+        if characters is None:
+            raise TerminalGone('the terminal was closed')
+        return characters
 
     def _pulses(self) -> tuple[float, ...]:
         by_channel = self.line.pulses
