@@ -14,6 +14,7 @@ from hexarm import panel_process
 MARK = f'HEXARM_TEST_RUN={os.getpid()}'
 os.environ['HEXARM_TEST_RUN'] = str(os.getpid())
 ROOT = Path(__file__).resolve().parents[2]
+TRIES = 5
 
 
 @pytest.fixture(scope='session', autouse=True)
@@ -59,6 +60,23 @@ def hexarm():
         if process.poll() is None:
             process.kill()
             process.wait()
+
+
+@pytest.fixture
+def hexarm_up(hexarm):
+    """Starts `hexarm up …` and reads until it says so; again where its board was lost."""
+
+    def start(*words, until='and enabled'):
+        for _ in range(TRIES):
+            process, text = hexarm('up', *words), ''
+            for line in process.stdout:
+                text += line
+                if until in line:
+                    return process, text
+            assert re.search('hexarm: (not enabled: machine disconnected|timed out)', text), text
+        raise AssertionError(text)
+
+    return start
 
 
 @pytest.fixture(scope='session')

@@ -11,13 +11,11 @@ NODES = {'fake': 'hexarm.nodes fake_hardware', 'simavr': 'firmware.simulator.nod
 @pytest.mark.parametrize(
     ('port', 'plant'), [('simavr', 'servo'), ('simavr', 'mujoco'), ('fake', 'mujoco')]
 )
-def test_the_graph_enables_parks_and_leaves_no_board_behind(hexarm, processes_left, port, plant):
-    process = hexarm('up', 'hexapod', '--port', port, '--plant', plant)
-    text = ''
-    while f'is up on {port} and enabled' not in text:
-        line = process.stdout.readline()
-        assert line, text
-        text += line
+def test_the_graph_enables_parks_and_leaves_no_board_behind(
+    hexarm_up, processes_left, port, plant
+):
+    words = ('hexapod', '--port', port, '--plant', plant)
+    process, _ = hexarm_up(*words, until=f'is up on {port} and enabled')
     (board,) = [pid for pid, words in processes_left().items() if NODES[port] in words]
     process.send_signal(signal.SIGINT)
     rest = process.stdout.read()

@@ -16,7 +16,7 @@ from hexarm import machines
 from hexarm.board.kinematics import crank_hexapod
 from hexarm.graph import Executable, Graph
 from manipulator.nodes.qos import EVERY_WORD, LATCHED
-from patient_user import PatientUser
+from patient_user import PatientBridgeUser
 from tapped_line import Tap, TappedLine
 
 pytestmark = pytest.mark.graph
@@ -36,7 +36,7 @@ class BadLine(TappedLine):
         return b'' if is_lost else received
 
 
-class User(PatientUser):
+class User(PatientBridgeUser):
     """Publishes stops, and calls services without waiting for their answers."""
 
     def __init__(self):
@@ -56,6 +56,12 @@ class User(PatientUser):
 
     def _hear(self, message):
         self.said.append(message.data)
+
+    def make_ready(self):
+        """A board that hears everything and is not stopped."""
+        BadLine.is_bad, BadLine.loss = False, 0.5
+        self.trigger('serial_bridge/clear_fault')
+        self.wait_for_state('disarmed')
 
     def play_cycle(self):
         return self.plays.call_async(SetBool.Request(data=True))
@@ -84,42 +90,46 @@ def user(tap, tmp_path_factory):
 
 @pytest.fixture
 def calm(user):
-    """A board that hears everything and is not stopped."""
-    BadLine.is_bad, BadLine.loss = False, 0.5
-    user.trigger('serial_bridge/clear_fault')
-    user.wait_for_state('disarmed')
+    user.make_ready()
     yield user
     BadLine.is_bad = False
 
 
 def test_a_stop_does_not_wait_for_a_program_on_a_dead_line(calm, tap):
     """Nothing of the program gets through: it would keep the line for a second and more."""
-    BadLine.loss = 1.0
-    BadLine.is_bad = True
-    began = time.monotonic()
-    answer = calm.play_cycle()
-    calm.wait('the cycle', lambda: tap.frames(CycleAxis, began))
-    calm.stops.publish(Bool(data=True))
-    calm.wait('STOP', lambda: tap.frames(Stop, began))
-    BadLine.is_bad = False
-    stopped = tap.frames(Stop, began)[0][0]
-    assert not [m for t, m in tap.frames((CycleAxis, Play), stopped)]
-    calm.wait('an answer', answer.done)
-    assert not answer.result().success
-    calm.wait_for_state('stopped')
+
+    def stop():
+        BadLine.loss = 1.0
+        BadLine.is_bad = True
+        began = time.monotonic()
+        answer = calm.play_cycle()
+        calm.wait('the cycle', lambda: tap.frames(CycleAxis, began))
+        calm.stops.publish(Bool(data=True))
+        calm.wait('STOP', lambda: tap.frames(Stop, began))
+        BadLine.is_bad = False
+        stopped = tap.frames(Stop, began)[0][0]
+        assert not [m for t, m in tap.frames((CycleAxis, Play), stopped)]
+        calm.wait('an answer', answer.done)
+        assert not answer.result().success
+        calm.wait_for_state('stopped')
+
+    calm.persist(stop)
 
 
 def test_what_a_stop_interrupted_is_not_taken_up_again(calm, tap):
-    BadLine.is_bad = True
-    answer = calm.play_cycle()
-    calm.stops.publish(Bool(data=True))
-    calm.wait('an answer', answer.done)
-    BadLine.is_bad = False
-    calm.wait_for_state('stopped')
-    stopped = time.monotonic()
-    calm.trigger('serial_bridge/clear_fault')
-    calm.spin(0.5)
-    assert not tap.frames((CycleAxis, Play), stopped)
+    def stop():
+        BadLine.is_bad = True
+        answer = calm.play_cycle()
+        calm.stops.publish(Bool(data=True))
+        calm.wait('an answer', answer.done)
+        BadLine.is_bad = False
+        calm.wait_for_state('stopped')
+        stopped = time.monotonic()
+        calm.trigger('serial_bridge/clear_fault')
+        calm.spin(0.5)
+        assert not tap.frames((CycleAxis, Play), stopped)
+
+    calm.persist(stop)
 
 
 def test_a_false_right_behind_does_not_take_its_place(calm):
@@ -134,15 +144,19 @@ def test_a_program_does_not_spoil_an_upload(calm, tap):
     for k, row in enumerate(rows):
         row.time_from_start.nanosec = k % 10 * 100_000_000
         row.time_from_start.sec = k // 10
-    began = time.monotonic()
-    calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
-    calm.wait('rows', lambda: tap.frames(TableRow, began))
-    answer = calm.play_cycle()
-    calm.wait('an answer', answer.done)
-    assert answer.result().message == 'another upload is in progress'
-    calm.wait(
-        'the upload', lambda: 'table of 100 rows, 100 ms apart, is on board' in calm.said, 20.0
-    )
+
+    def upload():
+        began = time.monotonic()
+        calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
+        calm.wait('rows', lambda: tap.frames(TableRow, began))
+        answer = calm.play_cycle()
+        calm.wait('an answer', answer.done)
+        assert answer.result().message == 'another upload is in progress'
+        calm.wait(
+            'the upload', lambda: 'table of 100 rows, 100 ms apart, is on board' in calm.said
+        )
+
+    calm.persist(upload)
 
 
 def test_a_table_beyond_what_a_board_holds_is_not_even_decoded(calm):

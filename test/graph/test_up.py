@@ -48,9 +48,8 @@ def page_of(address):
             time.sleep(0.1)
 
 
-def test_up_enables_serves_its_panel_and_parks_on_ctrl_c(hexarm, processes_left):
-    process = hexarm('up', 'hexapod', '--panel')
-    text = read_until(process, 'The panel is on')
+def test_up_enables_serves_its_panel_and_parks_on_ctrl_c(hexarm_up, processes_left):
+    process, text = hexarm_up('hexapod', '--panel', until='The panel is on')
     assert 'is up on fake and enabled' in text
     assert len(processes_left()) == 3  # up with its four nodes, the board, the panel
     address = text.split('The panel is on')[1].split()[0]
@@ -69,10 +68,9 @@ def test_up_enables_serves_its_panel_and_parks_on_ctrl_c(hexarm, processes_left)
     ('node', 'words'), [('fake_hardware', ()), ('trajectory', ('--separate',))]
 )
 def test_up_reports_which_process_died_stops_the_rest_and_fails(
-    hexarm, processes_left, node, words
+    hexarm_up, processes_left, node, words
 ):
-    process = hexarm('up', 'robocake', *words)
-    read_until(process, 'is up on fake and enabled')
+    process, _ = hexarm_up('robocake', *words)
     os.kill(node_of(node, processes_left), signal.SIGKILL)
     rest = process.stdout.read()
     assert process.wait(60) == 1
@@ -80,9 +78,8 @@ def test_up_reports_which_process_died_stops_the_rest_and_fails(
     wait_until_none_is_left(processes_left)
 
 
-def test_nodes_end_when_up_itself_is_killed(hexarm, processes_left):
-    process = hexarm('up', 'hexapod')
-    read_until(process, 'is up on fake and enabled')
+def test_nodes_end_when_up_itself_is_killed(hexarm_up, processes_left):
+    process, _ = hexarm_up('hexapod')
     process.kill()
     process.wait(60)
     wait_until_none_is_left(processes_left)

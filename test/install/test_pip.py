@@ -125,7 +125,7 @@ def refusal(source, *words, **variables):
         env=os.environ | variables,
         text=True,
         capture_output=True,
-        timeout=30,
+        timeout=120,
     )
     return done.returncode, done.stderr.strip()
 

@@ -87,7 +87,8 @@ def test_poses_are_saved_by_name_gone_to_replayed_and_deleted(says, enabled):
         assert end['pose']['xyz'] == pytest.approx([-0.002, 0, 0.045], abs=5e-4)
         assert 'no saved pose is called' in says('go', 'hexapod', 'rihgt', status=2)
         says('delete', 'hexapod', name)
-        assert list(json.loads(says('poses', '--json'))['poses']) == ['right']
+        kept = json.loads(says('poses', '--json'))['poses']
+        assert ('right' in kept, name in kept) == (True, False)
         refused = says('delete', 'hexapod', name, status=2)
         assert f"hexarm: no saved pose is called '{name}'" in refused
 

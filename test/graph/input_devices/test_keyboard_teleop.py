@@ -57,7 +57,7 @@ class Typist:
 
     def type_until(self, key, is_so):
         """Holds a key, as long as the graph needs to connect."""
-        for _ in range(100):
+        for _ in range(round(10 * PATIENCE)):
             self.type(key)
             self.listener.spin(0.1)
             if is_so():
