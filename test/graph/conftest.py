@@ -73,7 +73,7 @@ def hexarm_up(hexarm):
                 text += line
                 if until in line:
                     return process, text
-            assert re.search('hexarm: (not enabled: machine disconnected|timed out)', text), text
+            assert re.search('no (frame|answer) from the board|hexarm: timed out', text), text
         raise AssertionError(text)
 
     return start

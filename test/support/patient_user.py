@@ -133,6 +133,7 @@ STALLS = (
     'no pose received for ',
     'the control loop stalled for ',
     'machine_state timed out',
+    'no answer from the board after ',
 )
 """Reasons of a computer that stood still; the machine may drive again before that is heard."""
 

@@ -21,6 +21,7 @@ from hexarm import machines
 
 ROOT = Path(__file__).resolve().parents[3]
 PATIENCE, TRIES = 60.0, 5
+LOST = ('no frame from the board', 'no answer', 'does not answer')
 RIGHT, LEFT = '\x1b[C', '\x1b[D'
 
 
@@ -150,7 +151,7 @@ def persist(people):
                 return session()
             except AssertionError:
                 people[-1].read()
-                if 'no frame from the board' not in people[-1].all_said:
+                if not any(words in people[-1].all_said for words in LOST):
                     raise
                 people.pop().close()
         return session()
