@@ -2,8 +2,8 @@
 SHELL := /bin/bash
 ENV := .venv
 BIN := $(ENV)/bin
-# One worker a core, and two a core for tests that mostly wait for other processes. The tests of a file stay together, for
-# its fixtures' sake, and those of a folder that share a graph (test/conftest.py). In a worker numpy has one thread.
+# One worker a core, and three for two cores where tests mostly wait for other processes. The tests of a file stay together,
+# for its fixtures' sake, and those of a folder that share a graph (test/conftest.py). In a worker numpy has one thread.
 # Tests are compiled once, and not by every worker of every run.
 PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -q --dist loadfile
 CORES := $(shell n=$$(nproc); echo $$((n < 8 ? n : 8)))
@@ -26,7 +26,7 @@ quick: $(ENV)/ready $(LIBRARIES)
 
 test: check
 	@echo 'Tests that start graphs, a browser, installations, or are long: 4 minutes on two quiet cores.'
-	@$(PYTEST) -n $$((2 * $(CORES))) -m 'processes or long'
+	@$(PYTEST) -n $$((3 * $(CORES) / 2)) -m 'processes or long'
 
 lint: $(ENV)/ready $(LIBRARIES)
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy

@@ -196,7 +196,7 @@ def test_emergency_stop_ends_a_motion_and_nothing_resumes_after_the_clear(arm, l
     arm.wait_driven('moving', is_moving)
     stops.publish(Bool(data=True))
     arm.wait_for_state('stopped')
-    arm.trigger('serial_bridge/clear_fault')
+    arm.make_ready()
     arm.wait_driven('goals', lambda: arm.motion('mode') == 'hold')
     received = listen('joint_command')
     arm.wait_driven('commands', lambda: len(received.messages) > 50)

@@ -168,7 +168,7 @@ def test_the_machine_works_again_at_once(senders, user):
     for _, publisher in senders.values():
         user.node.destroy_publisher(publisher)
     senders.clear()
-    user.disable()
+    user.persist(user.disable)
     user.make_ready()
     user.reach_home()
     goal = Pose.from_xyz_rpy((0.003, 0.0, 0.043))

@@ -52,7 +52,7 @@ def test_where_nobody_answers_namespace_and_domain_are_named_and_where_somebody_
 def test_a_stop_from_the_same_computer_needs_no_ros(enabled):
     assert send_stop(stop_address('/hexapod/serial_bridge', domain_here()))
     enabled.wait_for_state('stopped')
-    enabled.trigger('serial_bridge/clear_fault')
+    enabled.make_ready()
 
 
 def test_a_stop_goes_out_over_ros_before_the_machine_has_reported_anything(user, hexarm):

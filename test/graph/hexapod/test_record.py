@@ -279,4 +279,4 @@ def test_recorder_of_commands_is_not_taken_for_the_machine(user, hexarm, tmp_pat
     user.persist(lambda: run_program(user, 'robot.emergency_stop()'))
     recorder.send_signal(signal.SIGINT)
     ends_with(recorder, 0)
-    user.trigger('serial_bridge/clear_fault')
+    user.make_ready()

@@ -148,12 +148,16 @@ def test_the_page_is_worth_a_picture(open_page, page, panel, machine, tmp_path):
     kept = os.environ.get('WRITE_SCREENSHOT')
     shown = open_page(panel, (1280, 760), pixels=1.0) if kept else page
     path = kept or str(tmp_path / 'panel.png')
-    machine.start_cycle()
-    machine.client.spin(3.0)
-    machine.client.trigger('trajectory/stop')
-    machine.client.wait_driven('rest', lambda: machine.client.motion('mode') == 'hold')
-    machine.client.reach(PICTURED)
-    machine.client.spin(2.0)
+
+    def draw():
+        machine.start_cycle()
+        machine.client.spin(3.0)
+        machine.client.trigger('trajectory/stop')
+        machine.client.wait_while_driven('rest', lambda: machine.client.motion('mode') == 'hold')
+        machine.client.go_to(PICTURED)
+        machine.client.spin(2.0)
+
+    machine.client.persist(draw)
     shown.page.screenshot(path=path)
     colours = np.asarray(Image.open(path).convert('RGB'), dtype=int).reshape(-1, 3)
     red, green, blue = colours.T
