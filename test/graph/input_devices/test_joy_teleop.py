@@ -51,7 +51,7 @@ class Pad:
             self.send(tremor)
 
     def rest(self):
-        self.axes[:6] = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0]
+        self.axes[:7] = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0]
         self.buttons[:] = [0] * 11
         self.send_for(0.1)
         self.listener.spin(0.1)
@@ -62,7 +62,7 @@ class Pad:
         """Holds the deadman and pushes along x until twists come."""
         self.hold_until(lambda: self.last == (0.05, 0, 0, 0, 0, 0), LB, x=1.0)
 
-    def hold_until(self, is_so, *buttons, x=0.0):
+    def hold_until(self, is_so, *buttons, x=0.0, cross=0.0):
         """Presses and pushes; after a stall of this machine the pad must come to rest first."""
         end = time.monotonic() + PATIENCE
         while not is_so():
@@ -70,7 +70,7 @@ class Pad:
             self.rest()
             for button in buttons:
                 self.buttons[button] = 1
-            self.axes[1] = x
+            self.axes[1], self.axes[6] = x, cross
             for _ in range(25):
                 self.send()
                 if is_so():
@@ -150,8 +150,7 @@ def test_zero_follows_when_messages_cease(pad):
 
 def test_first_mode_is_known_to_late_listeners_and_the_cross_changes_it(pad):
     pad.listener.wait('the first mode', lambda: pad.listener.modes, PATIENCE)
-    pad.axes[6] = -1.0
-    pad.send_until('another mode', lambda: pad.listener.modes[-1] == 'hold_orientation')
+    pad.hold_until(lambda: 'hold_orientation' in pad.listener.modes, cross=-1.0)
 
 
 def test_stop_asks_the_trajectory_node_once(pad):

@@ -68,6 +68,10 @@ class Typist:
         twists = self.listener.twists
         self.listener.wait(f'{twist}', lambda: twists and twists[-1][0] == twist, PATIENCE)
 
+    def await_twist(self, *twist, frame='base'):
+        """Whether or not others followed it already."""
+        self.listener.wait(f'{twist}', lambda: (twist, frame) in self.listener.twists, PATIENCE)
+
     def await_end(self):
         self.listener.wait('the end', lambda: self.process.poll() is not None, PATIENCE)
         return self.process.returncode
@@ -108,7 +112,7 @@ def typist(shared):
 
 def test_a_press_moves_and_ends_with_one_zero(typist):
     typist.type(b'w')
-    typist.await_last((0.02, 0, 0, 0, 0, 0))
+    typist.await_twist(0.02, 0, 0, 0, 0, 0)
     typist.await_last(ZERO)
     typist.listener.spin(0.3)
     twists = [twist for twist, _ in typist.listener.twists]
@@ -118,7 +122,7 @@ def test_a_press_moves_and_ends_with_one_zero(typist):
 
 def test_space_ends_the_motion_and_asks_for_a_stop(typist):
     typist.type(b'jjj')
-    typist.await_last((0, 0, 0, 0, 0, 0.2))
+    typist.await_twist(0, 0, 0, 0, 0, 0.2)
     typist.type(b' ')
     typist.await_last(ZERO)
     typist.listener.wait('stop', lambda: typist.listener.asked == ['stop'], PATIENCE)
@@ -128,8 +132,7 @@ def test_mode_frame_gripper_and_home_reach_their_topics(typist):
     typist.type(b'mb')
     typist.listener.wait('mode', lambda: typist.listener.modes == ['hold_orientation'], PATIENCE)
     typist.type(b'r')
-    typist.await_last((0, 0, 0.02, 0, 0, 0))
-    assert typist.listener.twists[-1][1] == 'tool'
+    typist.await_twist(0, 0, 0.02, 0, 0, 0, frame='tool')
     typist.type(b'v')
     typist.listener.wait('gripper', lambda: typist.listener.openings, PATIENCE)
     typist.type(b'h')
