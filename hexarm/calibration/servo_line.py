@@ -98,14 +98,18 @@ class ServoLine:
     def __exit__(self, *exception: object) -> None:
         """Servos off, as far as there is a board to obey; then the port is given back."""
         with _undisturbed():
-            until = time.monotonic() + ANSWER_WITHIN
-            while self._must_go_off and time.monotonic() < until:
-                try:
-                    self._ask(Disarm())
-                    self.is_off = True
-                except Refused:  # a STOP is in progress, or a frame was lost
-                    time.sleep(LOOK_EVERY)
+            self.switch_off()
             self._thread.close()
+
+    def switch_off(self) -> None:
+        """Takes the power from the servos; `is_off` is whether the board has confirmed it."""
+        until = time.monotonic() + ANSWER_WITHIN
+        while self._must_go_off and time.monotonic() < until:
+            try:
+                self._ask(Disarm())
+                self.is_off = True
+            except Refused:  # a STOP is in progress, or a frame was lost
+                time.sleep(LOOK_EVERY)
 
     @property
     def mode(self) -> Mode | None:

@@ -60,7 +60,7 @@ FOUND = {
 """Printed before anything is energised, by the board's mode."""
 
 LOST = """\
-\r\x1b[K{problem}: pull the plug of the servos.
+\r\x1b[K{problem}{advice}
 w: write what was found so far, q: leave
 """
 
@@ -151,8 +151,10 @@ class CalibrationSession:
         return wizard
 
     def _review(self, wizard: ServoWizard, problem: str) -> ServoWizard:
-        """The board is lost; what was found is not, where the user wants it."""
-        self.terminal.show(LOST.format(problem=problem))
+        """Servos off, for the board is lost; what was found is not, where the user wants it."""
+        self.line.switch_off()
+        advice = '' if self.line.is_off else ': pull the plug of the servos'
+        self.terminal.show(LOST.format(problem=problem, advice=advice))
         wizard = replace(wizard, stage=Stage.REVIEW, typed=None)
         while not wizard.is_over:
             time.sleep(TICK)

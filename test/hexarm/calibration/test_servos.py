@@ -117,7 +117,8 @@ def test_a_board_that_vanishes_ends_the_session_in_words(sit_down):
     assert 'Traceback' not in person.said
 
 
-def test_what_was_found_is_not_lost_with_the_board(persist, sit_down):
+@pytest.mark.parametrize('why', ['was disconnected', 'the battery is too low'])
+def test_what_was_found_is_not_lost_with_the_board(persist, sit_down, why):
     def session():
         person, file = sit_down(WRONG, '--only', 'crank_1')
         person.begin()
@@ -126,9 +127,17 @@ def test_what_was_found_is_not_lost_with_the_board(persist, sit_down):
         person.await_words('crank_1, centre')
         person.type('\r')
         person.await_words('crank_1, scale')
-        person.board.do(lambda: person.board.plug(None))
-        person.await_words('was disconnected')
-        person.await_words('pull the plug')
+        is_there = why != 'was disconnected'
+        if is_there:
+            person.machine.board.battery_mv = 5000
+        else:
+            person.board.do(lambda: person.board.plug(None))
+        person.await_words(why)
+        person.await_words('w: write what was found so far')
+        assert ('pull the plug' in person.all_said, person.pulses[0] is None) == (
+            not is_there,
+            is_there,
+        )
         person.type(' w')
         assert person.await_end() == 0
         first = BoardConfig.from_machine(machines.read(str(file))).servos.joints[0]
