@@ -25,7 +25,7 @@ quick: $(ENV)/ready $(LIBRARIES)
 	@$(PYTEST) -n $(CORES) -m 'not processes and not long' $(ALL_SLOW:%=--ignore=%)
 
 test: check
-	@echo 'Tests that start graphs, a browser, installations, or are long: 4 minutes on two quiet cores.'
+	@echo 'Tests that start graphs, a browser, installations, or are long: 5 minutes on two quiet cores.'
 	@$(PYTEST) -n $$((3 * $(CORES) / 2)) -m 'processes or long'
 
 lint: $(ENV)/ready $(LIBRARIES)
