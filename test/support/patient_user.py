@@ -134,6 +134,7 @@ STALLS = (
     'the control loop stalled for ',
     'machine_state timed out',
     'no answer from the board after ',
+    'the machine is holding',
 )
 """Reasons of a computer that stood still; the machine may drive again before that is heard."""
 
