@@ -118,6 +118,6 @@ def browser():
     from playwright.sync_api import sync_playwright  # noqa: PLC0415 (an error only if required)
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS, timeout=180_000)
         yield browser
         browser.close()

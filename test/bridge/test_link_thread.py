@@ -51,7 +51,7 @@ class Rig:
 
     def wait_for(self, condition):
         with self.changed:
-            assert self.changed.wait_for(condition, timeout=5.0), self.events
+            assert self.changed.wait_for(condition, timeout=60.0), self.events
 
     def wait_for_event(self, kind, count=1):
         self.wait_for(lambda: sum(isinstance(e, kind) for e in self.events) >= count)
@@ -72,7 +72,7 @@ class Rig:
 
     def arm(self):
         self.wait_for_event(Connected)
-        self.thread.request(Arm(PARK)).result(2.0)
+        self.thread.request(Arm(PARK)).result(60.0)
         self.wait_for_mode(Mode.ARMED)
 
     def put(self, counts):
@@ -113,11 +113,11 @@ def test_setpoints_reach_the_servos(rig):
 def test_stop_is_answered_and_further_stops_too(rig):
     rig.arm()
     futures = [rig.thread.request(Stop()) for _ in range(5)]
-    assert [future.result(2.0) for future in futures] == [None] * 5
+    assert [future.result(60.0) for future in futures] == [None] * 5
     rig.wait_for_mode(Mode.STOPPED)
     with pytest.raises(Refused, match='clear the stop first'):
-        rig.thread.request(Arm(PARK)).result(2.0)
-    rig.thread.request(Clear()).result(2.0)
+        rig.thread.request(Arm(PARK)).result(60.0)
+    rig.thread.request(Clear()).result(60.0)
 
 
 def test_an_unplugged_board_is_lost_and_found_again_disarmed(rig):
@@ -127,7 +127,7 @@ def test_an_unplugged_board_is_lost_and_found_again_disarmed(rig):
     assert 'was disconnected' in rig.events[-1].reason
     assert not rig.path.exists()
     with pytest.raises(Refused, match='no board'):
-        rig.thread.request(Arm(PARK)).result(2.0)
+        rig.thread.request(Arm(PARK)).result(60.0)
     line = FakeLine(rig.path)
     rig.board.do(lambda: rig.board.plug(line))
     rig.wait_for_event(Connected, 2)
@@ -159,7 +159,7 @@ def test_a_board_whose_computer_stands_still_lets_no_time_pass_meanwhile(tmp_pat
     went_on = threading.Event()
     board.do(lambda: time.sleep(0.2))
     board.do(lambda: board.do(went_on.set))
-    assert went_on.wait(5.0)
+    assert went_on.wait(60.0)
     board.close()
     assert max(machine.steps) <= 0.05
 
@@ -204,8 +204,8 @@ def test_a_board_is_not_lost_because_this_thread_was_held_up(tmp_path):
 def test_a_missing_port_is_reported_and_looked_for(no_board):
     thread, events = no_board
     with pytest.raises(Refused, match='no board is connected: no port'):
-        thread.request(Stop()).result(2.0)
-    deadline = time.monotonic() + 5.0
+        thread.request(Stop()).result(60.0)
+    deadline = time.monotonic() + 60.0
     while len(events) < 3 and time.monotonic() < deadline:
         time.sleep(0.01)
     assert 'does not exist' in events[2].reason
@@ -226,11 +226,11 @@ def test_a_device_that_sends_noise_without_end_stalls_nothing(tmp_path):
     shouter.start()
     thread.start()
     try:
-        deadline = time.monotonic() + 5.0
+        deadline = time.monotonic() + 60.0
         while link.session.reader.bad_frames < 1000 and time.monotonic() < deadline:
             time.sleep(0.01)
         with pytest.raises(Refused, match='waiting for HELLO'):
-            thread.request(Stop()).result(2.0)
+            thread.request(Stop()).result(60.0)
         assert link.session.reader.bad_frames >= 1000
     finally:
         is_over.set()

@@ -31,9 +31,11 @@ def ros2_run(colcon_prefix, colcon_environment, tmp_path):
         started.append(subprocess.Popen(words, cwd=tmp_path, env=colcon_environment))
 
     yield start
-    for process in reversed(started):
+    statuses = []
+    for process in reversed(started):  # one by one: DDS leaves late where all leave at once
         process.terminate()
-    assert [process.wait(PATIENCE) for process in started] == [0] * len(started)
+        statuses.append(process.wait(PATIENCE))
+    assert statuses == [0] * len(started)
 
 
 def test_ament_index_knows_the_package(colcon_prefix, colcon_environment, monkeypatch):

@@ -137,7 +137,8 @@ def test_mode_frame_gripper_and_home_reach_their_topics(typist):
     typist.listener.wait('gripper', lambda: typist.listener.openings, PATIENCE)
     typist.type(b'h')
     typist.listener.wait('home', lambda: typist.listener.asked == ['home'], PATIENCE)
-    assert b'mode hold_orientation, frame tool' in typist.seen
+    line = b'mode hold_orientation, frame tool'
+    typist.listener.wait('the line', lambda: line in typist.seen, PATIENCE)
 
 
 def test_the_terminal_reports_who_listens(typist):

@@ -20,6 +20,10 @@ SMALL = 0.1
 
 PATIENCE = 180_000
 """Milliseconds: a page without a graphics card beside a busy graph takes most of a minute."""
+GIVE_UP = 600.0
+"""Seconds, after which asking again has no use."""
+SHORTLY = 15_000
+"""Milliseconds for what the page may have disabled; it is then tried again."""
 CYCLED = 3e-3
 """Metres from home that tell a cycle from standing still."""
 MOVING = 3e-4
@@ -99,8 +103,13 @@ class PanelPage:
         """Types into it, where the machine takes goals: else the page has it disabled."""
         box = self.field(label)
         with contextlib.suppress(Error):
-            box.fill(text, timeout=5000)
+            box.fill(text, timeout=SHORTLY)
             box.press('Enter')
+
+    def press(self, name):
+        """Presses the first button of this name, where the page lets one."""
+        with contextlib.suppress(Error):
+            self.page.get_by_role('button', name=name).first.click(timeout=SHORTLY)
 
     def centre(self, pad):
         """Of a pad of the joystick, on the page, and half of its width and height."""
@@ -175,7 +184,7 @@ class Seen:
 
         A computer that is too busy to draw the page loses the press, as it should: then again.
         """
-        give_up = time.monotonic() + 120.0
+        give_up = time.monotonic() + GIVE_UP
         while time.monotonic() < give_up:
             self.client.make_ready()
             page.hold(pad, *push)
@@ -217,7 +226,7 @@ class Seen:
 
     def asked_until(self, ask, is_so):
         """Asks the page again every few seconds: one that is behind takes it back."""
-        end = time.monotonic() + 120.0
+        end = time.monotonic() + GIVE_UP
         while not is_so():
             assert time.monotonic() < end, f'{self.client.summary}; it moved by {self.way()}'
             self.client.make_ready()

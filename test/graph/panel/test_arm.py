@@ -76,8 +76,7 @@ def test_the_gripper_opens_by_its_slider_and_the_slider_follows_others(page, arm
     closed = opening(arm)
     arm.asked_until(lambda: page.type(GRIPPER, '100'), lambda: opening(arm) > closed + 0.5)
     others = arm.client.node.create_publisher(Float64, 'gripper', LATCHED)
-    others.publish(Float64(data=0.0))
-    arm.client.wait('the slider', lambda: page.value(GRIPPER) == 0, 20.0)
+    arm.asked_until(lambda: others.publish(Float64(data=0.0)), lambda: page.value(GRIPPER) == 0)
 
 
 def opening(arm):

@@ -1,6 +1,5 @@
 """A person at a terminal with `hexarm calibrate servos`, and the board that she looks at."""
 
-import contextlib
 import os
 import pty
 import select
@@ -21,7 +20,8 @@ from hexarm import machines
 
 ROOT = Path(__file__).resolve().parents[3]
 PATIENCE, TRIES = 60.0, 5
-LOST = ('no frame from the board', 'no answer', 'does not answer')
+LOST = ('no frame from the board', 'no answer', 'does not answer', 'no board is connected')
+LOST += ('pull the',)  # the plug of servos that no board has confirmed to be off
 RIGHT, LEFT = '\x1b[C', '\x1b[D'
 
 
@@ -45,8 +45,13 @@ class Screen:
     def type(self, keys):
         os.write(self.keys, keys.encode())
 
+    def hang_up(self):
+        """The window is closed: nobody reads what is said from here on."""
+        os.close(self.keys)
+        self.keys = None
+
     def read(self):
-        while select.select([self.keys], [], [], 0.02)[0]:
+        while self.keys is not None and select.select([self.keys], [], [], 0.02)[0]:
             try:
                 words = os.read(self.keys, 4096).decode(errors='replace')
             except OSError:
@@ -75,9 +80,9 @@ class Screen:
     def close(self):
         if self.process.poll() is None:
             os.kill(self.process.pid, signal.SIGKILL)
-        self.process.wait(10)
-        with contextlib.suppress(OSError):
-            os.close(self.keys)
+        self.process.wait(PATIENCE)
+        if self.keys is not None:
+            self.hang_up()
 
 
 class Person(Screen):
@@ -150,8 +155,9 @@ def persist(people):
             try:
                 return session()
             except AssertionError:
-                people[-1].read()
-                if not any(words in people[-1].all_said for words in LOST):
+                person = people[-1]
+                person.read()
+                if person.keys and not any(words in person.all_said for words in LOST):
                     raise
                 people.pop().close()
         return session()

@@ -83,7 +83,7 @@ def test_command_without_ros_reports_what_it_needs(tmp_path):
     script = f'import sys; sys.path.insert(0, {str(tmp_path)!r}); import hexarm.cli.main as m; '
     script += "sys.exit(m.main(['up', 'hexapod']))"
     done = subprocess.run(
-        [sys.executable, '-c', script], check=False, capture_output=True, text=True, timeout=30
+        [sys.executable, '-c', script], check=False, capture_output=True, text=True, timeout=120
     )
     assert done.returncode == 1
     assert done.stderr.startswith('hexarm: needs the Python module rclpy: install ROS 2 Jazzy')

@@ -16,7 +16,7 @@ from manipulator.errors import Refused
 
 TYPE = 'sensor_msgs/msg/JointState'
 MESSAGE_DATA = 1
-PATIENCE = 20.0
+PATIENCE = 60.0
 
 
 @pytest.fixture

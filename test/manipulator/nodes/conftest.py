@@ -9,7 +9,7 @@ import rclpy
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 
-PATIENCE = 20.0
+PATIENCE = 60.0
 
 
 class Graph:

@@ -14,7 +14,7 @@ from std_srvs.srv import Trigger
 
 from manipulator.nodes.late_answers import MOST_WAITING, create_late_service
 
-PATIENCE = 20.0
+PATIENCE = 60.0
 
 
 @pytest.fixture(params=[EventsExecutor, SingleThreadedExecutor])

@@ -42,7 +42,9 @@ class Taught:
 
 
 @pytest.fixture
-def taught(tmp_path):
+def taught(tmp_path, monkeypatch):
+    """On a clock that stands still: a pose counts for half a second."""
+    monkeypatch.setattr(saved_pose_topics, 'time', MagicMock(monotonic=lambda: 100.0))
     return Taught(tmp_path / 'new' / 'robocake.poses.yaml')
 
 
@@ -68,8 +70,7 @@ def test_the_service_names_the_pose_that_it_saved(taught):
 
 def test_a_pose_that_is_not_measured_any_more_is_not_saved(taught, monkeypatch):
     taught.stands()
-    later = saved_pose_topics.time.monotonic() + 1.0
-    monkeypatch.setattr(saved_pose_topics, 'time', MagicMock(monotonic=lambda: later))
+    monkeypatch.setattr(saved_pose_topics, 'time', MagicMock(monotonic=lambda: 101.0))
     assert 'refused: no pose' in taught.send('save_pose', 'up')
 
 
