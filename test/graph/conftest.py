@@ -62,6 +62,9 @@ def hexarm():
             process.wait()
 
 
+LOST = 'no (frame|answer) from the board|the board has restarted|hexarm: (timed out|no answer)'
+
+
 @pytest.fixture
 def hexarm_up(hexarm):
     """Starts `hexarm up …` and reads until it says so; again where its board was lost."""
@@ -73,7 +76,7 @@ def hexarm_up(hexarm):
                 text += line
                 if until in line:
                     return process, text
-            assert re.search('no (frame|answer) from the board|hexarm: timed out', text), text
+            assert re.search(LOST, text), text
         raise AssertionError(text)
 
     return start

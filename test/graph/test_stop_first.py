@@ -15,8 +15,9 @@ from bridge.servo_config import BoardConfig
 from hexarm import machines
 from hexarm.board.kinematics import crank_hexapod
 from hexarm.graph import Executable, Graph
+from manipulator.errors import TimedOut
 from manipulator.nodes.qos import EVERY_WORD, LATCHED
-from patient_user import PatientBridgeUser
+from patient_user import WITHOUT_BOARD, PatientBridgeUser
 from tapped_line import Tap, TappedLine
 
 pytestmark = pytest.mark.graph
@@ -57,9 +58,10 @@ class User(PatientBridgeUser):
     def _hear(self, message):
         self.said.append(message.data)
 
-    def make_ready(self):
+    def _make_ready(self):
         """A board that hears everything and is not stopped."""
         BadLine.is_bad, BadLine.loss = False, 0.5
+        self.wait('a board', lambda: self.machine_state.message not in WITHOUT_BOARD)
         self.trigger('serial_bridge/clear_fault')
         self.wait_for_state('disarmed')
 
@@ -107,8 +109,8 @@ def test_a_stop_does_not_wait_for_a_program_on_a_dead_line(calm, tap):
         calm.stops.publish(Bool(data=True))
         calm.wait('STOP', lambda: tap.frames(Stop, began))
         BadLine.is_bad = False
-        stopped = tap.frames(Stop, began)[0][0]
-        assert not [m for t, m in tap.frames((CycleAxis, Play), stopped)]
+        sent = [type(message) for _, message in tap.frames((CycleAxis, Play, Stop), began)]
+        assert {*sent[sent.index(Stop) :]} == {Stop}
         calm.wait('an answer', answer.done)
         assert not answer.result().success
         calm.wait_for_state('stopped')
@@ -146,11 +148,14 @@ def test_a_program_does_not_spoil_an_upload(calm, tap):
         row.time_from_start.sec = k // 10
 
     def upload():
+        calm.said.clear()
         began = time.monotonic()
         calm.tables.publish(JointTrajectory(joint_names=NAMES, points=rows))
         calm.wait('rows', lambda: tap.frames(TableRow, began))
         answer = calm.play_cycle()
         calm.wait('an answer', answer.done)
+        if calm.said:
+            raise TimedOut(f'the upload was over by then: {calm.said}')
         assert answer.result().message == 'another upload is in progress'
         calm.wait(
             'the upload', lambda: 'table of 100 rows, 100 ms apart, is on board' in calm.said

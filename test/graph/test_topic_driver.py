@@ -91,8 +91,8 @@ def test_a_driver_is_commanded_from_where_it_is_to_the_goal_and_not_without_its_
     driver.is_silent = True
     user.wait_for_state('disconnected')
     user.wait('rest', lambda: user.motion('mode') == 'disabled')
-    sent = len(driver.commands)
     driver.is_silent = False
     user.wait_for_state('disarmed')
+    sent = len(driver.commands)
     user.spin(0.3)
     assert len(driver.commands) == sent

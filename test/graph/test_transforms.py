@@ -89,6 +89,7 @@ def received(client, topic, kind=String):
         return bool(messages)
 
     client.wait(topic, has_subscribers, 60.0)
+    client.node.destroy_publisher(states)
     return messages[-1]
 
 
@@ -115,7 +116,7 @@ def test_without_tf2_msgs_it_works_and_reports_nothing(pose_node, tmp_path):
     assert frame == 'left_base'
     node.terminate()
     said = node.communicate(timeout=60)[1].splitlines()
-    assert [line for line in said if '[unframed.pose]: machine robocake' not in line] == []
+    assert [line for line in said if 'tf' in line or 'Traceback' in line] == []
 
 
 def test_prefix_that_tf2_would_refuse_is_refused(pose_node):

@@ -30,8 +30,8 @@ from patient_user import PatientUser
 
 MACHINE = 'robocake'
 SPACE = 'split'
-STILL = 0.1
-"""Seconds between two changes of the pulses while the platform moves, at most."""
+STILL = 1.0
+"""Seconds without a change of the pulses, after which the platform is at rest."""
 HOME = machines.load(MACHINE).kinematics.home
 GOAL = Pose.from_xyz_rpy((0.006, 0.0, 0.045), (0.0, 0.05, 0.0))
 
@@ -59,6 +59,7 @@ class Pulses(threading.Thread):
         self._board = board
         self.now = board.pulses
         self.changed_at = time.monotonic()
+        self.changes = 0
 
     @property
     def still_for(self):
@@ -69,6 +70,7 @@ class Pulses(threading.Thread):
         while True:
             if self._board.pulses != self.now:
                 self.now, self.changed_at = self._board.pulses, time.monotonic()
+                self.changes += 1
             time.sleep(0.005)
 
 
@@ -82,8 +84,8 @@ def set_moving(user, pulses):
     def start():
         user.go_to(HOME)
         user.trigger('trajectory/start_cycle')
-        user.spin(1.0)
-        assert pulses.still_for < STILL
+        before = pulses.changes
+        user.wait_while_driven('its motion', lambda: pulses.changes > before + 50)
 
     user.persist(start)
 
@@ -97,12 +99,12 @@ def cut_and_mend(user, line, pulses, namespace, interface):
 
     set_moving(user, pulses)
     link('down')
-    user.wait('rest', lambda: pulses.still_for > 10 * STILL)
+    user.wait('rest', lambda: user.motion('mode') == 'disabled' and pulses.still_for > STILL)
     reported['mode_while_cut'] = user.motion('mode')
     before, count = np.array(pulses.now), len(line.setpoints)
     link('up')
     ip('-n', namespace, 'route', 'add', '224.0.0.0/4', 'dev', interface)  # went with the link
-    user.wait('setpoints', lambda: len(line.setpoints) > count + 20)
+    user.wait_driven('setpoints', lambda: len(line.setpoints) > count + 20)
     again = np.array(line.setpoints[count:])
     reported['jump_in_counts'] = float(np.abs(again[:20] - before).max())
     return reported

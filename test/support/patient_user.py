@@ -2,12 +2,13 @@
 
 import contextlib
 
+from diagnostic_msgs.msg import DiagnosticStatus
+
 from hexarm.client import Client
 from manipulator.errors import Refused, Stopped, TimedOut
 
 PATIENCE = 60.0
 TRIES = 10
-SOON = 0.3
 
 
 class PatientUser(Client):
@@ -19,6 +20,14 @@ class PatientUser(Client):
 
     losses = 0
     patience = PATIENCE
+
+    def __init__(self, namespace, interrupt=lambda: None):
+        super().__init__(namespace, interrupt)
+        self._last_motion = None
+        # Every state counts, also one that a newer one has replaced before it was read.
+        subscribe = self.node.create_subscription
+        subscribe(DiagnosticStatus, 'machine_state', self._note_state, 100)
+        subscribe(DiagnosticStatus, 'motion_status', self._note_motion, 100)
 
     def wait(self, what, is_so, seconds=PATIENCE, progress=lambda: None):
         super().wait(what, is_so, max(seconds, self.patience), progress)
@@ -64,11 +73,17 @@ class PatientUser(Client):
             try:
                 return ask()
             except (Refused, Stopped, TimedOut, AssertionError) as error:
-                self.spin(SOON)  # a motion is reported as stopped before its reason is
+                self._hear_more()
                 if not self._has_lost(before) and not _is_late(error):
                     raise
             self.make_ready()
         return ask()
+
+    def _hear_more(self):
+        """A loss that a process which stands still has not reported yet; reasons come late."""
+        heard = self._states_received
+        with contextlib.suppress(TimedOut):
+            self.wait('states', lambda: self._states_received > heard + 2)
 
     def make_ready(self):
         """Enabled and able to move, whatever a stall, or the last test, left."""
@@ -99,16 +114,18 @@ class PatientUser(Client):
     def reach_home(self):
         self.persist(self.home)
 
-    def _on_machine_state(self, message):
-        super()._on_machine_state(message)
+    def _note_state(self, message):
         self.losses += self._is_loss(message.message)
 
     def _is_loss(self, state):
         return state != 'enabled'
 
-    def _on_motion_status(self, message):
-        super()._on_motion_status(message)
-        self.losses += self.motion('mode') == 'disabled'
+    def _note_motion(self, message):
+        values = {pair.key: pair.value for pair in message.values}
+        motion = values.get('mode'), values.get('reason', '')
+        is_loss = motion[0] == 'disabled' or any(words in motion[1] for words in STALLS)
+        self.losses += is_loss and motion != self._last_motion
+        self._last_motion = motion
 
 
 class PatientBridgeUser(PatientUser):
@@ -125,7 +142,7 @@ class PatientBridgeUser(PatientUser):
         return True
 
     def _is_loss(self, state):
-        return state in WITHOUT_BOARD
+        return state in (*WITHOUT_BOARD, 'unclaimed')
 
 
 STALLS = (
@@ -135,6 +152,15 @@ STALLS = (
     'machine_state timed out',
     'no answer from the board after ',
     'the machine is holding',
+    'no joint command within the deadline',
+    'its pose is not known yet',
+    'the board does not follow setpoints yet',
+    'away from its command',
+    'machine enabled, motion idle',  # of a jog whose twists ceased
+    'the jog is not accepted',
+    'release first',
+    'timed out after ',  # in another process
+    'no machine found in ',
 )
 """Reasons of a computer that stood still; the machine may drive again before that is heard."""
 

@@ -106,10 +106,11 @@ class Recorder:
 
     def standstill(self, since: float, quiet: float) -> float:
         """When the pulses changed for the last time, once they have been still for `quiet` s."""
-        deadline = time.monotonic() + 10.0
+        deadline = time.monotonic() + 60.0
         while time.monotonic() < deadline:
             last = self.changes(since)[-1][0]
-            if time.monotonic() - max(last, since) > quiet:
+            is_seen = self._board_time > quiet  # by the board's thread too, which may be late
+            if is_seen and time.monotonic() - max(last, since) > quiet:
                 return max(last, since)
             time.sleep(0.01)
         raise TimeoutError('the servo targets never came to rest')

@@ -12,7 +12,7 @@ from std_msgs.msg import String
 from hexarm.graph import Graph, check_alive, machine_graph
 from hexarm.machines import load
 from manipulator.nodes.messages import joints_of, seconds
-from manipulator.nodes.qos import COMMAND, MEASUREMENT
+from manipulator.nodes.qos import COMMAND
 from patient_user import PatientUser
 
 MACHINE = load('arm_6r_stepper')
@@ -59,7 +59,7 @@ class Heard:
         self.messages = []
         self.node = user.node
         self.subscription = user.node.create_subscription(
-            JointState, topic, self.messages.append, MEASUREMENT
+            JointState, topic, self.messages.append, 1000
         )
 
     @property

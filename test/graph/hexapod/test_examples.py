@@ -65,12 +65,16 @@ def run(start, enabled):
     return run
 
 
-def test_the_tour_of_twenty_lines_moves_measures_is_refused_jogs_and_stops(run, poses):
+def test_the_tour_of_twenty_lines_moves_measures_is_refused_jogs_and_stops(run, poses, enabled):
     assert len((ROOT / 'examples' / 'tour.py').read_text().splitlines()) <= 20
-    measured, refused = run('tour').split('refused: ')
-    assert measured.count('measured') == 3
-    assert refused.startswith('leg ')
-    assert 'rod too short by' in refused
+
+    def tour():
+        measured, refused = run('tour').split('refused: ')
+        assert measured.count('measured') == 3
+        assert refused.startswith('leg '), refused
+        assert 'rod too short by' in refused
+
+    enabled.persist(tour)
     x, y, _ = np.transpose([pose.position for pose in poses])
     assert abs(np.hypot(x, y) - 0.008).min() < 2e-4
 
@@ -107,7 +111,7 @@ def test_watch_joints_prints_names_and_radians_until_ctrl_c(start, enabled):
         lines = [process.stdout.readline() for _ in range(4)]
         process.send_signal(signal.SIGINT)
         status, said = enabled.end_of(process)
-        assert (status, 'Traceback' in said) == (0, False)
+        assert (status, 'Traceback' in said) == (0, False), (lines, said)
         assert lines[0].split()[:6] == [f'crank_{leg}' for leg in range(1, 7)]
         joints = [float(word) for word in lines[3].split()[:6]]
         assert joints == pytest.approx([2.0945] * 6, abs=0.01)
@@ -118,14 +122,16 @@ def test_watch_joints_prints_names_and_radians_until_ctrl_c(start, enabled):
 def test_stop_ends_the_motion_of_another_program(start, enabled):
     override = enabled.node.create_publisher(Float64, 'speed_override', LATCHED)
     enabled.wait('a subscriber', override.get_subscription_count, 10.0)
-    override.publish(Float64(data=0.05))
 
     def stop_on_tour():
+        override.publish(Float64(data=0.05))
         tour = start('axis_tour')
-        assert tour.stdout.readline().startswith('x +')
+        if not (first := tour.stdout.readline()).startswith('x +'):
+            raise AssertionError(first + enabled.end_of(tour)[1])
+        override.publish(Float64(data=0.002))  # its next move lasts until `stop` comes
         assert enabled.end_of(start('stop')) == (0, 'enabled\n')
         status, said = enabled.end_of(tour)
-        assert status == 1
+        assert status == 1, said
         assert 'manipulator.errors.Stopped' in said
 
     try:

@@ -64,6 +64,8 @@ class Rig(PatientBridgeUser):
         next command was too far from the last one.
         """
         for _ in range(TRIES):
+            if self.machine_state.message in (*WITHOUT_BOARD, 'unclaimed'):
+                self.make_ready()
             self.persist(lambda: self._stream(angle))
             if abs(self.true_angle() - angle) < 0.02:
                 return
