@@ -1,5 +1,6 @@
 """Real processes on a ROS domain of their own, on this computer only, stopped by pid."""
 
+import contextlib
 import os
 import re
 import subprocess
@@ -10,6 +11,7 @@ import pytest
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
 from hexarm import panel_process
+from manipulator.errors import TimedOut
 
 MARK = f'HEXARM_TEST_RUN={os.getpid()}'
 os.environ['HEXARM_TEST_RUN'] = str(os.getpid())
@@ -145,12 +147,21 @@ class Interfaces:
             for topic, types in query(node, space):
                 if topic in self.EVERYWHERE | self.OPTIONAL:
                     continue
-                (qos,) = {qos_text(e.qos_profile) for e in endpoints(topic) if e.node_name == node}
-                found[kind, topic.removeprefix(f'{space}/')] = (types[0], qos)
+                known = {qos_text(e.qos_profile) for e in endpoints(topic) if e.node_name == node}
+                found[kind, topic.removeprefix(f'{space}/')] = (types[0], ' or '.join(known))
         for service, types in ask.get_service_names_and_types_by_node(node, space):
             if not any(word in service for word in self.ROS_OWN):
                 found['service', service.removeprefix(f'{space}/')] = (types[0], '')
         return found
+
+    def assert_documented(self, user, node, section='', space='/hexapod'):
+        """That a node is what is written of it, once all of it is discovered."""
+        names = user.node.get_node_names_and_namespaces
+        user.wait(f'the name of {node}', lambda: (node, space) in names())
+        documented = self.documented(section or node)
+        with contextlib.suppress(TimedOut):
+            user.wait(f'all of {node}', lambda: self.running(user, node, space) == documented)
+        assert self.running(user, node, space) == documented
 
 
 def qos_text(profile):

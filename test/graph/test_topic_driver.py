@@ -73,8 +73,7 @@ def test_a_driver_is_commanded_from_where_it_is_to_the_goal_and_not_without_its_
     driver = Driver(user, kinematics.joint_names)
     user.wait_for_state('disarmed')
     section = 'serial_bridge without a board'
-    running = interfaces.running(user, 'serial_bridge', '/arm')
-    assert running == interfaces.documented(section)
+    interfaces.assert_documented(user, 'serial_bridge', section, '/arm')
     assert driver.commands == []
     user.make_ready()
     goal = kinematics.forward(START).pose.moved([0.05, 0.0, -0.05, 0.0, 0.1, 0.0])

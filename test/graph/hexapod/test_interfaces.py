@@ -1,12 +1,9 @@
 """docs/interfaces.md against the running nodes, in both directions."""
 
-import contextlib
 import re
 
 import pytest
 from rcl_interfaces.srv import ListParameters
-
-from manipulator.errors import TimedOut
 
 pytestmark = pytest.mark.graph
 
@@ -18,12 +15,7 @@ ROS_PARAMETERS = ('use_sim_time', 'start_type_description_service')
 
 @pytest.mark.parametrize('node', NODES + THREADS)
 def test_topics_and_services_are_those_of_the_document(enabled, node, interfaces):
-    names = enabled.node.get_node_names_and_namespaces
-    enabled.wait(f'the name of {node}', lambda: (node, '/hexapod') in names(), 10.0)
-    documented = interfaces.documented(node)
-    with contextlib.suppress(TimedOut):  # then they differ
-        enabled.wait(f'all of {node}', lambda: interfaces.running(enabled, node) == documented)
-    assert interfaces.running(enabled, node) == documented
+    interfaces.assert_documented(enabled, node)
 
 
 @pytest.mark.parametrize('node', NODES)

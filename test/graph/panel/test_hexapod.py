@@ -145,9 +145,7 @@ def opened(panel, path, origin):
 
 
 def test_topics_are_those_of_the_document(page, user, interfaces):
-    documented = interfaces.documented('panel')
-    user.wait('its topics', lambda: interfaces.running(user, 'panel') >= documented)
-    assert interfaces.running(user, 'panel') == documented
+    interfaces.assert_documented(user, 'panel')
 
 
 def test_the_page_is_worth_a_picture(open_page, page, panel, machine, tmp_path):
