@@ -3,6 +3,7 @@
 import contextlib
 import os
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -64,6 +65,7 @@ def hexarm():
             process.wait()
 
 
+# What `hexarm up` says where a stall had it lose its board.
 LOST = 'no (frame|answer) from the board|the board has restarted|hexarm: (timed out|no answer)'
 
 
@@ -82,6 +84,21 @@ def hexarm_up(hexarm):
         raise AssertionError(text)
 
     return start
+
+
+@pytest.fixture
+def ends_parked():
+    """Ends `hexarm up` by Ctrl-C: it parks, unless its board was lost by then. What it says."""
+
+    def end(process):
+        process.send_signal(signal.SIGINT)
+        rest = process.stdout.read()
+        assert process.wait(60) == 0, rest
+        assert re.search('park|no frame from the board', rest), rest
+        assert 'Traceback' not in rest
+        return rest
+
+    return end
 
 
 @pytest.fixture(scope='session')

@@ -1,8 +1,5 @@
 """`hexarm up` with a simulated board: the program here or on a simulated chip, servos or loads."""
 
-import re
-import signal
-
 import pytest
 
 pytestmark = [pytest.mark.graph, pytest.mark.usefixtures('chip_tools')]
@@ -13,15 +10,12 @@ NODES = {'fake': 'hexarm.nodes fake_hardware', 'simavr': 'firmware.simulator.nod
     ('port', 'plant'), [('simavr', 'servo'), ('simavr', 'mujoco'), ('fake', 'mujoco')]
 )
 def test_the_graph_enables_parks_and_leaves_no_board_behind(
-    hexarm_up, processes_left, port, plant
+    hexarm_up, ends_parked, processes_left, port, plant
 ):
     words = ('hexapod', '--port', port, '--plant', plant)
     process, _ = hexarm_up(*words, until=f'is up on {port} and enabled')
     (board,) = [pid for pid, words in processes_left().items() if NODES[port] in words]
-    process.send_signal(signal.SIGINT)
-    rest = process.stdout.read()
-    assert process.wait(60) == 0
-    assert re.search('park|no frame from the board', rest), rest
+    ends_parked(process)
     assert board not in processes_left()
 
 

@@ -6,6 +6,7 @@ package, publishes on /tf and what; how a real TFMessage is written is tf2_msgs'
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -116,7 +117,8 @@ def test_without_tf2_msgs_it_works_and_reports_nothing(pose_node, tmp_path):
     assert frame == 'left_base'
     node.terminate()
     said = node.communicate(timeout=60)[1].splitlines()
-    assert [line for line in said if 'tf' in line or 'Traceback' in line] == []
+    usual = 'machine robocake|clock of its source differs| s old, at most'  # or late
+    assert [line for line in said if not re.search(usual, line)] == []
 
 
 def test_prefix_that_tf2_would_refuse_is_refused(pose_node):

@@ -1,7 +1,6 @@
 """`hexarm up` and `hexarm demo` as processes: how they begin and how they end."""
 
 import os
-import re
 import signal
 import time
 import urllib.request
@@ -40,17 +39,13 @@ def page_of(address):
             time.sleep(0.1)
 
 
-def test_up_enables_serves_its_panel_and_parks_on_ctrl_c(hexarm_up, processes_left):
+def test_up_enables_serves_its_panel_and_parks_on_ctrl_c(hexarm_up, ends_parked, processes_left):
     process, text = hexarm_up('hexapod', '--panel', until='The panel is on')
     assert 'is up on fake and enabled' in text
     assert len(processes_left()) == 3  # up with its four nodes, the board, the panel
     address = text.split('The panel is on')[1].split()[0]
     assert '<title>' in page_of(address)
-    process.send_signal(signal.SIGINT)
-    rest = process.stdout.read()
-    assert process.wait(60) == 0, rest
-    assert re.search('park|no frame from the board', rest), rest
-    assert 'Traceback' not in rest
+    rest = ends_parked(process)
     machine = f'machine robocake: {ROBOCAKE} (rotary hexapod; RoboCake, crank'
     assert (text + rest).count(machine) == 3
     wait_until_none_is_left(processes_left)

@@ -100,7 +100,9 @@ def cut_and_mend(user, line, pulses, namespace, interface):
     set_moving(user, pulses)
     link('down')
     user.wait('rest', lambda: user.motion('mode') == 'disabled' and pulses.still_for > STILL)
-    reported['mode_while_cut'] = user.motion('mode')
+    at_rest = pulses.changes
+    user.spin(STILL)
+    reported['changes_while_cut'] = pulses.changes - at_rest
     before, count = np.array(pulses.now), len(line.setpoints)
     link('up')
     ip('-n', namespace, 'route', 'add', '224.0.0.0/4', 'dev', interface)  # went with the link

@@ -208,6 +208,7 @@ def test_a_canceled_action_brakes_and_the_next_one_works(arm, actions):
         status, result = actions.result(handle)
         if status != CANCELED:
             raise Refused(f'not canceled: {result.error_string}')
+        arm.wait_while_driven('rest', lambda: arm.motion('mode') == 'hold')
         assert joints(arm)[0] < 0.5
         status, result = actions.result(actions.send(trajectory((2.0, [0.0, 0.0]))))
         assert status == SUCCEEDED, result.error_string

@@ -111,6 +111,11 @@ class PanelPage:
         with contextlib.suppress(Error):
             self.page.get_by_role('button', name=name).first.click(timeout=SHORTLY)
 
+    def may_say(self, notice):
+        """Waits a while for something on the page."""
+        with contextlib.suppress(Error):
+            notice.wait_for(timeout=SHORTLY)
+
     def centre(self, pad):
         """Of a pad of the joystick, on the page, and half of its width and height."""
         box = self.page.frame_locator('#joystick').locator(pad).bounding_box()

@@ -3,7 +3,6 @@
 What counts as a hand that is gone, test/hexarm/panel/test_joystick_page.py tries.
 """
 
-import contextlib
 import os
 import signal
 import time
@@ -13,7 +12,6 @@ from urllib.parse import urlsplit
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Error
 
 from hexarm.graph import Graph, check_alive, machine_graph
 from hexarm.panel_process import panel_address, panel_process
@@ -114,8 +112,7 @@ def test_a_node_that_does_not_answer_is_named(page, machine, hexapod_graph):
         os.kill(machine_process, signal.SIGSTOP)
         try:
             page.press('Home')
-            with contextlib.suppress(Error):
-                notice.wait_for(timeout=15_000)
+            page.may_say(notice)
         finally:
             os.kill(machine_process, signal.SIGCONT)
             machine.client.spin(1.0)  # it takes the machine over anew
