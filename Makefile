@@ -18,14 +18,14 @@ demo: $(ENV)/demo $(LIBRARIES)
 	@$(BIN)/hexarm demo
 
 check: $(ENV)/ready $(LIBRARIES)
-	@echo 'Lint, types, and the quick tests, which start no other program: a minute on two quiet cores.'
+	@echo 'Lint, types, and the quick tests, which start no other program: 1 to 2 minutes on two quiet cores.'
 	@$(MAKE) --no-print-directory -j 2 --output-sync=line lint quick
 
 quick: $(ENV)/ready $(LIBRARIES)
 	@$(PYTEST) -n $(CORES) -m 'not processes and not long' $(ALL_SLOW:%=--ignore=%)
 
 test: check
-	@echo 'Tests that start graphs, a browser, installations, or are long: 5 minutes on two quiet cores.'
+	@echo 'Tests that start graphs, a browser, installations, or are long: 4 to 6 minutes on two quiet cores.'
 	@$(PYTEST) -n $$((3 * $(CORES) / 2)) -m 'processes or long'
 
 lint: $(ENV)/ready $(LIBRARIES)
