@@ -1,5 +1,6 @@
 """What a joint command must be before it may become a frame."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -68,11 +69,21 @@ class JumpValidator:
         return Overtaken(reason) if is_of_stream else Refused(reason)
 
     def take(
-        self, target: Array, stamp: float | None, receipt: float, present: Array | None
+        self,
+        target: Array,
+        stamp: float | None,
+        receipt: float,
+        present: Array | None,
+        holding_since: float = -math.inf,
     ) -> None:
-        """Raises StaleMessage or Refused for a target (n,) that must not be commanded now."""
-        if stamp is not None:
-            self._stamps.admit(stamp, receipt)
+        """Raises StaleMessage or Refused for a target (n,) that must not be commanded now.
+
+        holding_since: when the machine was found to hold, on the clock of `receipt`: what was
+        sent before is Overtaken.
+        """
+        lateness = self._stamps.admit(stamp, receipt) if stamp is not None else 0.0
+        if receipt - lateness < holding_since:
+            raise Overtaken('sent before the machine was known to hold')
         self._refuse_jump(target, receipt, present)
         self._last, self._last_at = target, receipt
 
@@ -107,7 +118,7 @@ class JumpValidator:
         elif present is not None and np.all(np.isfinite(present)):
             start, where, time, elapsed = present, 'the reported position', START, 0.0
         else:
-            raise Refused('the positions of the joints are not known yet')
+            raise Refused('the positions of the joints are not known at present')
         steps = np.abs(target - start)
         times = steps / self._speeds
         i = int(np.argmax(times))
@@ -136,13 +147,15 @@ class CommandValidator(JumpValidator):
         stamp: float | None,
         receipt: float,
         present: Array | None,
+        holding_since: float = -math.inf,
     ) -> Setpoint:
         """The setpoint for a command that came at `receipt` (s, monotonic up to an offset).
 
         `present` is where the joints are (rad or m, in the calibration's order; NaN: unknown).
-        stamp None means "now". InvalidInput, StaleMessage or Refused names what is wrong.
+        stamp None means "now"; holding_since: see `take`. InvalidInput, StaleMessage or Refused
+        names what is wrong.
         """
         target = self.ordered(names, positions)
         counts = self._calibration.counts(target)
-        self.take(target, stamp, receipt, present)
+        self.take(target, stamp, receipt, present, holding_since)
         return Setpoint(round(1e3 * self._deadline), counts)

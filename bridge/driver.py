@@ -82,9 +82,8 @@ class BoardDriver:
     ) -> None:
         """`epoch` is the system's clock where `now` is zero, s."""
         self.calibration = Calibration.from_config(config.servos)
-        self.validator = CommandValidator(
-            self.calibration, 1e-3 * config.link.setpoint_deadline_ms
-        )
+        self._deadline = 1e-3 * config.link.setpoint_deadline_ms
+        self.validator = CommandValidator(self.calibration, self._deadline)
         self._gripper = Gripper(config.servos, self.calibration)
         self.session = Session(len(self.calibration.names))
         self.monitor = LinkMonitor(self.session, self.calibration)
@@ -105,9 +104,12 @@ class BoardDriver:
         as it was requested.
         """
         self._refuse_unless_enabled(now)
-        present = None if self.monitor.joints is None else self.monitor.joints.positions
+        present = self.monitor.positions(now, within=self._deadline)
         names, positions = self._gripper.joined((names, positions), now, present)
-        setpoint = self.validator.admit(names, positions, stamp, now + self._epoch, present)
+        holding_since = self.monitor.holding_since + self._epoch
+        setpoint = self.validator.admit(
+            names, positions, stamp, now + self._epoch, present, holding_since
+        )
         self.link.put_setpoint(Ticket(setpoint, now, stamp))
 
     def aim_gripper(self, opening: float) -> None:

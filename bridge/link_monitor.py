@@ -1,5 +1,6 @@
 """What the bridge knows of its board, from the events of the link: state, joints, latencies."""
 
+import math
 from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -124,6 +125,8 @@ class LinkMonitor:
     problem: str = ''
     is_enabled_here: bool = False
     is_measured: bool = False
+    holding_since: float = -math.inf
+    """When the board was found to hold, on the clock of `now`; −∞ while it does not."""
     _seen_at: float = field(default=0.0)
 
     @property
@@ -141,6 +144,12 @@ class LinkMonitor:
             MachineState.FAULT,
         )
         return not self.session.is_stop_requested and self.status.state not in latched_or_unknown
+
+    def positions(self, now: float, within: float) -> Array | None:
+        """Where the joints (n,) were, at most so many seconds ago; None where that is unknown."""
+        if self.joints is None or now - self._seen_at > within:
+            return None
+        return self.joints.positions
 
     @property
     def board(self) -> str:
@@ -208,6 +217,10 @@ class LinkMonitor:
     def _note_state(self, state: State, now: float) -> None:
         if state.mode is Mode.DISARMED:
             self.is_enabled_here = False
+        if state.mode is not Mode.HOLDING:
+            self.holding_since = -math.inf
+        elif math.isinf(self.holding_since):
+            self.holding_since = now
         self.is_measured = all(joint.known is Known.MEASURED for joint in state.joints)
         counts = [j.count if j.known is not Known.UNKNOWN else np.nan for j in state.joints]
         positions = self.calibration.positions(counts)

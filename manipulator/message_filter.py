@@ -38,8 +38,8 @@ class StampFilter:
     _last_stamp: float = float('-inf')
     _refused: tuple[float, float] | None = None
 
-    def admit(self, stamp: float, receipt: float) -> None:
-        """Raises StaleMessage when the message must not be acted on."""
+    def admit(self, stamp: float, receipt: float) -> float:
+        """How late it is, in seconds; StaleMessage when the message must not be acted on."""
         observed = receipt - stamp
         if self.offset is None or self._is_confirmed(observed, receipt):
             self.offset, self._last_stamp = observed, stamp
@@ -56,6 +56,7 @@ class StampFilter:
             raise StaleMessage(f'stamped {back:.3f} s before the last one: reordered, ignored')
         self._refused = None
         self._last_stamp = stamp
+        return age
 
     def _is_confirmed(self, observed: float, receipt: float) -> bool:
         is_apart = self._refused is not None and receipt - self._refused[1] >= CONFIRMED_AFTER
@@ -74,7 +75,8 @@ class MessageFilter:
     """The messages of one topic: counts, the last refusal, the time of the last good one.
 
     Times are monotonic, in seconds; stamps are by the clock of their source. A message that is
-    refused changes nothing else: the last good command stays.
+    refused changes nothing else: the last good command stays. lateness: by how many seconds the
+    message that is being accepted took longer than the fastest of its source.
     """
 
     def __init__(self, clock_start: float) -> None:
@@ -82,6 +84,7 @@ class MessageFilter:
         self.refused = 0
         self.last_refusal = ''
         self.last_good = float('-inf')
+        self.lateness = 0.0
         self._clock_start = clock_start
         self._stamps = StampFilter()
 
@@ -93,8 +96,7 @@ class MessageFilter:
         A stamp of zero is taken as now. What `accept` raises as ManipulatorError is a refusal.
         """
         try:
-            if stamp:
-                self._stamps.admit(stamp, now + self._clock_start)
+            self.lateness = self._stamps.admit(stamp, now + self._clock_start) if stamp else 0.0
             accept()
         except ManipulatorError as error:
             self.refuse(error)

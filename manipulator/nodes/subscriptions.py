@@ -117,6 +117,11 @@ class FilteredCallback:
         """Seconds since the last good message, ∞ before the first."""
         return self._filter.age(time.monotonic())
 
+    @property
+    def lateness(self) -> float:
+        """Of the message that is being accepted, in seconds: see MessageFilter."""
+        return self._filter.lateness
+
     def _report(self, message: Any, error: ManipulatorError) -> None:
         self.refused_at = time.monotonic()
         if self._refuse is not None:

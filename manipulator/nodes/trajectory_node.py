@@ -127,7 +127,7 @@ class TrajectoryNode(Node):
         self._controller.note_joints(known_joints(message, self._names))
 
     def _on_pose(self, message: PoseStamped) -> None:
-        self._controller.note_pose(pose_of(message), time.monotonic())
+        self._controller.note_pose(pose_of(message), time.monotonic(), self._poses.lateness)
 
     def _on_goal(self, message: PoseStamped) -> None:
         is_of_platform = message.header.frame_id != WORK_FRAME

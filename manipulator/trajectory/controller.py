@@ -110,6 +110,7 @@ class MotionController:
         self._early = EarlyCommand()
         self._newest = float('-inf'), float('-inf')
         self._state_at = self._pose_at = self._tick_at = float('-inf')
+        self._poses_since = float('-inf')
         self._pose: Pose | None = None
 
     # Measurements
@@ -119,6 +120,8 @@ class MotionController:
     ) -> None:
         """The reported machine state: see `MotionSupervisor`. A stop ends waiting commands."""
         self._state_at = now
+        if state != self.supervisor.state:
+            self._poses_since = now
         self.supervisor.note_machine_state(state, is_followed, is_measured)
         self._early.poll(now)
         self.news.update(self.supervisor.status)
@@ -128,10 +131,14 @@ class MotionController:
         if joints is not None:
             self.supervisor.note_joints(joints)
 
-    def note_pose(self, T_base_platform: Pose, now: float) -> None:
-        """The reported pose of the platform."""
-        self.supervisor.note_pose(T_base_platform)
+    def note_pose(self, T_base_platform: Pose, now: float, lateness: float = 0.0) -> None:
+        """The reported pose of the platform, by how many seconds it is late.
+
+        No machine is taken over where it was while it was still driven, or in another state.
+        """
         self._pose_at = now
+        if self.supervisor.is_driving or now - lateness >= self._poses_since:
+            self.supervisor.note_pose(T_base_platform)
 
     # Commands
 
@@ -223,6 +230,8 @@ class MotionController:
     def begin_tick(self, now: float) -> None:
         """Advances by one tick; take the setpoint's stamp before `end_tick`."""
         since_last, self._tick_at = self.jitter.tick(now), now
+        if self.supervisor.is_driving:
+            self._poses_since = now
         # Messages that the bridge sent while this process stalled have not been received yet.
         self._state_at += max(since_last - self._dt, 0.0)
         self.supervisor.note_stall(since_last)

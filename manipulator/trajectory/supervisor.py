@@ -121,6 +121,11 @@ class MotionSupervisor:
         return self._executor is not None
 
     @property
+    def state(self) -> str:
+        """The machine state that was reported last, '' before the first and once it timed out."""
+        return self._state
+
+    @property
     def requested_joints(self) -> Array | None:
         """The joints (n,) of a motion of joints, None for motions of poses."""
         return None if self._executor is None else self._executor.own_joints

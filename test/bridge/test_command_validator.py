@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from bridge.calibration import Calibration
-from bridge.command_validator import CommandValidator
+from bridge.command_validator import CommandValidator, Overtaken
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from manipulator.errors import InvalidInput, ManipulatorError, Refused
@@ -183,7 +183,7 @@ def test_repeating_a_leap_does_not_make_it_pass(validator):
 
 def test_without_known_joints_nothing_passes(validator):
     for present in (None, np.full(6, np.nan), np.append(PARK[:5], np.nan)):
-        with pytest.raises(Refused, match='not known yet'):
+        with pytest.raises(Refused, match='not known at present'):
             admit(validator, present=present)
 
 
@@ -192,6 +192,14 @@ def test_after_restart_the_joints_count_again(validator):
     validator.restart()
     with pytest.raises(Refused, match='the reported position'):
         admit(validator, PARK, present=PARK + 0.5)
+
+
+def test_what_was_sent_before_the_machine_was_known_to_hold_moves_nothing(validator):
+    admit(validator, stamp=NOW)
+    for stamp, receipt in ((NOW + 0.35, NOW + 0.5), (NOW + 0.39, NOW + 0.501)):
+        with pytest.raises(Overtaken, match='before the machine was known to hold'):
+            validator.admit(NAMES, PARK, stamp, receipt, PARK, holding_since=NOW + 0.4)
+    validator.admit(NAMES, PARK, NOW + 0.41, NOW + 0.502, PARK, holding_since=NOW + 0.4)
 
 
 def test_every_refusal_is_one_of_ours(validator):

@@ -1,6 +1,7 @@
 """What the bridge admits, answers and announces: in simulated time, with a fake board."""
 
 import dataclasses
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -115,6 +116,31 @@ def test_a_jump_is_refused_and_nothing_is_sent(enabled, turn):
         enabled.command(enabled.park + turn)
     enabled.run(0.1)
     assert len(enabled.sent(Setpoint)) == 1
+
+
+def test_a_bridge_that_stood_still_follows_nothing_before_it_has_heard_of_the_board(enabled):
+    enabled.command(enabled.park)
+    enabled.now += 0.3
+    with pytest.raises(Refused, match='not known at present'):
+        enabled.command(enabled.park)
+    enabled.run(0.3)
+    enabled.command(enabled.park)
+    enabled.run(0.02)
+    assert len(enabled.sent(Setpoint)) == 2
+
+
+def test_a_command_of_before_the_board_was_found_to_hold_moves_nothing(enabled):
+    enabled.command(enabled.park)
+    enabled.run(0.3)
+    assert enabled.state.status.state == 'holding'
+    found = enabled.driver.monitor.holding_since
+    for lead, is_refused in ((0.01, True), (-0.01, False)):
+        stamp = EPOCH + found - lead
+        with pytest.raises(Overtaken, match='known to hold') if is_refused else nullcontext():
+            enabled.driver.command(enabled.names, list(enabled.park), stamp, enabled.now)
+    enabled.run(0.1)
+    assert enabled.state.status.state == 'enabled'
+    assert enabled.driver.monitor.holding_since == float('-inf')
 
 
 def test_what_is_not_enabled_reports_why_it_takes_no_command(rig):

@@ -36,6 +36,14 @@ def test_a_stale_message_is_not_accepted_and_reports_why(messages):
     assert messages.age(1.8) == pytest.approx(0.8)
 
 
+def test_how_late_a_message_is_can_be_asked_while_it_is_accepted(messages):
+    late = []
+    stamps = ((EPOCH + 1.0, 1.003), (EPOCH + 1.1, 1.303), (0.0, 1.4), (EPOCH + 1.4, 1.403))
+    for stamp, receipt in stamps:
+        assert messages.take(stamp, lambda: late.append(messages.lateness), receipt) is None
+    assert late == pytest.approx([0.0, 0.2, 0.0, 0.0], abs=1e-6)
+
+
 def test_what_is_refused_is_counted_and_is_no_good_message(messages):
     error = messages.take(EPOCH, refuse, 0.0)
     assert str(error) == 'no'

@@ -102,6 +102,35 @@ def test_a_frozen_process_stops_the_machine_and_nothing_jumps_when_it_goes_on(wo
     assert world.moved(since) <= 2.0
 
 
+@pytest.mark.parametrize(
+    ('name', 'ends', 'bridge'),
+    [
+        ('forward', 0.535, (0.08, 1.22)),
+        ('forward', 0.583, (0.12, 0.90)),
+        ('forward', 0.477, (0.07, 1.06)),
+        ('controller', 0.459, (0.005, 0.665)),
+        ('controller', 0.344, (0.03, 0.92)),
+        ('inverse', 0.4, (0.03, 0.92)),
+    ],
+)
+@pytest.mark.parametrize('wait', enough([0.73], [0.0, 0.17, 0.31, 0.73, 0.89, 0.97]))
+def test_two_processes_that_freeze_together_move_nothing_when_they_go_on(
+    world, ask, name, ends, bridge, wait
+):
+    """What each of them sends late is of a time when the machine still moved."""
+    ask.cycle()
+    world.wait('cycle', lambda: world.status.mode == 'cycle')
+    world.run(0.7 + wait)
+    getattr(world, name).freeze(ends)
+    begins, goes_on = bridge
+    world.run(begins)
+    world.bridge.freeze(goes_on - begins)
+    world.run(0.4)
+    since = world.now
+    world.run(3.0)
+    assert world.moved(since) <= 2.0
+
+
 def test_cable_pulled_and_put_back_needs_enable_and_nothing_resumes(world):
     world.send_goal(FAR)
     world.run(0.12)

@@ -5,7 +5,7 @@ import numpy as np
 from bridge.fake.board_thread import LONGEST_STEP
 from bridge.framing import FrameReader
 from bridge.protocol import ResetCause
-from world.timeline import Link, Process
+from world.timeline import Line, Process
 
 STEP = 0.01
 """Seconds; the pulses are looked at so often, twice a period."""
@@ -19,13 +19,13 @@ class Cable:
         self.frames = []
         self._board = board
         self._reader = FrameReader()
-        self._down = Link(board, board.on_bytes, depth=None)
+        self._down = Line(board, board.on_bytes)
         self._up = None
         self._bridge = None
 
     def lead_to(self, bridge):
         self._bridge = bridge
-        self._up = Link(bridge, bridge.on_bytes, depth=None)
+        self._up = Line(bridge, bridge.on_bytes)
 
     @property
     def links(self):

@@ -60,9 +60,7 @@ class ControllerProcess(Process):
         self.on_goal_joints = FilteredCallback(self, self._take_goal_joints, self._refuse)
         self.on_trajectory = FilteredCallback(self, self._take_trajectory, self._refuse)
         self.on_joint_rates = FilteredCallback(self, self._take_joint_rates)
-        self.on_pose = FilteredCallback(
-            self, lambda stamp, pose: self.core.note_pose(pose, self.now)
-        )
+        self.on_pose = FilteredCallback(self, self._take_pose)
         self.on_joints = FilteredCallback(
             self, lambda stamp, joints: self.core.note_joints(joints)
         )
@@ -80,6 +78,9 @@ class ControllerProcess(Process):
     def on_machine_state(self, word, is_followed, is_measured):
         self.core.note_machine_state(word, is_followed, is_measured, self.now)
         self._publish_news()
+
+    def _take_pose(self, stamp, pose):
+        self.core.note_pose(pose, self.now, self.on_pose.lateness)
 
     def _take_goal(self, stamp, pose):
         refuse = self._later(self.on_goal, stamp)

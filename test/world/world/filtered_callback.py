@@ -27,6 +27,10 @@ class FilteredCallback:
     def age(self):
         return self._filter.age(self._process.now)
 
+    @property
+    def lateness(self):
+        return self._filter.lateness
+
     def _report(self, stamp, error):
         self.refusals.append((self._process.now, self._filter.last_refusal))
         self._refuse(stamp, error)

@@ -125,3 +125,16 @@ class Link:
     def _take(self):
         if self._arrived:  # else a newer value took its place
             self._accept(*self._arrived.popleft())
+
+
+class Line(Link):
+    """Carries bytes; a process reads all that wait, as from a port."""
+
+    def __init__(self, to, accept):
+        super().__init__(to, accept, depth=None)
+
+    def _take(self):
+        if self._arrived:  # else they were read with those before
+            received = b''.join(part for (part,) in self._arrived)
+            self._arrived.clear()
+            self._accept(received)

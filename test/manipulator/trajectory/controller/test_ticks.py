@@ -73,6 +73,34 @@ def test_without_poses_it_first_pauses_and_then_releases(stage):
     assert stage.tick() is None
 
 
+def test_a_machine_is_taken_over_only_where_it_was_after_it_was_released(stage):
+    stage.does_pose_come = False
+    stage.run(round(POSE_DEADLINE / DT) + 2)
+    assert stage.tick() is None
+    stage.core.note_pose(HIGHER, stage.now, lateness=0.2)
+    assert stage.tick() is None
+    stage.core.note_pose(stage.pose, stage.now, lateness=0.01)
+    assert np.abs(stage.tick().twist_to(stage.pose)).max() == 0.0
+
+
+def test_a_machine_is_taken_over_only_where_it_was_in_its_present_state(stage):
+    stage.state, stage.does_pose_come = 'playing', False
+    stage.run(20)
+    stage.state = 'enabled'
+    stage.run(5)
+    stage.core.note_pose(HIGHER, stage.now, lateness=0.06)
+    assert stage.tick() is None
+    stage.core.note_pose(stage.pose, stage.now, lateness=0.01)
+    assert stage.tick() is not None
+
+
+def test_a_late_pose_keeps_a_machine_that_is_driven(moving):
+    moving.does_pose_come = False
+    for _ in range(round(2 * POSE_DEADLINE / DT)):
+        moving.core.note_pose(moving.pose, moving.now, lateness=0.4)
+        assert moving.tick() is not None
+
+
 def test_without_the_bridges_word_it_releases(stage):
     stage.does_bridge_say = False
     stage.run(round(STATE_DEADLINE / DT) - 2)
