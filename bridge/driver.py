@@ -84,7 +84,7 @@ class BoardDriver:
         self.calibration = Calibration.from_config(config.servos)
         self._deadline = 1e-3 * config.link.setpoint_deadline_ms
         self.validator = CommandValidator(self.calibration, self._deadline)
-        self._gripper = Gripper(config.servos, self.calibration)
+        self._gripper = Gripper(config.servos, self.calibration, self._deadline)
         self.session = Session(len(self.calibration.names))
         self.monitor = LinkMonitor(self.session, self.calibration)
         rate = config.link.baud / 5  # twice what the line carries
@@ -110,6 +110,7 @@ class BoardDriver:
         setpoint = self.validator.admit(
             names, positions, stamp, now + self._epoch, present, holding_since
         )
+        self._gripper.note_admitted()
         self.link.put_setpoint(Ticket(setpoint, now, stamp))
 
     def aim_gripper(self, opening: float) -> None:

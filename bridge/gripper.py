@@ -17,19 +17,25 @@ LONGEST_GAP = 0.05
 class Gripper:
     """Moves towards the last requested opening; stays where it is until one is requested.
 
-    Positions in rad (or m), times monotonic in seconds.
+    Positions in rad (or m), times monotonic in seconds. It has moved only by commands that were
+    admitted; after a silence it begins where the joint is.
     """
 
-    def __init__(self, config: ServosConfig, calibration: Calibration) -> None:
-        """The joint that is marked as the gripper, if any; closed is the low end of its range."""
+    def __init__(self, config: ServosConfig, calibration: Calibration, deadline: float) -> None:
+        """The joint that is marked as the gripper, if any; closed is the low end of its range.
+
+        deadline: seconds after which the last command is not followed any more.
+        """
         marked = [joint.name for joint in config.joints if joint.is_gripper]
         self._name = marked[0] if marked else ''
         self._index = calibration.names.index(self._name) if marked else 0
         self._closed, self._opened = calibration.range_of(self._index)
         self._speed = SPEED_SHARE * calibration.speed
         self._target: float | None = None
+        self._deadline = deadline
         self._position: float | None = None
         self._stepped_at = 0.0
+        self._next: tuple[float, float] | None = None
 
     def aim(self, opening: float) -> None:
         """From 0 (closed) to 1 (open); InvalidInput for all else, NaN too, or without gripper."""
@@ -44,26 +50,33 @@ class Gripper:
     ) -> tuple[Sequence[str], Sequence[float]]:
         """Names and positions of a joint command, with the gripper's where they lack it.
 
-        `joints` (n,) is where all joints are, in the calibration's order; NaN where unknown.
+        Call `note_admitted` once the command is. `joints` (n,) is where all joints are, in the
+        calibration's order; NaN where unknown.
         """
         names, positions = command
         if not self._name or self._name in names:
             return names, positions
         present = math.nan if joints is None else float(joints[self._index])
-        return [*names, self._name], [*positions, self.step(now, present)]
+        position = self._ahead(now, present)
+        self._next = position, now
+        return [*names, self._name], [*positions, position]
+
+    def note_admitted(self) -> None:
+        """The last joined command is followed."""
+        if self._next is not None:
+            self._position, self._stepped_at = self._next
 
     def restart(self) -> None:
         """Begins where the joint is, and stays there until the next request."""
-        self._target = self._position = None
+        self._target = self._position = self._next = None
 
-    def step(self, now: float, present: float) -> float:
+    def _ahead(self, now: float, present: float) -> float:
         """The position to command now; Refused while the joint's position is unknown."""
-        if self._position is None:
+        elapsed = max(now - self._stepped_at, 0.0)
+        if self._position is None or elapsed > self._deadline:
             if math.isnan(present):
-                raise Refused(f'the position of {self._name} is not known yet')
-            self._position, self._stepped_at = present, now
-        reach = self._speed * min(max(now - self._stepped_at, 0.0), LONGEST_GAP)
+                raise Refused(f'the position of {self._name} is not known at present')
+            return present
+        reach = self._speed * min(elapsed, LONGEST_GAP)
         distance = 0.0 if self._target is None else self._target - self._position
-        self._position += min(max(distance, -reach), reach)
-        self._stepped_at = now
-        return self._position
+        return self._position + min(max(distance, -reach), reach)

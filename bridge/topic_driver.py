@@ -43,7 +43,7 @@ class TopicDriver:
         self.refusals, self.last_refusal = 0, ''
         self._reported_at, self._missing = float('-inf'), ''
         self._is_enabled = self._is_stopped = False
-        self._command_due = self._holding_since = float('-inf')
+        self._command_due = float('-inf')
 
     # From the driver
 
@@ -73,10 +73,8 @@ class TopicDriver:
             raise self.validator.refusal(str(state), now + self._epoch)
         target = self.validator.ordered(names, positions)
         self._check_range(target)
-        holding_since = self._holding_since + self._epoch
-        self.validator.take(target, stamp, now + self._epoch, self.joints, holding_since)
-        self._follow(now + COMMAND_DEADLINE)
-        self.is_followed = True
+        self.validator.take(target, stamp, now + self._epoch, self.joints)
+        self._command_due, self.is_followed = now + COMMAND_DEADLINE, True
         if self.is_simulated:
             self.joints = frozen(target)
         return target
@@ -125,8 +123,6 @@ class TopicDriver:
             return MachineStatus(OK, MachineState.DISARMED)
         if now > self._command_due:
             self.is_followed = False
-            if np.isinf(self._holding_since):
-                self._holding_since = now
             reason = 'no joint command within the deadline'
             return MachineStatus(WARN, MachineState.HOLDING, reason)
         return MachineStatus(OK, MachineState.ENABLED)
@@ -134,12 +130,7 @@ class TopicDriver:
     def _begin(self, now: float) -> None:
         """What comes next must start where the joints are."""
         self.validator.restart()
-        self._follow(now + FIRST_COMMAND)
-        self.is_followed = False
-
-    def _follow(self, until: float) -> None:
-        """The machine holds where no command comes until then."""
-        self._command_due, self._holding_since = until, float('-inf')
+        self.is_followed, self._command_due = False, now + FIRST_COMMAND
 
     def _in_words(self, now: float) -> str:
         status = self.status(now)

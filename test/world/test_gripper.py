@@ -43,6 +43,16 @@ def test_it_closes_while_a_goal_is_driven_which_is_reached(arm):
     assert gripper(arm, since)[-1] == CLOSED
 
 
+def test_a_machine_that_holds_while_it_moves_goes_on_and_so_does_it(arm):
+    arm.bridge.aim_gripper(1.0)
+    arm.run(0.1)
+    arm.inverse.freeze(0.6)
+    arm.wait('hold', lambda: arm.state == 'holding')
+    arm.wait('enabled machine', lambda: arm.state == 'enabled')
+    arm.run(2.0)
+    assert gripper(arm, arm.now - 0.1)[-1] == OPEN
+
+
 def test_a_stop_holds_it_and_it_does_not_go_on_after_the_clear(arm):
     arm.bridge.aim_gripper(1.0)
     arm.run(0.2)
