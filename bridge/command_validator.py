@@ -79,11 +79,11 @@ class JumpValidator:
         """Raises StaleMessage or Refused for a target (n,) that must not be commanded now.
 
         holding_since: when the machine was found to hold, on the clock of `receipt`: what was
-        sent before is Overtaken.
+        sent before is refused.
         """
         lateness = self._stamps.admit(stamp, receipt) if stamp is not None else 0.0
         if receipt - lateness < holding_since:
-            raise Overtaken('sent before the machine was known to hold')
+            raise Refused('sent before the machine was known to hold')
         self._refuse_jump(target, receipt, present)
         self._last, self._last_at = target, receipt
 

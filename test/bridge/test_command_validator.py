@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from bridge.calibration import Calibration
-from bridge.command_validator import CommandValidator, Overtaken
+from bridge.command_validator import CommandValidator
 from bridge.servo_config import BoardConfig
 from hexarm import machines
 from manipulator.errors import InvalidInput, ManipulatorError, Refused
@@ -197,7 +197,7 @@ def test_after_restart_the_joints_count_again(validator):
 def test_what_was_sent_before_the_machine_was_known_to_hold_moves_nothing(validator):
     admit(validator, stamp=NOW)
     for stamp, receipt in ((NOW + 0.35, NOW + 0.5), (NOW + 0.39, NOW + 0.501)):
-        with pytest.raises(Overtaken, match='before the machine was known to hold'):
+        with pytest.raises(Refused, match='before the machine was known to hold'):
             validator.admit(NAMES, PARK, stamp, receipt, PARK, holding_since=NOW + 0.4)
     validator.admit(NAMES, PARK, NOW + 0.41, NOW + 0.502, PARK, holding_since=NOW + 0.4)
 

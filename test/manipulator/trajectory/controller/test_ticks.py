@@ -94,11 +94,11 @@ def test_a_machine_is_taken_over_only_where_it_was_in_its_present_state(stage):
     assert stage.tick() is not None
 
 
-def test_a_late_pose_keeps_a_machine_that_is_driven(moving):
-    moving.does_pose_come = False
-    for _ in range(round(2 * POSE_DEADLINE / DT)):
-        moving.core.note_pose(moving.pose, moving.now, lateness=0.4)
-        assert moving.tick() is not None
+def test_a_late_pose_of_a_machine_that_is_driven_counts(moving, monkeypatch):
+    noted = []
+    monkeypatch.setattr(moving.core.supervisor, 'note_pose', noted.append)
+    moving.core.note_pose(HIGHER, moving.now, lateness=0.4)
+    assert noted == [HIGHER]
 
 
 def test_without_the_bridges_word_it_releases(stage):
