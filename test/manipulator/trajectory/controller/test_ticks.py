@@ -73,12 +73,19 @@ def test_without_poses_it_first_pauses_and_then_releases(stage):
     assert stage.tick() is None
 
 
+def note_at_higher(stage, lateness):
+    """The machine was there, with its joints."""
+    stage.core.note_joints(stage.machine.kinematics.inverse(HIGHER))
+    stage.core.note_pose(HIGHER, stage.now, lateness)
+
+
 def test_a_machine_is_taken_over_only_where_it_was_after_it_was_released(stage):
     stage.does_pose_come = False
     stage.run(round(POSE_DEADLINE / DT) + 2)
     assert stage.tick() is None
-    stage.core.note_pose(HIGHER, stage.now, lateness=0.2)
+    note_at_higher(stage, lateness=0.2)
     assert stage.tick() is None
+    stage.core.note_joints(stage.machine.kinematics.inverse(stage.pose))
     stage.core.note_pose(stage.pose, stage.now, lateness=0.01)
     assert np.abs(stage.tick().twist_to(stage.pose)).max() == 0.0
 
@@ -88,8 +95,9 @@ def test_a_machine_is_taken_over_only_where_it_was_in_its_present_state(stage):
     stage.run(20)
     stage.state = 'enabled'
     stage.run(5)
-    stage.core.note_pose(HIGHER, stage.now, lateness=0.06)
+    note_at_higher(stage, lateness=0.06)
     assert stage.tick() is None
+    stage.core.note_joints(stage.machine.kinematics.inverse(stage.pose))
     stage.core.note_pose(stage.pose, stage.now, lateness=0.01)
     assert stage.tick() is not None
 
