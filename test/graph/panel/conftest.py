@@ -241,10 +241,11 @@ class Seen:
                 self.client.spin(0.1)
 
     def start_cycle(self):
-        """Asked again where a slider of a page that is behind asked for something newer."""
+        """From home, also where it was lost on its way, or a page that is behind moved it."""
 
         def ask():
-            with contextlib.suppress(Refused):
+            with contextlib.suppress(Refused, Stopped):
+                self.client.home()
                 self.client.trigger('trajectory/start_cycle')
 
         self.asked_until(ask, lambda: self.client.motion('mode') == 'cycle')
