@@ -89,13 +89,13 @@ def test_a_pose_is_saved_on_the_page_and_gone_to_again(page, machine):
     page.page.get_by_placeholder('name').fill('left')
     machine.asked_until(
         lambda: page.press('Save pose'),
-        lambda: page.page.get_by_role('button', name='go to').count() > 0,
+        lambda: page.page.get_by_role('button', name='go to left').count() > 0,
     )
     machine.client.spin(0.3)
     saved = machine.poses[-1].position
     machine.asked_until(lambda: machine.go_to(ELSEWHERE), lambda: machine.has_moved(0, -0.001))
     machine.asked_until(
-        lambda: page.press('go to'),
+        lambda: page.press('go to left'),
         lambda: np.abs(machine.poses[-1].position - saved).max() < 2e-4,
     )
 
