@@ -302,26 +302,31 @@ class RobotClient(Client):
     def change_saved_pose(self, topic: str, name: str) -> str:
         """Sends a name on `save_pose` or `delete_pose`; Refused with the reason."""
         self.saved_poses()
+        answer = 'saved_pose_status'
+        self.wait(answer, lambda: answer in self._newest, PATIENCE)
         changes = self.node.create_publisher(String, topic, EVERY_WORD)
         try:
             self.wait(f'a subscriber on {topic}', changes.get_subscription_count, PATIENCE)
-            before = self._received['saved_pose_status']
+            before = self._received.copy()
             changes.publish(String(data=name))
             self.wait(
                 f'an answer to {topic}',
-                lambda: (
-                    self._received['saved_pose_status'] > before
-                    and self._newest['saved_pose_status'].data.startswith(name)
-                ),
+                lambda: self._received[answer] > before[answer] and self._is_outcome_of(name),
                 PATIENCE,
             )
         finally:
             self.node.destroy_publisher(changes)
-        saved, _, outcome = str(self._newest['saved_pose_status'].data).partition(': ')
+        saved, _, outcome = str(self._newest[answer].data).partition(': ')
         if outcome.startswith('refused: '):
             raise Refused(outcome.removeprefix('refused: '))
-        self.receive()
+        texts = 'saved_poses'
+        self.wait(texts, lambda: self._received[texts] > before[texts], PATIENCE)
         return saved
+
+    def _is_outcome_of(self, name: str) -> bool:
+        """Whether the newest outcome is that of `name`; of a new one for ''."""
+        named, colon, _ = str(self._newest['saved_pose_status'].data).partition(': ')
+        return bool(colon) and name in ('', named)
 
     def _note(self, name: str, message: Any) -> None:
         self._newest[name] = message

@@ -40,6 +40,7 @@ class SavedPoseTopics:
         self._last_at = float('-inf')
         self._texts = node.create_publisher(String, 'saved_poses', LATCHED)
         self._outcomes = node.create_publisher(String, 'saved_pose_status', LATCHED)
+        self._outcomes.publish(String())  # with it a client tells an answer from an older outcome
         for topic, change in (('save_pose', self._save), ('delete_pose', self._delete)):
             node.create_subscription(String, topic, self._named(change), EVERY_WORD, raw=True)
         node.create_service(Trigger, '~/save', self._on_save)

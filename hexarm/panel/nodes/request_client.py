@@ -128,7 +128,8 @@ class RequestClient:
         self.notice = f'{button}: {answer.message}' if is_news else ''
 
     def _on_saved(self, message: String) -> None:
-        self.notice = f'saved poses: {message.data}'
+        if message.data:
+            self.notice = f'saved poses: {message.data}'
 
     def _give_up(self) -> None:
         """Notes services that do not answer: a node that was killed seems ready for 20 s."""

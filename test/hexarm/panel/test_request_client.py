@@ -13,6 +13,7 @@ class Node:
 
     def __init__(self, is_ready=True):
         self.depths, self.published, self.asked, self.is_ready = {}, {}, [], is_ready
+        self.heard = {}
 
     def create_publisher(self, _, topic, qos):
         self.depths[topic] = qos.depth
@@ -21,8 +22,8 @@ class Node:
     def create_client(self, _, name):
         return Service(self, name)
 
-    def create_subscription(self, *_):
-        return None
+    def create_subscription(self, _, topic, callback, qos):
+        self.heard[topic] = callback
 
 
 class Service:
@@ -75,3 +76,11 @@ def test_a_tool_is_sent_by_its_name():
     node = Node()
     requested(node, Request('tool', name='probe'))
     assert node.published['tool'].data == 'probe'
+
+
+def test_the_outcome_of_a_saved_pose_is_shown_and_none_where_there_is_none_yet():
+    node = Node()
+    client = RequestClient(node, bool)
+    for outcome in ('up: saved', ''):
+        node.heard['saved_pose_status'](SimpleNamespace(data=outcome))
+        assert client.notice == 'saved poses: up: saved'

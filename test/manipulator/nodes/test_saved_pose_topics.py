@@ -49,6 +49,7 @@ def taught(tmp_path, monkeypatch):
 
 
 def test_a_pose_is_in_the_file_and_published(taught):
+    assert taught.published('saved_pose_status') == ''
     taught.stands()
     assert taught.send('save_pose', 'up') == 'up: saved'
     assert taught.send('save_pose', 'up') == 'up: replaced'
