@@ -17,6 +17,7 @@ requests in, states out.
 Runs in the web server's thread; the node calls from its own.
 """
 
+import asyncio
 import contextlib
 import functools
 import http
@@ -169,10 +170,10 @@ def start_server(host: str, port: int, label: str, handlers: Mapping[str, Handle
     quiet = contextlib.redirect_stdout(io.StringIO())  # the node logs its address itself
     with _extended_serve(handlers) as opened, quiet:
         server = viser.ViserServer(host, port, label, verbose=False)
-    if not opened:
+    if not opened or not _made_to_draw_in_any_thread(server):
         server.stop()
         raise Refused(
-            f'viser {viser.__version__} opens its port differently than this panel expects: '
+            f'viser {viser.__version__} is built differently than this panel expects: '
             f'{INSTALL["viser"]}'
         )
     server.request_share_url = _refuse_to_share
@@ -225,6 +226,28 @@ def _extended_serve(handlers: Mapping[str, Handler]) -> Iterator[list[int]]:
         yield opened
     finally:
         websockets_server.serve = original
+
+
+def _made_to_draw_in_any_thread(server: Any) -> bool:
+    """False where viser is built differently.
+
+    viser wakes what sends to the pages by an asyncio.Event, which no other thread may set. It
+    does so in the thread that draws, where that raises an error now and then, and again in its
+    own. The second time is enough.
+    """
+    loop = server.get_event_loop()
+    try:
+        event = server._websock_server.get_message_buffer().message_event
+    except AttributeError:
+        return False
+    wake = event.set
+
+    def wake_in_the_loop() -> None:
+        if asyncio._get_running_loop() is loop:
+            wake()
+
+    event.set = wake_in_the_loop
+    return True
 
 
 def _checked(serve_file: Any) -> Callable[[ServerConnection, Request], Response | None]:
